@@ -1,0 +1,23 @@
+// Converts between linear RGB, luminance and what a display shows.
+#pragma once
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Returns the luminance Y of linear sRGB, with pbrt-v3's weights.
+inline float Luminance(const Rgb& c) {
+    return 0.212671f * c.x() + 0.715160f * c.y() + 0.072169f * c.z();
+}
+
+// Maps linear [0, 1] to the sRGB transfer curve (IEC 61966-2-1).
+inline float SrgbFromLinear(float v) {
+    return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+
+// Inverts SrgbFromLinear.
+inline float LinearFromSrgb(float v) {
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
+}  // namespace lull

@@ -1,0 +1,35 @@
+#include "renderer/base/error.h"
+
+namespace lull {
+
+std::string FileLoc::Prefix() const {
+    if (!file) return "";
+    return line > 0 ? *file + ":" + std::to_string(line) + ": " : *file + ": ";
+}
+
+void Warnings::Add(const FileLoc& loc, const std::string& kind, const std::string& detail) {
+    std::lock_guard lock(mutex);
+    if (counts[kind]++ == 0 && sink)
+        sink(loc.Prefix() + "warning: " + kind + (detail.empty() ? "" : ": " + detail));
+}
+
+std::map<std::string, int> Warnings::Counts() const {
+    std::lock_guard lock(mutex);
+    return counts;
+}
+
+int Warnings::Total() const {
+    std::lock_guard lock(mutex);
+    int total = 0;
+    for (const auto& [kind, count] : counts) total += count;
+    return total;
+}
+
+void Warnings::Summarize() const {
+    std::lock_guard lock(mutex);
+    if (!sink) return;
+    for (const auto& [kind, count] : counts)
+        if (count > 1) sink("warning: " + kind + " (" + std::to_string(count) + " times in all)");
+}
+
+}  // namespace lull

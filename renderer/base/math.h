@@ -1,0 +1,125 @@
+// Names the vector types and holds the small geometry that everything uses.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+namespace lull {
+
+using Vec2f = Eigen::Vector2f;
+using Vec3f = Eigen::Vector3f;
+using Vec2i = Eigen::Vector2i;
+using Vec3i = Eigen::Vector3i;
+using Mat3f = Eigen::Matrix3f;
+// Transforms are composed in double, so that long chains of directives lose nothing, and applied
+// in float.
+using Mat4d = Eigen::Matrix4d;
+// Represents linear RGB (sRGB primaries); Array, so that products and quotients are per channel.
+using Rgb = Eigen::Array3f;
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
+
+template <typename T>
+constexpr T Sqr(T x) {
+    return x * x;
+}
+
+// Returns the square root of x, 0 for the small negative values that rounding leaves.
+inline float SafeSqrt(float x) { return std::sqrt(std::max(0.f, x)); }
+
+inline float Lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
+
+// Bounds the relative error of n float operations: (1 + e)^n - 1 (Higham 2002, section 3.1).
+constexpr float Gamma(int n) {
+    constexpr float e = std::numeric_limits<float>::epsilon() * 0.5f;
+    return (n * e) / (1 - n * e);
+}
+
+inline float NextFloatUp(float v) { return std::nextafterf(v, kInfinity); }
+inline float NextFloatDown(float v) { return std::nextafterf(v, -kInfinity); }
+
+inline bool IsBlack(const Rgb& c) { return c.x() == 0 && c.y() == 0 && c.z() == 0; }
+inline bool IsFinite(const Rgb& c) {
+    return std::isfinite(c.x()) && std::isfinite(c.y()) && std::isfinite(c.z());
+}
+
+// Returns v turned to the side of `reference`.
+inline Vec3f FaceForward(const Vec3f& v, const Vec3f& reference) {
+    return v.dot(reference) < 0 ? Vec3f(-v) : v;
+}
+
+// Completes the unit vector n to an orthonormal basis (s, t, n) (Duff et al. 2017, JCGT 6(1)).
+inline void CoordinateSystem(const Vec3f& n, Vec3f* s, Vec3f* t) {
+    const float sign = std::copysign(1.f, n.z());
+    const float a = -1 / (sign + n.z());
+    const float b = n.x() * n.y() * a;
+    *s = Vec3f(1 + sign * Sqr(n.x()) * a, sign * b, -sign * n.x());
+    *t = Vec3f(b, sign + Sqr(n.y()) * a, -n.y());
+}
+
+// Holds an orthonormal frame; "local" has n along +z, as all BSDFs here expect.
+struct Frame {
+    Vec3f s, t, n;
+
+    Vec3f ToLocal(const Vec3f& v) const { return {v.dot(s), v.dot(t), v.dot(n)}; }
+    Vec3f FromLocal(const Vec3f& v) const { return s * v.x() + t * v.y() + n * v.z(); }
+};
+
+inline Vec3f TransformPoint(const Mat4d& m, const Vec3f& p) {
+    const Eigen::Vector4d q = m * p.cast<double>().homogeneous();
+    return q.hnormalized().cast<float>();
+}
+inline Vec3f TransformVector(const Mat4d& m, const Vec3f& v) {
+    return (m.topLeftCorner<3, 3>() * v.cast<double>()).cast<float>();
+}
+// Normals transform by the inverse transpose; `inverse` is the inverse of the point transform.
+inline Vec3f TransformNormal(const Mat4d& inverse, const Vec3f& n) {
+    return (inverse.topLeftCorner<3, 3>().transpose() * n.cast<double>()).cast<float>();
+}
+
+struct Bounds3f {
+    Vec3f lower = Vec3f::Constant(kInfinity), upper = Vec3f::Constant(-kInfinity);
+
+    void Extend(const Vec3f& p) {
+        lower = lower.cwiseMin(p);
+        upper = upper.cwiseMax(p);
+    }
+    void Extend(const Bounds3f& b) {
+        lower = lower.cwiseMin(b.lower);
+        upper = upper.cwiseMax(b.upper);
+    }
+    bool IsEmpty() const { return !(lower.array() <= upper.array()).all(); }
+    Vec3f Diagonal() const { return upper - lower; }
+};
+
+struct Ray {
+    Vec3f o, d;
+    float tMax = kInfinity;
+};
+
+// Moves p off the surface with normal n to the side of w, past the error bounds of its
+// coordinates, so that a ray from there cannot meet the same surface again (pbrt 3rd ed., 3.9.5).
+inline Vec3f OffsetRayOrigin(const Vec3f& p, const Vec3f& error, const Vec3f& n, const Vec3f& w) {
+    const float d = n.cwiseAbs().dot(error);
+    const Vec3f offset = w.dot(n) < 0 ? Vec3f(-d * n) : Vec3f(d * n);
+    Vec3f q = p + offset;
+    for (int i = 0; i < 3; ++i) {
+        if (offset[i] > 0)
+            q[i] = NextFloatUp(q[i]);
+        else if (offset[i] < 0)
+            q[i] = NextFloatDown(q[i]);
+    }
+    return q;
+}
+
+}  // namespace lull

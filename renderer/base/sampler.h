@@ -1,0 +1,45 @@
+// Gives every sample of every pixel its own numbers: addressable by (seed, pixel, sample index,
+// dimension), so that any thread can take any sample at any time.
+#pragma once
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+enum class SamplerKind { Random, Sobol };
+
+class Sampler {
+  public:
+    Sampler(SamplerKind kind, uint64_t seed) : seed(seed), kind(kind) {}
+
+    // Starts sample `index` of the pixel, at dimension 0.
+    void StartSample(const Vec2i& pixel, uint32_t index);
+
+    // Return the next one or two dimensions, each in [0, 1).
+    float Get1D() { return kind == SamplerKind::Random ? Random1D() : Sobol2D().x(); }
+    Vec2f Get2D() { return kind == SamplerKind::Random ? Random2D() : Sobol2D(); }
+
+  private:
+    // Advances SplitMix64 (Steele, Lea, Flood 2014): a counter through a mixing function, so each
+    // number costs two multiplications and the start of each sample is a hash away.
+    uint64_t NextRandom() {
+        uint64_t z = (state += 0x9e3779b97f4a7c15ull);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+        return z ^ (z >> 31);
+    }
+    float Random1D() { return float(NextRandom() >> 40) * 0x1p-24f; }
+    Vec2f Random2D() {
+        const uint64_t r = NextRandom();
+        return {float(r >> 40) * 0x1p-24f, float((r >> 8) & 0xffffff) * 0x1p-24f};
+    }
+    Vec2f Sobol2D();
+
+    uint64_t seed;
+    uint64_t state = 0;      // random: the counter; Sobol: the hash of (seed, pixel)
+    uint32_t index = 0;      // Sobol only
+    uint32_t dimension = 0;  // Sobol only: how many pairs were taken
+    SamplerKind kind;
+};
+
+}  // namespace lull

@@ -1,0 +1,82 @@
+// Turns uniform numbers into directions, points and choices.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Maps the unit square to the unit disk, area-preserving (Shirley and Chiu 1997).
+Vec2f SampleConcentricDisk(const Vec2f& u);
+
+// Maps the unit square to the hemisphere around +z with density cos(theta) / pi.
+inline Vec3f SampleCosineHemisphere(const Vec2f& u) {
+    const Vec2f d = SampleConcentricDisk(u);
+    return {d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())};
+}
+
+// Maps the unit square uniformly to the unit sphere.
+Vec3f SampleUniformSphere(const Vec2f& u);
+
+// Maps the unit square uniformly to a triangle; returns the barycentrics (b0, b1).
+inline Vec2f SampleUniformTriangle(const Vec2f& u) {
+    const float s = std::sqrt(u.x());
+    return {1 - s, u.y() * s};
+}
+
+// Weighs a sample taken with density f against a rival density g (Veach 1997, eq. 9.16, beta 2).
+// Written over the ratio, so that no square overflows.
+inline float PowerHeuristic(float f, float g) {
+    if (!(f > 0)) return 0;
+    const float r = g / f;
+    return 1 / (1 + r * r);
+}
+
+// Returns the index-th element of the van der Corput sequence in `base`, in [0, 1).
+float RadicalInverse(int base, uint64_t index);
+
+// Represents a piecewise-constant density over [0, 1), proportional to nonnegative values.
+// All-zero (or non-finite) values give the uniform density.
+class Distribution1D {
+  public:
+    Distribution1D() = default;
+    explicit Distribution1D(std::span<const float> values);
+
+    int Count() const { return int(values.size()); }
+    // Returns the mean of the values.
+    float Integral() const { return integral; }
+    // Returns the probability of choosing element i.
+    float Pmf(int i) const { return values[i] * pmfScale; }
+    // Returns the density at x in [0, 1).
+    float Pdf(float x) const { return Pmf(std::clamp(int(x * Count()), 0, Count() - 1)) * Count(); }
+    // Chooses an element; `pmf` receives its probability, > 0 for every choice that can occur.
+    int SampleDiscrete(float u, float* pmf) const;
+    // Chooses a place in [0, 1); `pdf` receives the density, `offset` the element it lies in.
+    float SampleContinuous(float u, float* pdf, int* offset) const;
+
+  private:
+    int Find(float u) const;
+
+    std::vector<float> values;  // as given; 1 each where all were 0
+    std::vector<float> cdf;     // Count() + 1 of them, from 0 to 1
+    float integral = 0;
+    float pmfScale = 0;
+};
+
+// Represents a piecewise-constant density over the unit square, row-major in v.
+class Distribution2D {
+  public:
+    Distribution2D() = default;
+    Distribution2D(std::span<const float> values, int nu, int nv);
+
+    Vec2f SampleContinuous(const Vec2f& u, float* pdf) const;
+    float Pdf(const Vec2f& p) const;
+
+  private:
+    std::vector<Distribution1D> conditional;
+    Distribution1D marginal;
+};
+
+}  // namespace lull

@@ -1,0 +1,143 @@
+// Describes a scene as its file does: plain entities with parameters, each with the place it came
+// from. Loaders fill a Description; compile (renderer/scene/compile.h) makes a Scene of it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/error.h"
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Refers to a texture by its place in Description::textures, as the name stood when the
+// parameter was read (pbrt-v3 keeps float and spectrum textures in separate name spaces).
+struct TextureRef {
+    std::string name;
+    int floatIndex = -1, spectrumIndex = -1;
+};
+
+enum class ParameterType {
+    Integer,
+    Float,
+    Bool,
+    String,
+    Point2,
+    Vector2,
+    Point3,
+    Vector3,
+    Normal,
+    Spectrum,
+    Texture
+};
+
+// Holds one "type name" [values]. Points, vectors, normals and spectra lie flat in a vector of
+// float; spectra of every kind (rgb, xyz, blackbody, spectrum) are linear RGB already.
+struct Parameter {
+    ParameterType type;
+    std::string name;
+    FileLoc loc;
+    std::variant<std::vector<float>, std::vector<int>, std::vector<std::string>,
+                 std::vector<TextureRef>>
+        values;
+    mutable bool lookedUp = false;
+};
+
+// Holds the parameters of one directive. As in pbrt-v3, a look-up finds a parameter by name *and*
+// type, and a single-value look-up finds it only if it has exactly one value. Every look-up marks
+// the parameter as used; ReportUnused warns of the rest.
+class Parameters {
+  public:
+    void Add(Parameter parameter);  // a repeated name of the same type replaces the earlier one
+
+    float GetFloat(const std::string& name, float otherwise) const;
+    int GetInt(const std::string& name, int otherwise) const;
+    bool GetBool(const std::string& name, bool otherwise) const;
+    std::string GetString(const std::string& name, const std::string& otherwise) const;
+    Vec3f GetPoint3(const std::string& name, const Vec3f& otherwise) const;
+    Vec3f GetVector3(const std::string& name, const Vec3f& otherwise) const;
+    Rgb GetSpectrum(const std::string& name, const Rgb& otherwise) const;
+
+    // Return the parameter with all its values, or null.
+    const Parameter* Find(ParameterType type, const std::string& name) const;
+    // Return the values, empty where absent.
+    std::span<const float> GetFloats(ParameterType type, const std::string& name) const;
+    std::span<const int> GetInts(const std::string& name) const;
+    // Returns the texture that a "texture" parameter names, null where there is no such parameter.
+    const TextureRef* GetTexture(const std::string& name) const;
+
+    // Warns of every parameter that nothing has looked up; `owner` names whose it is.
+    void ReportUnused(const std::string& owner, Warnings& warnings) const;
+
+    const std::vector<Parameter>& All() const { return parameters; }
+
+  private:
+    std::vector<Parameter> parameters;
+};
+
+// Holds one directive: its kind's name ("perspective", "plymesh"), parameters and place.
+struct Entity {
+    std::string name;
+    Parameters parameters;
+    FileLoc loc;
+};
+
+struct TextureEntity : Entity {
+    std::string textureName;
+    bool isSpectrum = false;  // else float
+    Mat4d worldFromTexture = Mat4d::Identity();
+};
+
+struct MaterialEntity : Entity {
+    std::string materialName;  // of MakeNamedMaterial; empty for Material
+    // Of "mix": the two named materials, as the names stood; -1 where there was none such.
+    std::array<int, 2> operands = {-1, -1};
+};
+
+struct LightEntity : Entity {
+    Mat4d worldFromLight = Mat4d::Identity();
+};
+
+struct ShapeEntity : Entity {
+    Mat4d worldFromObject = Mat4d::Identity();  // inside an object definition: objectFromShape
+    bool reverseOrientation = false;
+    int material = -1;                // into Description::materials
+    std::optional<Entity> areaLight;  // of AreaLightSource, in force at the shape
+};
+
+// Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the
+// one in force at ObjectBegin, and an instance's transform is applied on top.
+struct ObjectEntity {
+    std::string name;
+    FileLoc loc;
+    std::vector<ShapeEntity> shapes;
+};
+
+struct InstanceEntity {
+    int object = -1;  // into Description::objects
+    Mat4d worldFromInstance = Mat4d::Identity();
+    FileLoc loc;
+};
+
+struct Description {
+    Entity camera{"perspective", {}, {}}, film{"image", {}, {}}, filter{"box", {}, {}},
+        sampler{"halton", {}, {}}, integrator{"path", {}, {}};
+    Mat4d cameraFromWorld = Mat4d::Identity();
+
+    std::vector<TextureEntity> textures;
+    std::vector<MaterialEntity> materials;
+    std::vector<LightEntity> lights;
+    std::vector<ShapeEntity> shapes;
+    std::vector<ObjectEntity> objects;
+    std::vector<InstanceEntity> instances;
+
+    std::string directory;  // of the scene's file; relative file names start there
+};
+
+// Returns `file` as named in a parameter, made relative to the description's directory.
+std::string ResolvePath(const Description& description, const std::string& file);
+
+}  // namespace lull
