@@ -1,0 +1,60 @@
+// Represents the scattering at one hit point: a few lobes in a shading frame.
+#pragma once
+
+#include <optional>
+
+#include "renderer/bsdf/lobes.h"
+
+namespace lull {
+
+// Selects what Bsdf::Evaluate and Sample see. Next-event estimation with its own BSDF sample
+// leaves perfectly specular lobes out, path continuation takes all.
+enum class LobeSet { All, NonSpecular };
+
+struct BsdfValue {
+    Rgb f = Rgb::Zero();  // 1/sr
+    float pdf = 0;        // 1/sr
+};
+
+struct BsdfSample {
+    Rgb f;      // 1/sr; for specular lobes f / pdf is what counts
+    float pdf;  // 1/sr; of the whole set, or the discrete probability of a specular choice
+    Vec3f wi;   // world, unit
+    bool isSpecular, isTransmission;
+};
+
+class Bsdf {
+  public:
+    static constexpr int kMaxLobes = 8;  // as pbrt-v3; materials that could need more are refused
+
+    // Takes the orthonormal shading frame, the geometric normal (both world) and the relative
+    // index of refraction across the surface (1 for opaque surfaces), which only the radiance
+    // scale of paths through it needs.
+    Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1)
+        : shading(shading), ng(ng), eta(eta) {}
+
+    void Add(const Lobe& lobe);
+
+    int LobeCount(LobeSet set) const {
+        return set == LobeSet::All ? lobeCount : lobeCount - specularCount;
+    }
+    float Eta() const { return eta; }
+
+    // Returns f and the density with which Sample(wo, ., set) finds wi; both 0 for specular lobes.
+    // Directions are world, unit, pointing away from the surface. As in pbrt-v3 the geometric
+    // normal decides between reflection and transmission, which keeps light from leaking.
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
+
+    // Chooses one lobe of the set uniformly with u.x and a direction from it. Returns nothing
+    // where no light can be scattered by the choice (f is 0 or the density is 0).
+    std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
+
+  private:
+    Frame shading;
+    Vec3f ng;
+    float eta;
+    int lobeCount = 0, specularCount = 0;
+    std::array<Lobe, kMaxLobes> lobes;
+};
+
+}  // namespace lull

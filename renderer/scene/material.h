@@ -1,0 +1,35 @@
+// Turns materials at a hit point into Bsdfs. One file a kind in materials/.
+#pragma once
+
+#include <vector>
+
+#include "renderer/bsdf/bsdf.h"
+#include "renderer/scene/interaction.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+struct Material;  // variant of all kinds, in material.cpp
+
+// Owns the materials of a scene, one for each of Description::materials. Immutable once made.
+class MaterialTable {
+  public:
+    // Throws Error naming file and line for an unknown kind, with `substitute` a matte of
+    // pbrt-v3's default stands in with a counted warning. `textures` must outlive the table.
+    MaterialTable(const Description&, const TextureTable& textures, bool substitute, Warnings&);
+    MaterialTable();
+    ~MaterialTable();
+    MaterialTable(MaterialTable&&) noexcept;
+    MaterialTable& operator=(MaterialTable&&) noexcept;
+
+    SurfaceNeeds Needs(int material) const;
+
+    // Evaluates textures and bump map and makes the lobes. Bump mapping turns hit.ns (and, on its
+    // side, not hit.n), as pbrt-v3's Material::Bump does.
+    Bsdf MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const;
+
+  private:
+    std::vector<Material> materials;
+};
+
+}  // namespace lull
