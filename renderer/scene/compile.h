@@ -1,0 +1,18 @@
+// Compiles a description into a scene that can be rendered.
+#pragma once
+
+#include "renderer/scene/scene.h"
+
+namespace lull {
+
+struct CompileOptions {
+    bool substitute = false;  // replace what is not modelled, with counted warnings
+    FilmOverrides film;
+    int maxDepth = -1;  // -1: as the scene says
+    int threads = 0;    // for the acceleration structure; 0: all
+};
+
+// Throws Error, with file and line, for the first thing that is wrong or not modelled.
+std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
+
+}  // namespace lull

@@ -1,0 +1,39 @@
+// Holds everything a ray can meet, ready to be rendered; immutable once compiled.
+#pragma once
+
+#include <memory>
+
+#include "renderer/base/sampler.h"
+#include "renderer/scene/accelerator.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/film_settings.h"
+#include "renderer/scene/filter.h"
+#include "renderer/scene/light_table.h"
+#include "renderer/scene/material.h"
+#include "renderer/scene/shape_table.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+struct Scene {
+    FilmSettings film;
+    Filter filter;
+    Camera camera;
+
+    // What the scene's own directives ask for; the command line can override them.
+    SamplerKind sampler = SamplerKind::Sobol;
+    int samplesPerPixel = 16;
+    int maxDepth = 5;
+    float rrThreshold = 1;
+
+    TextureTable textures;
+    MaterialTable materials;
+    ShapeTable shapes;
+    LightTable lights;
+    Accelerator accelerator;
+
+    // Seconds that the parts of compilation took, for reports.
+    double textureSeconds = 0, shapeSeconds = 0, acceleratorSeconds = 0;
+};
+
+}  // namespace lull
