@@ -1,0 +1,24 @@
+# Names the Debian packages that lull needs and installs those that are missing; to be sourced.
+
+build_packages="g++ cmake ninja-build libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev
+    libimath-dev libopenimageio-dev libtbb-dev nlohmann-json3-dev zlib1g-dev"
+test_packages="clang-format git libbenchmark-dev libgtest-dev"
+
+# install_packages NAME...: does nothing, not even a call of apt-get, where all are there.
+install_packages() {
+    local missing=() name sudo=
+    for name; do
+        [[ $(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null) == installed ]] ||
+            missing+=("$name")
+    done
+    ((${#missing[@]})) || return 0
+    if ! command -v apt-get >/dev/null; then
+        echo "No apt-get here; lull needs what Debian calls: $*" >&2
+        return 0 # CMake says what it cannot find
+    fi
+    echo "Installing: ${missing[*]}"
+    ((EUID == 0)) || sudo=sudo
+    $sudo apt-get update -qq || echo "apt-get update failed; trying with the lists there are" >&2
+    $sudo env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
+}

@@ -1,0 +1,19 @@
+#!/bin/bash
+# Installs what is missing, checks the format, builds and runs all tests; then builds the unit tests
+# once more with address and undefined-behaviour sanitizers and runs them. Fails if anything fails.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. cmake/packages.sh
+exec </dev/null
+
+install_packages $build_packages $test_packages
+
+echo "== format"
+git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format --dry-run -Werror
+
+for preset in release sanitize; do
+    echo "== $preset"
+    cmake --preset $preset
+    cmake --build --preset $preset
+    ctest --preset $preset
+done
