@@ -1,0 +1,162 @@
+#include "renderer/output/file_io.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Fail(const std::string& path, const std::string& reason) {
+    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+}
+
+[[noreturn]] void FailWithErrno(const std::string& path, int error = errno) {
+    Fail(path, std::strerror(error));
+}
+
+// Owns a descriptor and, while `temporary` is not empty, the file of that name.
+struct OutputFile {
+    int fd = -1;
+    fs::path temporary;
+
+    OutputFile() = default;
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile() {
+        if (fd >= 0) close(fd);
+        if (!temporary.empty()) unlink(temporary.c_str());
+    }
+};
+
+// Creates a new file beside `target`, hidden and with its extension, so that whoever watches the
+// directory does not take it for a result.
+void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
+    static std::atomic<unsigned> serial = 0;  // tells apart the writers of one process
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        // The stem is cut short so that a name that is just allowed leads to one that is, too.
+        const std::string name =
+            fmt::format(".{}.{}-{}{}", target.stem().string().substr(0, 128), getpid(), serial++,
+                        target.extension().string().substr(0, 32));
+        const fs::path candidate = target.parent_path() / name;
+        file->fd = open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file->fd >= 0) {
+            file->temporary = candidate;
+            return;
+        }
+        if (errno != EEXIST) break;
+    }
+    FailWithErrno(path);
+}
+
+void WriteAll(const std::string& path, int fd, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = write(fd, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) FailWithErrno(path);
+        bytes = bytes.subspan(size_t(written));
+    }
+}
+
+// Closes with the error checked: network file systems report a full disk only here.
+void Close(const std::string& path, OutputFile* file) {
+    const int fd = file->fd;
+    file->fd = -1;
+    if (close(fd) != 0 && errno != EINTR) FailWithErrno(path);
+}
+
+// Makes a rename last; some file systems cannot, which harms no one.
+void SyncDirectory(const fs::path& directory) {
+    const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    fsync(fd);
+    close(fd);
+}
+
+// Says what is at the end of the links of `path`: the place to write to, and its status.
+struct Target {
+    fs::path path;
+    fs::file_status status;
+};
+
+Target FindTarget(const std::string& path) {
+    if (path.empty()) throw Error("cannot write: the file name is empty");
+    std::error_code error;
+    Target target;
+    target.path = fs::weakly_canonical(fs::absolute(path), error);
+    if (error) Fail(path, error.message());
+    target.status = fs::status(target.path, error);
+    if (fs::is_directory(target.status)) Fail(path, "it is a directory");
+    if (path.back() == '/') Fail(path, "it names a directory");
+    const fs::path directory = target.path.parent_path();
+    const fs::file_status parent = fs::status(directory, error);
+    if (!fs::exists(parent))
+        Fail(path, fmt::format("the directory \"{}\" does not exist", directory.string()));
+    if (!fs::is_directory(parent))
+        Fail(path, fmt::format("\"{}\" is no directory", directory.string()));
+    return target;
+}
+
+bool IsSpecial(const Target& target) {
+    return fs::exists(target.status) && !fs::is_regular_file(target.status);
+}
+
+void WriteDirectly(const std::string& path, const Target& target,
+                   std::span<const std::byte> bytes) {
+    OutputFile file;
+    file.fd = open(target.path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file.fd < 0) FailWithErrno(path);
+    WriteAll(path, file.fd, bytes);
+    Close(path, &file);
+}
+
+}  // namespace
+
+void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes) {
+    const Target target = FindTarget(path);
+    if (IsSpecial(target)) {
+        WriteDirectly(path, target, bytes);
+        return;
+    }
+
+    OutputFile file;
+    OpenTemporary(path, target.path, &file);
+    if (fs::exists(target.status) &&
+        fchmod(file.fd, mode_t(target.status.permissions() & fs::perms::mask)) != 0)
+        FailWithErrno(path);
+    WriteAll(path, file.fd, bytes);
+    if (fsync(file.fd) != 0 && errno != EINVAL) FailWithErrno(path);
+    Close(path, &file);
+
+    if (rename(file.temporary.c_str(), target.path.c_str()) != 0) FailWithErrno(path);
+    file.temporary.clear();
+    SyncDirectory(target.path.parent_path());
+}
+
+void WriteFileAtomically(const std::string& path, std::string_view text) {
+    WriteFileAtomically(path, std::as_bytes(std::span(text)));
+}
+
+void CheckWritable(const std::string& path) {
+    const Target target = FindTarget(path);
+    if (IsSpecial(target)) {
+        if (access(target.path.c_str(), W_OK) != 0) FailWithErrno(path);
+        return;
+    }
+    // Permission bits do not tell all (read-only mounts, quotas); creating a file does.
+    OutputFile probe;
+    OpenTemporary(path, target.path, &probe);
+}
+
+}  // namespace lull

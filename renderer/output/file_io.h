@@ -1,0 +1,22 @@
+// Writes files whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lull {
+
+// Replaces the file at `path` by `bytes` at one stroke: they are written to a new file beside it,
+// synced to disk and renamed, so that an interrupted or failed write leaves the old file as it
+// was. Links are followed; devices and pipes are written directly. Throws Error saying what and
+// why, with nothing left behind.
+void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes);
+void WriteFileAtomically(const std::string& path, std::string_view text);
+
+// Throws Error if WriteFileAtomically(path, ...) could not create its file now: the directory is
+// missing or takes no new files, or `path` is itself a directory. For use before a long render.
+void CheckWritable(const std::string& path);
+
+}  // namespace lull

@@ -1,0 +1,28 @@
+// Holds images as their files store them.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+using Half = Eigen::half;
+
+// Holds an image in its native form: rows from the top, channels interleaved. 8-bit texels stand
+// for 0 to 1 in whatever encoding the file has; half and float are as read.
+struct Image {
+    int width = 0, height = 0;
+    int channels = 0;  // 1: grey; 2: grey, alpha; 3: RGB; 4: RGB, unassociated alpha
+    std::variant<std::vector<uint8_t>, std::vector<Half>, std::vector<float>> texels;
+
+    // Returns the memory that the texels take.
+    size_t Bytes() const {
+        return std::visit([](const auto& t) { return t.size() * sizeof(t[0]); }, texels);
+    }
+};
+
+}  // namespace lull

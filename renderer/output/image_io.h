@@ -1,0 +1,56 @@
+// Reads and writes image files. All names of OpenImageIO are in image_io.cpp.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/output/image.h"
+
+namespace lull {
+
+// Reads the first image of a file of any format that OpenImageIO knows. 8-bit, half and float
+// texels stay as they are, all else becomes float (16-bit integers: 0 to 1). Values are neither
+// linearised nor multiplied by alpha. Of more than 4 channels, or of 4 of which the last is not
+// alpha, only the first 3 are read; an EXR's data window is the image, as in pbrt-v3. Throws
+// Error with the path and the reason: missing, unreadable, truncated, larger than 2^16 a side, or
+// a size that the file is too short for.
+Image ReadImage(const std::string& path);
+
+// Holds one channel of an EXR, row-major over the data window.
+struct ExrChannel {
+    std::string name;
+    std::vector<float> values;
+    bool isHalf = false;  // stored in 16 bits; infinite where a float is too large
+};
+
+// A matrix is in pbrt's convention: applied to column vectors, stored row by row.
+using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
+
+// Holds what an EXR file holds.
+struct ExrImage {
+    int width = 0, height = 0;     // of the data window
+    Vec2i origin = Vec2i::Zero();  // of the data window, within the display window
+    Vec2i displaySize{0, 0};       // the display window starts at (0, 0); 0: as the data window
+    std::vector<ExrChannel> channels;
+    std::map<std::string, ExrAttribute> attributes;
+
+    // Returns the channel of that name, or null.
+    const ExrChannel* Find(const std::string& name) const;
+};
+
+// Writes a scan-line EXR with ZIP compression, whole or not at all (see WriteFileAtomically).
+// Throws Error with the path and the reason.
+void WriteExr(const std::string& path, const ExrImage& image);
+
+// Reads an EXR with all its channels and those attributes that ExrAttribute can hold. Throws
+// Error as ReadImage does.
+ExrImage ReadExr(const std::string& path);
+
+// Writes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,
+// rounded, clamped to [0, 255]; NaN is black. Whole or not at all; throws Error.
+void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
+
+}  // namespace lull
