@@ -1,6 +1,7 @@
 // Represents the scattering at one hit point: a few lobes in a shading frame.
 #pragma once
 
+#include <cassert>
 #include <optional>
 
 #include "renderer/bsdf/lobes.h"
@@ -10,11 +11,6 @@ namespace lull {
 // Selects what Bsdf::Evaluate and Sample see. Next-event estimation with its own BSDF sample
 // leaves perfectly specular lobes out, path continuation takes all.
 enum class LobeSet { All, NonSpecular };
-
-struct BsdfValue {
-    Rgb f = Rgb::Zero();  // 1/sr
-    float pdf = 0;        // 1/sr
-};
 
 struct BsdfSample {
     Rgb f;      // 1/sr; for specular lobes f / pdf is what counts
@@ -33,16 +29,29 @@ class Bsdf {
     Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1)
         : shading(shading), ng(ng), eta(eta) {}
 
-    void Add(const Lobe& lobe);
+    // Adds a lobe, at most kMaxLobes of them.
+    void Add(const Lobe& lobe) {
+        assert(lobeCount < kMaxLobes && lobe.index() != 0);
+        specularCount += IsSpecular(lobe);
+        lobes[lobeCount++] = lobe;
+    }
+    // Multiplies f of the lobes from the first-th on.
+    void Scale(int first, const Rgb& scale) {
+        for (int i = first; i < lobeCount; ++i) lobes[i] = Scaled(lobes[i], scale);
+    }
+    void SetEta(float e) { eta = e; }
 
     int LobeCount(LobeSet set) const {
         return set == LobeSet::All ? lobeCount : lobeCount - specularCount;
     }
+    const Lobe& At(int i) const { return lobes[i]; }
     float Eta() const { return eta; }
+    const Frame& Shading() const { return shading; }
 
     // Returns f and the density with which Sample(wo, ., set) finds wi; both 0 for specular lobes.
     // Directions are world, unit, pointing away from the surface. As in pbrt-v3 the geometric
-    // normal decides between reflection and transmission, which keeps light from leaking.
+    // normal decides between reflection and transmission, which keeps light from leaking. Both
+    // values are finite; where float cannot hold one, both are 0.
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
 
     // Chooses one lobe of the set uniformly with u.x and a direction from it. Returns nothing
@@ -50,6 +59,11 @@ class Bsdf {
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
 
   private:
+    // Says whether world directions are on one side of the surface, which lets lobes reflect.
+    bool Reflects(const Vec3f& wo, const Vec3f& wi) const { return wi.dot(ng) * wo.dot(ng) > 0; }
+    const Lobe& Choose(int choice, LobeSet set) const;
+    BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const;
+
     Frame shading;
     Vec3f ng;
     float eta;

@@ -1,0 +1,77 @@
+#include "renderer/bsdf/bsdf.h"
+
+namespace lull {
+namespace {
+
+// Drops what float cannot hold. f is nonnegative, so that its sum tells.
+BsdfValue Finite(const BsdfValue& v) {
+    return v.f.sum() < kInfinity && v.pdf < kInfinity ? v : BsdfValue();
+}
+
+}  // namespace
+
+const Lobe& Bsdf::Choose(int choice, LobeSet set) const {
+    if (set == LobeSet::All || specularCount == 0) return lobes[choice];
+    int i = 0;
+    while (IsSpecular(lobes[i]) || choice-- > 0) ++i;
+    return lobes[i];
+}
+
+BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const {
+    const bool sameHemisphere = SameHemisphere(wo, wi);
+    BsdfValue sum;
+    for (int i = 0; i < lobeCount; ++i) {
+        VisitLobe(lobes[i], [&]<typename L>(const L& lobe) {
+            if constexpr (!L::kIsSpecular) {
+                const bool scatters = reflects != L::kTransmits;
+                const bool isSampled = sameHemisphere != L::kTransmits;
+                if (!scatters && !isSampled) return;
+                const BsdfValue v = lobe.Evaluate(wo, wi);
+                if (scatters) sum.f += v.f;
+                sum.pdf += v.pdf;
+            }
+        });
+    }
+    if (const int count = LobeCount(set); count > 1) sum.pdf /= count;
+    return Finite(sum);
+}
+
+BsdfValue Bsdf::Evaluate(const Vec3f& woWorld, const Vec3f& wiWorld, LobeSet set) const {
+    const Vec3f wo = shading.ToLocal(woWorld);
+    if (wo.z() == 0) return {};
+    return EvaluateLocal(wo, shading.ToLocal(wiWorld), Reflects(woWorld, wiWorld), set);
+}
+
+std::optional<BsdfSample> Bsdf::Sample(const Vec3f& woWorld, const Vec2f& u, LobeSet set) const {
+    const int count = LobeCount(set);
+    if (count == 0) return {};
+    const Vec3f wo = shading.ToLocal(woWorld);
+    if (wo.z() == 0) return {};
+    const int choice = std::min(int(u.x() * count), count - 1);
+    const Vec2f v(std::min(u.x() * count - choice, kOneMinusEpsilon), u.y());
+    return VisitLobe(Choose(choice, set),
+                     [&]<typename L>(const L& lobe) -> std::optional<BsdfSample> {
+                         if constexpr (L::kIsSpecular) {
+                             SpecularSample s;
+                             if (!lobe.Sample(wo, v, &s)) return {};
+                             const float sum = s.f.sum();
+                             if (!(sum > 0 && sum < kInfinity && s.pdf > 0)) return {};
+                             return BsdfSample{s.f, s.pdf / count, shading.FromLocal(s.wi), true,
+                                               s.isTransmission};
+                         } else {
+                             Vec3f wi;
+                             if (!lobe.Sample(wo, v, &wi)) return {};
+                             const Vec3f wiWorld = shading.FromLocal(wi);
+                             const bool reflects = Reflects(woWorld, wiWorld);
+                             BsdfValue value;
+                             if (count > 1)
+                                 value = EvaluateLocal(wo, wi, reflects, set);
+                             else if (reflects != L::kTransmits)
+                                 value = Finite(lobe.Evaluate(wo, wi));
+                             if (!(value.pdf > 0) || IsBlack(value.f)) return {};
+                             return BsdfSample{value.f, value.pdf, wiWorld, false, L::kTransmits};
+                         }
+                     });
+}
+
+}  // namespace lull

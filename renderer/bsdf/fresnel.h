@@ -1,0 +1,84 @@
+// Says which share of light a smooth interface reflects.
+#pragma once
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Returns the reflectance of an interface between dielectrics for unpolarised light, in [0, 1]
+// (Fresnel; 1 at total internal reflection). `cosI` in [-1, 1] is on the side of the normal where
+// positive; `eta` is the index beyond the surface over the index on the normal's side.
+inline float FresnelDielectric(float cosI, float eta) {
+    if (!(cosI > 0)) {
+        eta = 1 / eta;
+        cosI = -cosI;
+    }
+    cosI = std::min(cosI, 1.f);
+    const float sin2T = (1 - Sqr(cosI)) / Sqr(eta);
+    if (!(sin2T < 1)) return 1;
+    const float cosT = std::sqrt(1 - sin2T);
+    const float parallel = (eta * cosI - cosT) / (eta * cosI + cosT);
+    const float perpendicular = (cosI - eta * cosT) / (cosI + eta * cosT);
+    return 0.5f * (Sqr(parallel) + Sqr(perpendicular));
+}
+
+// Returns the reflectance of a conductor of index eta + i k, relative to the medium around it, for
+// unpolarised light (Born and Wolf 1999, section 14.4). `cosI` in [0, 1].
+inline Rgb FresnelConductor(float cosI, const Rgb& eta, const Rgb& k) {
+    // Works on four lanes, so that roots and quotients are one instruction each.
+    using Lanes = Eigen::Array4f;
+    const Lanes n(eta.x(), eta.y(), eta.z(), 1), m(k.x(), k.y(), k.z(), 0);
+    const float cos2 = std::min(Sqr(cosI), 1.f), sin2 = 1 - cos2;
+    const Lanes n2 = n * n, m2 = m * m;
+    const Lanes t0 = n2 - m2 - sin2;
+    const Lanes a2b2 = (t0 * t0 + 4 * n2 * m2).sqrt();
+    const Lanes a = (0.5f * (a2b2 + t0)).max(0.f).sqrt();
+    const Lanes t1 = a2b2 + cos2, t2 = (2 * std::min(cosI, 1.f)) * a;
+    const Lanes t3 = cos2 * a2b2 + Sqr(sin2), t4 = t2 * sin2;
+    // The denominators vanish only for eta = k = 0 seen head-on or edge-on.
+    constexpr float tiny = std::numeric_limits<float>::min();
+    const Lanes s = (t1 - t2) / (t1 + t2).max(tiny);
+    const Lanes r = 0.5f * s * (1 + (t3 - t4) / (t3 + t4).max(tiny));
+    return r.head<3>();
+}
+
+// Returns Schlick's approximation (1994) for reflectance r0 at normal incidence; `cosI` in [0, 1].
+inline Rgb FresnelSchlick(const Rgb& r0, float cosI) {
+    const float c = std::max(0.f, 1 - cosI);
+    return r0 + (Sqr(Sqr(c)) * c) * (1 - r0);
+}
+
+// Stores an Rgb in a trivially copyable way, which Eigen's types are not; a variant of structs that
+// are not would be copied through a table of functions.
+struct StoredRgb {
+    float r, g, b;
+
+    StoredRgb(const Rgb& c) : r(c.x()), g(c.y()), b(c.z()) {}
+    operator Rgb() const { return {r, g, b}; }
+    StoredRgb& operator*=(const Rgb& s) { return *this = StoredRgb(Rgb(*this) * s); }
+};
+
+// The interfaces a reflecting lobe may have; each maps the cosine to its reflectance.
+struct DielectricInterface {
+    float eta;  // index beyond the surface over the index on the normal's side
+    float operator()(float cosI) const { return FresnelDielectric(cosI, eta); }
+};
+struct ConductorInterface {
+    StoredRgb eta, k;
+    Rgb operator()(float cosI) const { return FresnelConductor(std::abs(cosI), eta, k); }
+};
+struct PerfectMirror {
+    float operator()(float) const { return 1; }
+};
+
+// Computes the direction that w, on the side of the unit normal n, is refracted to; `etaRatio` is
+// the index on w's side over the one beyond. Returns false at total internal reflection.
+inline bool Refract(const Vec3f& w, const Vec3f& n, float etaRatio, Vec3f* refracted) {
+    const float cosI = n.dot(w);
+    const float sin2T = Sqr(etaRatio) * std::max(0.f, 1 - Sqr(cosI));
+    if (!(sin2T < 1)) return false;
+    *refracted = (etaRatio * cosI - std::sqrt(1 - sin2T)) * n - etaRatio * w;
+    return true;
+}
+
+}  // namespace lull

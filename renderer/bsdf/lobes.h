@@ -1,0 +1,287 @@
+// Holds the lobes that Bsdfs are made of: plain structs in the local frame, the shading normal
+// along +z. All directions are unit and point away from the surface.
+//
+// A lobe that spreads light has
+//     BsdfValue Evaluate(wo, wi)       f, and the density with which Sample finds wi;
+//     bool Sample(wo, u, &wi)          chooses wi; false where nothing can be scattered,
+// a perfectly specular one has
+//     bool Sample(wo, u, &sample)      chooses among the few directions there are.
+// Both demand wo.z != 0 for Sample only. f is for radiance, not importance: transmission scales it
+// by the square of the indices' ratio. As in pbrt-v3, f of a reflecting lobe does not ask whether
+// wo and wi lie on the same side of the shading normal (Bsdf asks the geometric one), the density
+// does.
+#pragma once
+
+#include <variant>
+
+#include "renderer/base/sampling.h"
+#include "renderer/bsdf/fresnel.h"
+#include "renderer/bsdf/microfacet.h"
+
+namespace lull {
+
+struct BsdfValue {
+    Rgb f = Rgb::Zero();  // 1/sr
+    float pdf = 0;        // 1/sr
+};
+
+struct SpecularSample {
+    Rgb f;  // times |cos wi| / pdf is the weight
+    float pdf;
+    Vec3f wi;
+    bool isTransmission;
+};
+
+inline bool SameHemisphere(const Vec3f& a, const Vec3f& b) { return a.z() * b.z() > 0; }
+
+// Chooses wi by the cosine, on the side of wo or on the other.
+inline Vec3f SampleCosine(const Vec3f& wo, const Vec2f& u, bool otherSide) {
+    Vec3f wi = SampleCosineHemisphere(u);
+    if ((wo.z() < 0) != otherSide) wi.z() = -wi.z();
+    return wi;
+}
+
+struct LambertianReflection {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb r;
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        return {Rgb(r) * kInvPi, SameHemisphere(wo, wi) ? std::abs(wi.z()) * kInvPi : 0};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        *wi = SampleCosine(wo, u, false);
+        return true;
+    }
+};
+
+struct LambertianTransmission {
+    static constexpr bool kIsSpecular = false, kTransmits = true;
+    StoredRgb t;
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        return {Rgb(t) * kInvPi, SameHemisphere(wo, wi) ? 0 : std::abs(wi.z()) * kInvPi};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        *wi = SampleCosine(wo, u, true);
+        return true;
+    }
+};
+
+// Approximates a surface of V-shaped Lambertian grooves (Oren and Nayar 1994, the qualitative
+// model, eq. 30).
+struct OrenNayar {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb r;
+    float a, b;
+
+    // `sigma` is the deviation of the grooves' slope angles in degrees, > 0.
+    OrenNayar(const Rgb& r, float sigma) : r(r) {
+        const float s2 = Sqr(sigma * (kPi / 180));
+        a = 1 - s2 / (2 * (s2 + 0.33f));
+        b = 0.45f * s2 / (s2 + 0.09f);
+    }
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        // max(0, cos dphi) sin(alpha) tan(beta), alpha and beta being the larger and the smaller
+        // of the two angles: both sines are in the product of the tangential parts.
+        const float across = wo.x() * wi.x() + wo.y() * wi.y();
+        const float cosBeta = std::max({std::abs(wo.z()), std::abs(wi.z()), 1e-30f});
+        const float f = kInvPi * (a + b * std::max(0.f, across) / cosBeta);
+        return {Rgb(r) * f, SameHemisphere(wo, wi) ? std::abs(wi.z()) * kInvPi : 0};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        *wi = SampleCosine(wo, u, false);
+        return true;
+    }
+};
+
+// Below this squared length a half vector is rounding error: wo and wi are opposite.
+inline constexpr float kMinHalf2 = 1e-14f;
+
+// Reflects at microfacets (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20).
+template <typename Interface>
+struct MicrofacetReflection {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb r;
+    TrowbridgeReitz distribution;
+    Interface interface;
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        const Vec3f h = wo + wi;
+        const float h2 = h.squaredNorm();
+        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
+        if (cosO == 0 || cosI == 0 || !(h2 > kMinHalf2)) return {};
+        const float d = distribution.D(h, h2);
+        const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
+        // wi . h / |h| is half of |h|; the interface wants it signed by the side of the normal.
+        const float cosH = std::copysign(0.5f * std::sqrt(h2), h.z());
+        const Rgb f = Rgb(r) * (interface(cosH) * (0.5f * d / (cosI * so + cosO * si)));
+        return {f, SameHemisphere(wo, wi) ? 0.5f * d / (cosO + so) : 0};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        const Vec3f h = distribution.SampleVisibleNormal(wo, u);
+        *wi = (2 * wo.dot(h)) * h - wo;
+        return SameHemisphere(wo, *wi);
+    }
+};
+
+// Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side.
+struct MicrofacetTransmission {
+    static constexpr bool kIsSpecular = false, kTransmits = true;
+    StoredRgb t;
+    TrowbridgeReitz distribution;
+    float eta;  // index beyond the surface
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
+        if (cosO == 0 || cosI == 0 || SameHemisphere(wo, wi)) return {};
+        const float ratio = wo.z() > 0 ? eta : 1 / eta;
+        const Vec3f h = wo + ratio * wi;  // its length is the root of the Jacobian's denominator
+        const float h2 = h.squaredNorm(), oh = wo.dot(h), ih = wi.dot(h);
+        if (!(h2 > kMinHalf2) || oh * ih > 0) return {};
+        const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
+        const float cosH = std::copysign(oh / std::sqrt(h2), oh * h.z());
+        const float common = 2 * distribution.D(h, h2) * std::abs(oh * ih) / Sqr(h2);
+        const float through = 1 - FresnelDielectric(cosH, eta);
+        return {Rgb(t) * (through * common / (cosI * so + cosO * si)),
+                common * Sqr(ratio) / (cosO + so)};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        const Vec3f h = distribution.SampleVisibleNormal(wo, u);
+        if (!(wo.dot(h) > 0)) return false;
+        return Refract(wo, h, wo.z() > 0 ? 1 / eta : eta, wi);
+    }
+};
+
+template <typename Interface>
+struct SpecularReflection {
+    static constexpr bool kIsSpecular = true, kTransmits = false;
+    StoredRgb r;
+    Interface interface;
+
+    bool Sample(const Vec3f& wo, const Vec2f&, SpecularSample* s) const {
+        *s = {
+            Rgb(r) * (interface(wo.z()) / std::abs(wo.z())), 1, {-wo.x(), -wo.y(), wo.z()}, false};
+        return true;
+    }
+};
+
+// Refracts at a smooth interface. The index is 1 on the normal's side.
+struct SpecularTransmission {
+    static constexpr bool kIsSpecular = true, kTransmits = true;
+    StoredRgb t;
+    float eta;  // index beyond the surface
+
+    bool Sample(const Vec3f& wo, const Vec2f&, SpecularSample* s) const {
+        const float ratio = wo.z() > 0 ? 1 / eta : eta;
+        if (!Refract(wo, {0, 0, std::copysign(1.f, wo.z())}, ratio, &s->wi)) return false;
+        s->f = Rgb(t) * ((1 - FresnelDielectric(wo.z(), eta)) * Sqr(ratio) / std::abs(s->wi.z()));
+        s->pdf = 1;
+        s->isTransmission = true;
+        return true;
+    }
+};
+
+// Represents a smooth dielectric: reflects or refracts, chosen by Fresnel's reflectance.
+struct FresnelSpecular {
+    static constexpr bool kIsSpecular = true, kTransmits = true;
+    StoredRgb r, t;
+    float eta;  // index beyond the surface; 1 on the normal's side
+
+    bool Sample(const Vec3f& wo, const Vec2f& u, SpecularSample* s) const {
+        const float reflectance = FresnelDielectric(wo.z(), eta);
+        if (u.x() < reflectance) {
+            *s = {Rgb(r) * (reflectance / std::abs(wo.z())),
+                  reflectance,
+                  {-wo.x(), -wo.y(), wo.z()},
+                  false};
+            return true;
+        }
+        const float ratio = wo.z() > 0 ? 1 / eta : eta;
+        if (!Refract(wo, {0, 0, std::copysign(1.f, wo.z())}, ratio, &s->wi)) return false;
+        s->pdf = 1 - reflectance;
+        s->f = Rgb(t) * (s->pdf * Sqr(ratio) / std::abs(s->wi.z()));
+        s->isTransmission = true;
+        return true;
+    }
+};
+
+// Represents a diffuse layer under a glossy coat (Ashikhmin and Shirley 2000, "An Anisotropic
+// Phong BRDF Model", with pbrt's microfacet distribution).
+struct FresnelBlend {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb rd, rs;
+    TrowbridgeReitz distribution;
+    StoredRgb scale = Rgb(1, 1, 1);  // f is not linear in rs
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        const Vec3f h = wo + wi;
+        const float h2 = h.squaredNorm();
+        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
+        const float cosMax = std::max(cosO, cosI);
+        if (cosMax == 0 || !(h2 > kMinHalf2)) return {};
+        const auto fade = [](float c) {
+            const float v = 1 - 0.5f * c;
+            return 1 - Sqr(Sqr(v)) * v;
+        };
+        const float d = distribution.D(h, h2), cosH = 0.5f * std::sqrt(h2);
+        const Rgb s = rs;
+        const Rgb diffuse = (28 / (23 * kPi) * fade(cosO) * fade(cosI)) * Rgb(rd) * (1 - s);
+        const Rgb glossy = FresnelSchlick(s, cosH) * (d / (4 * cosH * cosMax));
+        const Rgb f = Rgb(scale) * (diffuse + glossy);
+        if (!SameHemisphere(wo, wi)) return {f, 0};
+        const float glossyPdf = 0.5f * d / (cosO + distribution.Stretch(wo));
+        return {f, 0.5f * (cosI * kInvPi + glossyPdf)};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        if (u.x() < 0.5f) {
+            *wi = SampleCosine(wo, {std::min(2 * u.x(), kOneMinusEpsilon), u.y()}, false);
+            return true;
+        }
+        const Vec2f v(std::min(2 * (u.x() - 0.5f), kOneMinusEpsilon), u.y());
+        const Vec3f h = distribution.SampleVisibleNormal(wo, v);
+        *wi = (2 * wo.dot(h)) * h - wo;
+        return SameHemisphere(wo, *wi);
+    }
+};
+
+using Lobe =
+    std::variant<std::monostate, LambertianReflection, LambertianTransmission, OrenNayar,
+                 MicrofacetReflection<DielectricInterface>,
+                 MicrofacetReflection<ConductorInterface>, MicrofacetTransmission,
+                 SpecularReflection<PerfectMirror>, SpecularReflection<DielectricInterface>,
+                 SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
+                 FresnelBlend>;
+static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 48);
+
+// Returns the lobe with f multiplied by `scale`; its sampling is the same.
+Lobe Scaled(const Lobe& lobe, const Rgb& scale);
+
+// Calls f with the lobe inside; f must take every kind and return the same type for all. A switch,
+// since std::visit goes through a table of functions for this many kinds, which nothing inlines.
+template <typename F>
+auto VisitLobe(const Lobe& lobe, F&& f) {
+    switch (lobe.index()) {
+        // clang-format off
+        case 1: return f(*std::get_if<1>(&lobe));
+        case 2: return f(*std::get_if<2>(&lobe));
+        case 3: return f(*std::get_if<3>(&lobe));
+        case 4: return f(*std::get_if<4>(&lobe));
+        case 5: return f(*std::get_if<5>(&lobe));
+        case 6: return f(*std::get_if<6>(&lobe));
+        case 7: return f(*std::get_if<7>(&lobe));
+        case 8: return f(*std::get_if<8>(&lobe));
+        case 9: return f(*std::get_if<9>(&lobe));
+        case 10: return f(*std::get_if<10>(&lobe));
+        case 11: return f(*std::get_if<11>(&lobe));
+        default: return f(*std::get_if<12>(&lobe));
+            // clang-format on
+    }
+    static_assert(std::variant_size_v<Lobe> == 13, "one case a kind");
+}
+
+inline bool IsSpecular(const Lobe& lobe) {
+    return VisitLobe(lobe, [](const auto& l) { return l.kIsSpecular; });
+}
+
+}  // namespace lull
