@@ -1,0 +1,76 @@
+// Cuts pbrt-v3 scene files into tokens, following Include.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/base/error.h"
+#include "renderer/input/file_contents.h"
+
+namespace lull {
+
+enum class TokenKind { End, Word, String, Open, Close };
+
+// Holds a token and its place; the text of a String is unquoted and unescaped.
+struct Token {
+    TokenKind kind = TokenKind::End;
+    std::string text;
+    FileLoc loc;
+};
+
+// Describes a token for a message: "the end of the file", "']'", "'Shape'", "\"matte\"".
+std::string Describe(const Token& token);
+
+// Reads tokens from a stack of files: where an included file ends, its includer goes on. Every
+// function throws Error at what is no token: unterminated strings, stray control characters.
+class PbrtLexer {
+  public:
+    explicit PbrtLexer(const std::string& file);
+
+    // Goes on with `file` and comes back at its end. Throws Error at `loc` if it is open already
+    // (recursion), cannot be read, or if repeated inclusion has come to absurd amounts of text.
+    void Include(const std::string& file, const FileLoc& loc);
+
+    Token Take();
+    const Token& Peek();
+
+    // Take the next token if it is a number and return whether it was; T is float, double or int.
+    // An int may be written as a float; *cut is set where that loses a fraction. Throw Error at a
+    // malformed number and at one beyond the range of T. These never leave the current file, and
+    // copy nothing: most of a scene's text is numbers.
+    bool TakeNumber(float* value);
+    bool TakeNumber(double* value);
+    bool TakeNumber(int* value, bool* cut);
+
+    // Returns whether a string comes next, alone or as the first in brackets.
+    bool NextIsText();
+
+  private:
+    struct Source {
+        std::shared_ptr<const std::string> name;
+        std::string canonical;  // tells whether two names are one file
+        FileContents contents;
+        const char* pos = nullptr;
+        const char* end = nullptr;
+        int line = 1;
+    };
+
+    FileLoc Loc() const;
+    void Open(const std::string& file, const FileLoc& loc);
+    bool SkipSpace();  // returns false at the end of the current file
+    std::string_view WordAt(const char* pos) const;
+    void ReadString(Token* token);
+    bool AtNumber();
+    template <typename T>
+    T ParseNumber();
+
+    std::vector<Source> sources;  // the last is read
+    std::map<std::string, int> inclusions;
+    size_t repeatedBytes = 0;
+    Token peeked;
+    bool hasPeeked = false;
+};
+
+}  // namespace lull

@@ -1,0 +1,72 @@
+// Keeps what a pbrt-v3 scene file changes as it goes: transforms, and names with scopes.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "renderer/input/description.h"
+
+namespace lull {
+
+// Maps names to indices. A definition made after a Mark lasts until Restore(mark).
+class ScopedNames {
+  public:
+    // Returns the index, -1 where there is no such name.
+    int Find(const std::string& name) const {
+        const auto it = indices.find(name);
+        return it == indices.end() ? -1 : it->second;
+    }
+    void Define(const std::string& name, int index) {
+        undo.emplace_back(name, Find(name));
+        indices[name] = index;
+    }
+    size_t Mark() const { return undo.size(); }
+    void Restore(size_t mark) {
+        for (; undo.size() > mark; undo.pop_back()) indices[undo.back().first] = undo.back().second;
+    }
+
+  private:
+    std::unordered_map<std::string, int> indices;  // -1: defined no longer
+    std::vector<std::pair<std::string, int>> undo;
+};
+
+// Holds the transforms at the start and the end of the shutter time; directives change those that
+// ActiveTransform chose.
+struct TransformPair {
+    std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
+
+    bool IsAnimated() const { return at[0] != at[1]; }
+};
+
+enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
+
+// Holds what AttributeBegin saves and AttributeEnd brings back.
+struct GraphicsState {
+    TransformPair ctm;
+    int active = kAllTimes;
+    int material = -1;  // into Description::materials; -1 is the default
+    bool reverseOrientation = false;
+    std::shared_ptr<const Entity> areaLight;
+    size_t floatTextureMark = 0, spectrumTextureMark = 0, materialMark = 0;
+};
+
+// Make the matrices of the directives, in pbrt-v3's conventions; angles in degrees. LookAt maps
+// world to camera space (left-handed, looking along +z). Throw Error at `loc` where there is no
+// such transform.
+Mat4d TranslateMatrix(double x, double y, double z);
+Mat4d ScaleMatrix(double x, double y, double z, const FileLoc& loc);
+Mat4d RotateMatrix(double degrees, const Eigen::Vector3d& axis, const FileLoc& loc);
+Mat4d LookAtMatrix(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, const Eigen::Vector3d& up,
+                   const FileLoc& loc);
+// Takes the 16 numbers of Transform and ConcatTransform, columns first.
+Mat4d ColumnsMatrix(std::span<const double, 16> m, const FileLoc& loc);
+
+// Throws Error at `loc` unless m and its inverse are within float's range.
+void CheckInvertible(const Mat4d& m, const FileLoc& loc);
+
+}  // namespace lull

@@ -1,0 +1,127 @@
+#include "renderer/input/spectrum.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "renderer/input/cie_table.h"
+#include "renderer/input/file_contents.h"
+
+namespace lull {
+namespace {
+
+// Weighs spectra with the colour matching functions; the scale is pbrt-v3's: the range over the
+// number of samples times its value of the integral of y.
+template <typename Spectrum>
+Rgb Integrate(const Spectrum& spectrum) {
+    constexpr double kIntegralOfY = 106.856895;
+    constexpr double kScale = (kCieLast - kCieFirst) / (kIntegralOfY * kCieRows);
+    double x = 0, y = 0, z = 0;
+    for (int i = 0; i < kCieRows; ++i) {
+        const double value = spectrum(double(kCieFirst + i)) * kScale;
+        x += value * kCieTable[i].x;
+        y += value * kCieTable[i].y;
+        z += value * kCieTable[i].z;
+    }
+    return RgbFromXyz(x, y, z);
+}
+
+// Returns the spectral radiance of a black body (Planck's law) up to a factor; wavelength in m.
+double Planck(double wavelength, double kelvin) {
+    constexpr double kLight = 299792458, kPlanck = 6.62606957e-34, kBoltzmann = 1.3806488e-23;
+    return std::pow(wavelength, -5) /
+           std::expm1(kPlanck * kLight / (wavelength * kBoltzmann * kelvin));
+}
+
+bool IsSeparator(char c) { return std::isspace(static_cast<unsigned char>(c)) || c == ','; }
+
+}  // namespace
+
+Rgb RgbFromXyz(double x, double y, double z) {
+    // The matrix of ITU-R BT.709 primaries and D65 white, in pbrt-v3's digits.
+    return Rgb(float(3.240479 * x - 1.537150 * y - 0.498535 * z),
+               float(-0.969256 * x + 1.875991 * y + 0.041556 * z),
+               float(0.055648 * x - 0.204043 * y + 1.057311 * z));
+}
+
+Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc) {
+    if (pairs.empty() || pairs.size() % 2 != 0)
+        throw Error(loc, "a spectrum needs pairs of wavelength and value, but there are " +
+                             std::to_string(pairs.size()) + " numbers");
+    struct Sample {
+        float wavelength, value;
+    };
+    std::vector<Sample> samples(pairs.size() / 2);
+    for (size_t i = 0; i < samples.size(); ++i) samples[i] = {pairs[2 * i], pairs[2 * i + 1]};
+    const auto before = [](const Sample& a, const Sample& b) {
+        return a.wavelength < b.wavelength;
+    };
+    std::stable_sort(samples.begin(), samples.end(), before);
+    for (size_t i = 1; i < samples.size(); ++i)
+        if (samples[i].wavelength == samples[i - 1].wavelength)
+            throw Error(loc, "the wavelength " + std::to_string(samples[i].wavelength) +
+                                 " nm appears twice in a spectrum; remove one");
+
+    // Wavelengths are asked for in rising order, so one pass over the samples serves them all.
+    size_t next = 0;
+    const Rgb rgb = Integrate([&](double wavelength) -> double {
+        while (next < samples.size() && samples[next].wavelength <= wavelength) ++next;
+        if (next == 0) return samples.front().value;
+        if (next == samples.size()) return samples.back().value;
+        const Sample &a = samples[next - 1], &b = samples[next];
+        const double t = (wavelength - a.wavelength) / (double(b.wavelength) - a.wavelength);
+        return (1 - t) * a.value + t * b.value;
+    });
+    if (!IsFinite(rgb)) throw Error(loc, "the values of a spectrum are too large");
+    return rgb;
+}
+
+Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc) {
+    if (!(kelvin > 0))
+        throw Error(loc,
+                    "a black body needs a temperature above 0 K, not " + std::to_string(kelvin));
+    // Wien's displacement law gives the maximum to scale by.
+    const double maximum = Planck(2.8977721e-3 / kelvin, kelvin);
+    const Rgb rgb = Integrate([&](double nm) { return Planck(nm * 1e-9, kelvin) / maximum; });
+    if (!IsFinite(rgb))
+        throw Error(loc, "a black body of " + std::to_string(kelvin) + " K is beyond all range");
+    return rgb;
+}
+
+Rgb LoadSpectrum(const std::string& path, const FileLoc& loc) {
+    const FileContents contents = ReadFile(path, loc);
+    FileLoc place{std::make_shared<const std::string>(path), 1};
+    std::vector<float> numbers;
+    const char* pos = contents.View().data();
+    const char* const end = pos + contents.size;
+    while (pos < end) {
+        if (*pos == '#') {
+            pos = std::find(pos, end, '\n');
+        } else if (IsSeparator(*pos)) {
+            if (*pos++ == '\n') ++place.line;
+        } else {
+            const char* const stop =
+                std::find_if(pos, end, [](char c) { return IsSeparator(c) || c == '#'; });
+            const char* const begin = *pos == '+' ? pos + 1 : pos;
+            float value = 0;
+            const auto [parsed, status] = std::from_chars(begin, stop, value);
+            if (status != std::errc() || parsed != stop || !std::isfinite(value))
+                throw Error(place, "'" + Printable({pos, size_t(stop - pos)}) +
+                                       "' in a spectrum file is not a number");
+            numbers.push_back(value);
+            pos = stop;
+        }
+    }
+    place.line = 0;
+    return RgbFromSamples(numbers, place);
+}
+
+// Both follow from the tabulated optical constants of copper (56 wavelengths from 299 to 886 nm)
+// by RgbFromSamples.
+Rgb CopperEta() { return Rgb(0.19998972f, 0.92208579f, 1.0998763f); }
+Rgb CopperK() { return Rgb(3.9046382f, 2.4476332f, 2.1376510f); }
+
+}  // namespace lull
