@@ -35,9 +35,9 @@ class Bsdf {
         specularCount += IsSpecular(lobe);
         lobes[lobeCount++] = lobe;
     }
-    // Multiplies f of the lobes from the first-th on.
-    void Scale(int first, const Rgb& scale) {
-        for (int i = first; i < lobeCount; ++i) lobes[i] = Scaled(lobes[i], scale);
+    // Multiplies f of lobes begin to end - 1.
+    void Scale(int begin, int end, const Rgb& scale) {
+        for (int i = begin; i < end; ++i) lobes[i] = Scaled(lobes[i], scale);
     }
     void SetEta(float e) { eta = e; }
 

@@ -1,0 +1,201 @@
+#include "renderer/scene/material.h"
+
+#include "renderer/scene/materials/bump_map.h"
+#include "renderer/scene/materials/glass.h"
+#include "renderer/scene/materials/matte.h"
+#include "renderer/scene/materials/metal.h"
+#include "renderer/scene/materials/mirror.h"
+#include "renderer/scene/materials/mix.h"
+#include "renderer/scene/materials/plastic.h"
+#include "renderer/scene/materials/substrate.h"
+#include "renderer/scene/materials/translucent.h"
+#include "renderer/scene/materials/uber.h"
+
+namespace lull {
+namespace {
+
+// Lists every kind; what a kind has to provide is in materials/material_inputs.h.
+using MaterialKind =
+    std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix>;
+
+}  // namespace
+
+struct Material {
+    explicit Material(const MaterialKind& kind) : kind(kind) {}
+
+    MaterialKind kind;
+    std::optional<FloatTexture> bump;
+    SurfaceNeeds lobeNeeds = kNeedsNothing;  // of the lobes alone
+    SurfaceNeeds needs = kNeedsNothing;      // with the bump map
+    int maxLobes = 0;
+
+    // Holds the lobes where no texture varies, so that a hit costs no more than their copy.
+    bool isConstant = false;
+    std::vector<Lobe> constantLobes;
+    float constantEta = 1;
+};
+
+namespace {
+
+SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
+    return SurfaceNeeds(uint8_t(a) | uint8_t(b));
+}
+
+void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
+    if (material.isConstant) {
+        for (const Lobe& lobe : material.constantLobes) bsdf->Add(lobe);
+        bsdf->SetEta(material.constantEta);
+    } else {
+        std::visit([&](const auto& kind) { kind.AddLobes(in, bsdf); }, material.kind);
+    }
+}
+
+// Makes the kind called `name`; nothing where there is none.
+template <size_t I = 0>
+std::optional<MaterialKind> MakeKind(const std::string& name, const MaterialReader& in) {
+    if constexpr (I == std::variant_size_v<MaterialKind>) {
+        return {};
+    } else {
+        using Kind = std::variant_alternative_t<I, MaterialKind>;
+        if (name == Kind::kName) return Kind(in);
+        return MakeKind<I + 1>(name, in);
+    }
+}
+
+// Works out what a material needs and whether it is constant, from its textures and operands.
+void Analyse(const TextureTable& textures, std::span<const Material> made, Material* m) {
+    m->isConstant = true;
+    std::visit(
+        [&]<typename Kind>(const Kind& kind) {
+            kind.VisitTextures([&](const auto& texture) {
+                if (texture.IsConstant()) return;
+                m->isConstant = false;
+                if (textures.ReadsUv(texture)) m->lobeNeeds = m->lobeNeeds | kNeedsUv;
+            });
+            if constexpr (requires { kind.roughness; })
+                if (!kind.roughness.IsIsotropic()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
+            if constexpr (std::is_same_v<Kind, Mix>) {
+                for (int operand : kind.operands) {
+                    const Material& o = made[operand];
+                    m->isConstant &= o.isConstant;
+                    m->lobeNeeds = m->lobeNeeds | o.lobeNeeds;
+                    m->maxLobes += o.maxLobes;
+                }
+                // pbrt-v3 shades a mix in the frame of the first material, so its bump map counts.
+                m->bump = made[kind.operands[0]].bump;
+            } else {
+                m->maxLobes = kind.MaxLobes();
+            }
+        },
+        m->kind);
+    m->needs = m->lobeNeeds;
+    if (m->bump) {
+        m->needs = m->needs | kNeedsTangents | kNeedsNormalDerivatives;
+        if (textures.ReadsUv(*m->bump)) m->needs = m->needs | kNeedsUv;
+    }
+}
+
+// Throws what is wrong, or warns of it where a matte material may stand in.
+void Refuse(const MaterialEntity& entity, const std::string& problem, bool substitute,
+            Warnings& warnings) {
+    if (!substitute) throw Error(entity.loc, problem);
+    warnings.Add(entity.loc, problem + "; a matte material stands in");
+}
+
+Material MakeMaterial(const MaterialEntity& entity, const TextureTable& textures,
+                      std::span<const Material> made, bool substitute, Warnings& warnings) {
+    const MaterialReader in{entity, textures, made};
+    entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
+    const auto finish = [&](const MaterialKind& kind) {
+        Material m(kind);
+        if (!std::holds_alternative<Mix>(kind)) m.bump = in.FloatOrNone("bumpmap");
+        if (m.bump && m.bump->IsConstant() && m.bump->constant == 0) m.bump.reset();
+        Analyse(textures, made, &m);
+        return m;
+    };
+
+    const std::optional<MaterialKind> kind = MakeKind(entity.name, in);
+    if (!kind) {
+        Refuse(entity, "material \"" + entity.name + "\" is not modelled", substitute, warnings);
+        return finish(Matte(in));
+    }
+    if (const Mix* mix = std::get_if<Mix>(&*kind)) {
+        if (const std::string problem = mix->Problem(in); !problem.empty()) {
+            Refuse(entity, problem, substitute, warnings);
+            return finish(Matte(in));
+        }
+    }
+    Material m = finish(*kind);
+    if (m.maxLobes > Bsdf::kMaxLobes) {
+        Refuse(entity,
+               "material \"" + entity.name + "\" can have more than " +
+                   std::to_string(Bsdf::kMaxLobes) + " lobes",
+               substitute, warnings);
+        return finish(Matte(in));
+    }
+    entity.parameters.ReportUnused("material \"" + entity.name + "\"", warnings);
+    return m;
+}
+
+// Makes the lobes of a constant material once and for all.
+void FoldConstants(const TextureTable& textures, std::span<const Material> made, Material* m) {
+    if (!m->isConstant) return;
+    Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
+    const MaterialInputs in{textures, {Vec3f::Zero(), Vec2f::Zero()}, made};
+    std::visit([&](const auto& kind) { kind.AddLobes(in, &bsdf); }, m->kind);
+    m->maxLobes = bsdf.LobeCount(LobeSet::All);
+    for (int i = 0; i < m->maxLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
+    m->constantEta = bsdf.Eta();
+}
+
+// Returns the frame with s along dpdu, which anisotropy refers to.
+Frame TangentFrame(const SurfaceInteraction& hit) {
+    const Vec3f s = hit.dpdu - hit.ns * hit.ns.dot(hit.dpdu);
+    const float length = s.norm();
+    Frame frame{s / length, {}, hit.ns};
+    if (length > 0 && length < kInfinity)
+        frame.t = hit.ns.cross(frame.s);
+    else
+        CoordinateSystem(hit.ns, &frame.s, &frame.t);
+    return frame;
+}
+
+}  // namespace
+
+void AddOperandLobes(int operand, const MaterialInputs& in, Bsdf* bsdf) {
+    AddLobes(in.materials[operand], in, bsdf);
+}
+
+MaterialTable::MaterialTable(const Description& description, const TextureTable& textures,
+                             bool substitute, Warnings& warnings) {
+    materials.reserve(description.materials.size());
+    for (const MaterialEntity& entity : description.materials) {
+        Material m = MakeMaterial(entity, textures, materials, substitute, warnings);
+        FoldConstants(textures, materials, &m);
+        materials.push_back(std::move(m));
+    }
+}
+
+MaterialTable::MaterialTable() = default;
+MaterialTable::~MaterialTable() = default;
+MaterialTable::MaterialTable(MaterialTable&&) noexcept = default;
+MaterialTable& MaterialTable::operator=(MaterialTable&&) noexcept = default;
+
+SurfaceNeeds MaterialTable::Needs(int material) const { return materials[material].needs; }
+
+Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
+    const Material& material = materials[hit->material];
+    if (material.bump) ApplyBumpMap(*material.bump, textures, hit);
+    Frame frame;
+    if (material.lobeNeeds & kNeedsTangents) {
+        frame = TangentFrame(*hit);
+    } else {
+        frame.n = hit->ns;
+        CoordinateSystem(frame.n, &frame.s, &frame.t);
+    }
+    Bsdf bsdf(frame, hit->n);
+    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv}, materials}, &bsdf);
+    return bsdf;
+}
+
+}  // namespace lull

@@ -1,0 +1,66 @@
+// Holds what the kinds of material share: how they read their parameters and what they are given
+// at a hit point.
+//
+// A kind is a struct K with
+//     static constexpr const char* kName                 as in scene files;
+//     explicit K(const MaterialReader&)                  reads the parameters;
+//     void AddLobes(const MaterialInputs&, Bsdf*) const  adds the lobes, sets eta if not 1;
+//     void VisitTextures(f) const                        calls f with every texture it evaluates;
+//     int MaxLobes() const                               how many lobes AddLobes can add.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "renderer/bsdf/bsdf.h"
+#include "renderer/scene/interaction.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+struct Material;
+
+// Reads the parameters of one material. `made` are the materials before it.
+struct MaterialReader {
+    const MaterialEntity& entity;
+    const TextureTable& textures;
+    std::span<const Material> made;
+
+    FloatTexture Float(const std::string& name, float otherwise) const {
+        return textures.GetFloat(entity, name, otherwise);
+    }
+    SpectrumTexture Spectrum(const std::string& name, float otherwise) const {
+        return textures.GetSpectrum(entity, name, Rgb::Constant(otherwise));
+    }
+    std::optional<FloatTexture> FloatOrNone(const std::string& name) const {
+        return textures.GetFloatOrNone(entity, name);
+    }
+    // Reads an index of refraction: "eta", or "index" by its older name; 1.5.
+    FloatTexture IndexOfRefraction() const {
+        const std::optional<FloatTexture> eta = FloatOrNone("eta");
+        return eta ? *eta : Float("index", 1.5f);
+    }
+};
+
+// Holds what lobes are made from at a hit point. `materials` is the whole table, for mixtures.
+struct MaterialInputs {
+    const TextureTable& textures;
+    TextureContext context;
+    std::span<const Material> materials;
+
+    float operator()(const FloatTexture& t) const { return textures.Evaluate(t, context); }
+    // Colours may be anything from textures; scattering takes them as nonnegative.
+    Rgb Colour(const SpectrumTexture& t) const { return Raw(t).max(0.f); }
+    Rgb Raw(const SpectrumTexture& t) const { return textures.Evaluate(t, context); }
+};
+
+// Says whether a colour is known to be black everywhere, so that its lobe never appears.
+inline bool IsAlwaysBlack(const SpectrumTexture& t) {
+    return t.IsConstant() && (t.constant <= 0).all();
+}
+
+// Adds the lobes of the operand-th material of the table, without its bump map. In material.cpp,
+// which alone knows every kind.
+void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
+
+}  // namespace lull

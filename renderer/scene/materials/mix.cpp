@@ -1,0 +1,31 @@
+#include "renderer/scene/materials/mix.h"
+
+namespace lull {
+
+Mix::Mix(const MaterialReader& in)
+    : amount(in.Spectrum("amount", 0.5f)), operands(in.entity.operands) {}
+
+std::string Mix::Problem(const MaterialReader& in) const {
+    for (int i = 0; i < 2; ++i) {
+        const std::string parameter = "namedmaterial" + std::to_string(i + 1);
+        const std::string name = in.entity.parameters.GetString(parameter, "");
+        if (operands[i] < 0 || operands[i] >= int(in.made.size()))
+            return "\"" + parameter + "\" of a mix: there is no material \"" + name + "\"";
+    }
+    return "";
+}
+
+void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
+    const Rgb first = in.Colour(amount), second = (1 - first).max(0.f);
+    // As in pbrt-v3 a lobe scaled to black stays among those to choose from.
+    const int begin = bsdf->LobeCount(LobeSet::All);
+    AddOperandLobes(operands[0], in, bsdf);
+    const int middle = bsdf->LobeCount(LobeSet::All);
+    const float eta = bsdf->Eta();
+    AddOperandLobes(operands[1], in, bsdf);
+    bsdf->Scale(begin, middle, first);
+    bsdf->Scale(middle, bsdf->LobeCount(LobeSet::All), second);
+    bsdf->SetEta(eta);  // pbrt-v3 takes the first material's
+}
+
+}  // namespace lull
