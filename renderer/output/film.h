@@ -1,0 +1,93 @@
+// Sums up the samples of every pixel.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Holds the pixels [min, max).
+struct PixelRect {
+    Vec2i min = {0, 0}, max = {0, 0};
+
+    int Width() const { return max.x() - min.x(); }
+    int Height() const { return max.y() - min.y(); }
+    int64_t Area() const { return int64_t(Width()) * Height(); }
+    bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
+};
+
+// Says whether sample `index` belongs to the half on which noise is estimated: the bits at its
+// odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
+// and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
+inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
+
+// Returns how many of the samples 0 .. count - 1 are in the half.
+uint32_t HalfCount(uint32_t count);
+
+// Holds what is known of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and
+// are added to the running sums one by one, so that the sums are the same bits however the
+// samples are cut into passes.
+struct FilmPixel {
+    std::array<double, 3> sum = {}, halfSum = {};
+    uint32_t count = 0;
+    uint32_t rejected = 0;  // samples that were NaN, infinite or negative, and count as black
+
+    // Adds the sample of index `count`. The radiance must be finite.
+    void Add(const Rgb& radiance, bool wasRejected) {
+        const bool inHalf = InHalf(count);
+        for (int c = 0; c < 3; ++c) {
+            sum[c] += double(radiance[c]);
+            if (inHalf) halfSum[c] += double(radiance[c]);
+        }
+        ++count;
+        rejected += wasRejected;
+    }
+    // Return the mean of all samples, or of those in the half; black, or the mean of all, where
+    // there is none.
+    Rgb Mean() const;
+    Rgb HalfMean() const;
+};
+
+// Holds the means of a rectangle of pixels as the stopping criteria read them: row-major RGB
+// triples. Reused from pass to pass.
+struct FilmView {
+    int width = 0, height = 0;
+    std::vector<float> mean, halfMean;
+};
+
+// Holds the pixels of the crop window, addressed by their place in the full image. Different
+// pixels can be changed by different threads at the same time.
+class Film {
+  public:
+    explicit Film(const PixelRect& region)
+        : region(region), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+
+    const PixelRect& Region() const { return region; }
+    FilmPixel& At(const Vec2i& p) { return pixels[Index(p)]; }
+    const FilmPixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
+    // Returns all pixels, row-major; with Region() the whole state of the film.
+    std::span<const FilmPixel> Pixels() const { return pixels; }
+    std::span<FilmPixel> Pixels() { return pixels; }
+
+    // Fills `view` with the means of `rect`, which lies inside Region().
+    void Extract(const PixelRect& rect, FilmView* view) const;
+
+    // Return the whole image (row-major RGB) and the samples each pixel had.
+    std::vector<float> MeanImage() const;
+    std::vector<float> SppImage() const;
+    int64_t SampleCount() const;
+    int64_t RejectedCount() const;
+
+  private:
+    size_t Index(const Vec2i& p) const {
+        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
+               size_t(p.x() - region.min.x());
+    }
+
+    PixelRect region;
+    std::vector<FilmPixel> pixels;
+};
+
+}  // namespace lull
