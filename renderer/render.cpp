@@ -1,0 +1,163 @@
+#include "renderer/render.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <chrono>
+
+namespace lull {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same
+// part of the scene in the caches, and the pixel's sums stay in registers.
+void RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler, Film* film) {
+    for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
+        for (int x = tile.pixels.min.x(); x < tile.pixels.max.x(); ++x) {
+            const Vec2i pixel(x, y);
+            FilmPixel sums = film->At(pixel);
+            for (int k = tile.first; k < tile.first + tile.count; ++k) {
+                const PathSample sample = source(sampler, pixel, uint32_t(k));
+                sums.Add(sample.radiance, sample.rejected);
+            }
+            film->At(pixel) = sums;
+        }
+}
+
+// Carries out a schedule: one task for each tile that is ready, each of which takes whatever tile
+// is due when it starts. The last tile of a pass asks the criterion and spawns the block's next
+// pass, so no block ever waits for another, and a single block still fills every core.
+class Executor {
+  public:
+    Executor(const SampleSource& source, const RenderOptions& options, Film* film)
+        : source(source),
+          options(options),
+          film(film),
+          schedule(film->Region(), options.schedule),
+          results(schedule.Blocks().size()) {}
+
+    RenderResult Run() {
+        Spawn(schedule.ReadyTiles());
+        group.wait();
+
+        const std::span<const Block> blocks = schedule.Blocks();
+        for (size_t i = 0; i < blocks.size(); ++i) results[i].block = blocks[i];
+        const RenderProgress progress = CurrentProgress();
+        if (options.onProgress) options.onProgress(progress);
+        return {std::move(results), progress, !schedule.Done()};
+    }
+
+  private:
+    void Spawn(int count) {
+        for (int i = 0; i < count; ++i) group.run([this] { RunTile(); });
+    }
+
+    void RunTile() {
+        if (options.isCancelled && options.isCancelled()) return;
+        const Tile tile = TakeTile();
+        const Clock::time_point tileStart = Clock::now();
+        RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
+        if (FinishTile(tile, SecondsSince(tileStart))) Spawn(DecideBlock(tile.block));
+        ReportProgress();
+    }
+
+    Tile TakeTile() {
+        std::lock_guard lock(mutex);
+        return schedule.Next().value();  // there are never more tasks than tiles
+    }
+
+    // Returns true if the tile was the last of its pass.
+    bool FinishTile(const Tile& tile, double seconds) {
+        std::lock_guard lock(mutex);
+        results[tile.block].seconds += seconds;
+        samples += tile.pixels.Area() * tile.count;
+        return schedule.Finish(tile);
+    }
+
+    // Asks the criterion and returns how many tiles have become ready.
+    int DecideBlock(int i) {
+        const bool stop = AskCriterion(i);
+        std::lock_guard lock(mutex);
+        const int readyBefore = schedule.ReadyTiles();
+        schedule.Decide(i, stop);
+        return schedule.ReadyTiles() - readyBefore;
+    }
+
+    bool AskCriterion(int i) {
+        // Nobody changes a block between the end of its pass and the decision.
+        const Block& block = schedule.Blocks()[i];
+        if (!block.votes || !options.shouldStop) return false;
+        const Clock::time_point start = Clock::now();
+        bool stop = false;
+        // Isolation keeps a criterion that waits for tasks of its own from running a tile here,
+        // which would fill the same view.
+        tbb::this_task_arena::isolate([&] {
+            FilmView& view = views.local();
+            film->Extract(block.pixels, &view);
+            stop = options.shouldStop(i, block.spp, view);
+        });
+        results[i].criterionSeconds += SecondsSince(start);
+        return stop;
+    }
+
+    void ReportProgress() {
+        if (!options.onProgress) return;
+        std::unique_lock reporting(progressMutex, std::try_to_lock);
+        if (!reporting || SecondsSince(start) < nextProgress) return;
+        nextProgress = SecondsSince(start) + options.progressInterval;
+        RenderProgress progress;
+        {
+            std::lock_guard lock(mutex);
+            progress = CurrentProgress();
+        }
+        options.onProgress(progress);
+    }
+
+    RenderProgress CurrentProgress() const {
+        return {int(schedule.Blocks().size()), schedule.StoppedBlocks(),
+                schedule.MedianSpp(),          samples,
+                schedule.SamplesToCap(),       SecondsSince(start)};
+    }
+
+    const SampleSource& source;
+    const RenderOptions& options;
+    Film* film;
+    const Clock::time_point start = Clock::now();
+
+    std::mutex mutex;  // guards the schedule, `samples` and the tiles' seconds in `results`
+    Schedule schedule;
+    std::vector<BlockResult> results;
+    int64_t samples = 0;
+
+    std::mutex progressMutex;  // guards `nextProgress`, and lets one thread report at a time
+    double nextProgress = 0;
+
+    tbb::enumerable_thread_specific<FilmView> views;
+    tbb::task_group group;
+};
+
+}  // namespace
+
+RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film) {
+    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return Executor(source, options, film).Run(); });
+}
+
+SampleSource SamplesOf(const Scene& scene, Estimator estimator) {
+    return [&scene, estimator](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return RenderSample(scene, estimator, sampler, pixel, index);
+    };
+}
+
+}  // namespace lull

@@ -1,0 +1,135 @@
+#include "renderer/schedule.h"
+
+namespace lull {
+
+namespace {
+
+int CeilDiv(int a, int b) { return (a + b - 1) / b; }
+
+bool IsSmall(const Block& block, int smallestSide) {
+    return std::min(block.pixels.Width(), block.pixels.Height()) < smallestSide;
+}
+
+// Returns the largest of the blocks around block (column, row), the first of equals.
+int LargestNeighbour(const std::vector<Block>& blocks, int columns, int column, int row) {
+    const int rows = int(blocks.size()) / columns;
+    int best = -1;
+    for (int y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
+        for (int x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x) {
+            const int i = y * columns + x;
+            if (x == column && y == row) continue;
+            if (best < 0 || blocks[i].pixels.Area() > blocks[best].pixels.Area()) best = i;
+        }
+    return best;
+}
+
+}  // namespace
+
+std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& options) {
+    const int size = options.blockSize;
+    std::vector<Block> blocks;
+    for (int y = region.min.y(); y < region.max.y(); y += size)
+        for (int x = region.min.x(); x < region.max.x(); x += size)
+            blocks.push_back({.pixels = {{x, y},
+                                         {std::min(x + size, region.max.x()),
+                                          std::min(y + size, region.max.y())}}});
+
+    // Let each small block follow its largest neighbour; where that is small as well there is no
+    // block that could vote, and it goes on to the cap by itself.
+    const int columns = CeilDiv(region.Width(), size);
+    for (int i = 0; i < int(blocks.size()); ++i) {
+        blocks[i].votes = !IsSmall(blocks[i], options.smallestSide);
+        if (blocks[i].votes) continue;
+        const int neighbour = LargestNeighbour(blocks, columns, i % columns, i / columns);
+        if (neighbour >= 0 && !IsSmall(blocks[neighbour], options.smallestSide))
+            blocks[i].leader = neighbour;
+    }
+    return blocks;
+}
+
+Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options)
+    : options(options), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
+    for (int i = 0; i < int(blocks.size()); ++i)
+        if (blocks[i].leader < 0) StartPass(i, std::min(options.passLength, options.cap));
+}
+
+int Schedule::TileCount(int block) const {
+    const PixelRect& r = blocks[block].pixels;
+    return CeilDiv(r.Width(), options.tileSize) * CeilDiv(r.Height(), options.tileSize);
+}
+
+void Schedule::StartPass(int block, int target) {
+    progress[block] = {.target = target, .underWay = true};
+    ready.insert({blocks[block].spp, block});
+    readyTiles += TileCount(block);
+}
+
+std::optional<Tile> Schedule::Next() {
+    if (ready.empty()) return {};
+    const int i = ready.begin()->second;
+    const Block& block = blocks[i];
+    Progress& pass = progress[i];
+
+    const int size = options.tileSize, columns = CeilDiv(block.pixels.Width(), size);
+    const Vec2i min =
+        block.pixels.min + size * Vec2i(pass.tilesGiven % columns, pass.tilesGiven / columns);
+    const Vec2i max = (min + Vec2i(size, size)).cwiseMin(block.pixels.max);
+    ++pass.tilesGiven;
+    --readyTiles;
+    if (pass.tilesGiven == TileCount(i)) ready.erase(ready.begin());
+    return Tile{i, {min, max}, block.spp, pass.target - block.spp};
+}
+
+bool Schedule::Finish(const Tile& tile) {
+    Progress& pass = progress[tile.block];
+    if (++pass.tilesFinished < TileCount(tile.block)) return false;
+    blocks[tile.block].spp = pass.target;
+    pass.underWay = false;
+    return true;
+}
+
+void Schedule::Decide(int i, bool stop) {
+    const Block& block = blocks[i];
+    if (block.leader >= 0) return CatchUp(i);
+
+    stop &= block.votes;
+    if (stop || block.spp >= options.cap)
+        Stop(i, stop && block.spp < options.cap);
+    else
+        StartPass(i, std::min(block.spp + options.passLength, options.cap));
+    for (int follower = 0; follower < int(blocks.size()); ++follower)
+        if (blocks[follower].leader == i) CatchUp(follower);
+}
+
+void Schedule::CatchUp(int follower) {
+    const Block& block = blocks[follower];
+    const Block& leader = blocks[block.leader];
+    if (progress[follower].underWay || block.stopped) return;
+    if (block.spp < leader.spp)
+        StartPass(follower, std::min(block.spp + options.passLength, leader.spp));
+    else if (leader.stopped)
+        Stop(follower, leader.stoppedByVote);
+}
+
+void Schedule::Stop(int block, bool byVote) {
+    blocks[block].stopped = true;
+    blocks[block].stoppedByVote = byVote;
+    ++stoppedBlocks;
+}
+
+int Schedule::MedianSpp() const {
+    if (blocks.empty()) return 0;
+    std::vector<int> spp;
+    for (const Block& block : blocks) spp.push_back(block.spp);
+    std::nth_element(spp.begin(), spp.begin() + spp.size() / 2, spp.end());
+    return spp[spp.size() / 2];
+}
+
+int64_t Schedule::SamplesToCap() const {
+    int64_t n = 0;
+    for (const Block& block : blocks)
+        if (!block.stopped) n += block.pixels.Area() * (options.cap - block.spp);
+    return n;
+}
+
+}  // namespace lull
