@@ -1,0 +1,32 @@
+// Finds what a ray meets. The only place that knows Embree.
+#pragma once
+
+#include <memory>
+
+#include "renderer/scene/shape_table.h"
+
+namespace lull {
+
+class Accelerator {
+  public:
+    Accelerator();
+    ~Accelerator();
+    Accelerator(Accelerator&&) noexcept;
+    Accelerator& operator=(Accelerator&&) noexcept;
+
+    // Builds over the shapes with `threads` threads (0: all). `shapes` and `textures` must outlive
+    // the accelerator and stay where they are. Throws Error when memory runs out.
+    Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads);
+
+    // Finds the nearest hit in (0, ray.tMax).
+    bool Intersect(const Ray& ray, Hit* hit) const;
+
+    // Says whether anything lies in (0, ray.tMax); shadow alpha counts too.
+    bool Occluded(const Ray& ray) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation;
+};
+
+}  // namespace lull

@@ -1,0 +1,86 @@
+#include "renderer/scene/camera.h"
+
+#include <fmt/format.h>
+
+#include "renderer/base/sampling.h"
+
+namespace lull {
+
+Ray Camera::GenerateRay(const Vec2f& film, const Vec2f& lens) const {
+    const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
+    const Vec3f direction = Vec3f(plane.x(), plane.y(), 1).normalized();
+    if (lensRadius == 0) return {position, rotation * direction, kInfinity};
+
+    // Move the origin to the lens and aim at the point that is in focus.
+    const Vec2f p = lensRadius * SampleConcentricDisk(lens);
+    const Vec3f origin(p.x(), p.y(), 0);
+    const Vec3f focus = direction * (focalDistance / direction.z());
+    return {position + rotation * origin, rotation * (focus - origin).normalized(), kInfinity};
+}
+
+Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings) {
+    const Entity& entity = description.camera;
+    if (entity.name != "perspective")
+        throw Error(
+            entity.loc,
+            fmt::format("Camera \"{}\" is not modelled; only \"perspective\" is", entity.name));
+    const Parameters& params = entity.parameters;
+    const Vec2i resolution = film.resolution;
+    const float aspect =
+        params.GetFloat("frameaspectratio", float(resolution.x()) / float(resolution.y()));
+    // The screen window holds [-1, 1] along the shorter axis.
+    std::array<float, 4> screen = aspect > 1 ? std::array{-aspect, aspect, -1.f, 1.f}
+                                             : std::array{-1.f, 1.f, -1 / aspect, 1 / aspect};
+    if (const auto window = params.GetFloats(ParameterType::Float, "screenwindow");
+        !window.empty()) {
+        if (window.size() != 4)
+            throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
+        std::copy(window.begin(), window.end(), screen.begin());
+    }
+    float fov = params.GetFloat("fov", 90);
+    if (const float half = params.GetFloat("halffov", -1); half > 0) fov = 2 * half;
+    if (!(fov > 0 && fov < 180))
+        throw Error(entity.loc, fmt::format("the field of view is {} degrees; it has to lie "
+                                            "between 0 and 180",
+                                            fov));
+    // Nothing moves here, so the shutter has no effect.
+    params.GetFloat("shutteropen", 0);
+    params.GetFloat("shutterclose", 1);
+
+    Camera camera;
+    camera.lensRadius = params.GetFloat("lensradius", 0);
+    camera.focalDistance = params.GetFloat("focaldistance", 1e6f);
+    if (!(camera.lensRadius >= 0) || !(camera.focalDistance > 0))
+        throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
+    params.ReportUnused("Camera \"perspective\"", warnings);
+
+    const float scale = std::tan(fov * kPi / 360);
+    camera.planeOrigin = scale * Vec2f(screen[0], screen[3]);
+    camera.planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
+                                         (screen[2] - screen[3]) / resolution.y());
+    camera.worldFromCamera = description.cameraFromWorld.inverse();
+    if (!camera.worldFromCamera.allFinite())
+        throw Error(entity.loc, "the camera's transform cannot be inverted");
+    camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
+    // Scales in the transform change the length of directions, not what they point at; remove a
+    // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
+    camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();
+    return camera;
+}
+
+Mat4d WorldToCamera(const Camera& camera) { return camera.worldFromCamera.inverse(); }
+
+Mat4d WorldToNdc(const Camera& camera, const FilmSettings& film) {
+    // Project onto the plane z = 1, then scale the image to [0, 1]^2.
+    Mat4d ndcFromCamera = Mat4d::Zero();
+    for (int i = 0; i < 2; ++i) {
+        const double perUnit = 1.0 / (double(camera.planePerPixel[i]) * film.resolution[i]);
+        ndcFromCamera(i, i) = perUnit;
+        ndcFromCamera(i, 2) = -camera.planeOrigin[i] * perUnit;
+    }
+    ndcFromCamera(2, 2) = 1;
+    ndcFromCamera(3, 2) = 1;
+    return ndcFromCamera * WorldToCamera(camera);
+}
+
+}  // namespace lull

@@ -1,0 +1,78 @@
+#include "renderer/scene/compile.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace lull {
+namespace {
+
+// Runs `work` and returns the seconds it took.
+template <typename Work>
+double Timed(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void ReadSampler(const Entity& entity, Scene* scene, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    scene->samplesPerPixel = params.GetInt("pixelsamples", 16);
+    scene->sampler = entity.name == "random" ? SamplerKind::Random : SamplerKind::Sobol;
+    if (entity.name == "random" || entity.name == "sobol") {
+        params.ReportUnused("Sampler \"" + entity.name + "\"", warnings);
+    } else if (entity.name == "stratified") {
+        scene->samplesPerPixel = params.GetInt("xsamples", 4) * params.GetInt("ysamples", 4);
+    }
+    if (entity.name != "random" && entity.name != "sobol" && entity.loc.file)
+        warnings.Add(entity.loc,
+                     fmt::format("Sampler \"{}\" is rendered with \"sobol\"", entity.name));
+    if (scene->samplesPerPixel < 1)
+        throw Error(entity.loc, "the number of samples a pixel has to be at least 1");
+}
+
+void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    if (entity.name != "path")
+        warnings.Add(entity.loc,
+                     fmt::format("Integrator \"{}\" is rendered as \"path\"", entity.name));
+    scene->maxDepth = params.GetInt("maxdepth", 5);
+    scene->rrThreshold = params.GetFloat("rrthreshold", 1);
+    if (maxDepth >= 0) scene->maxDepth = maxDepth;
+    if (scene->maxDepth < 0) throw Error(entity.loc, "\"maxdepth\" has to be at least 0");
+    params.GetString("lightsamplestrategy", "");  // the light table reads it
+    if (entity.name == "path") params.ReportUnused("Integrator \"path\"", warnings);
+}
+
+}  // namespace
+
+std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
+                                     Warnings& warnings) {
+    auto scene = std::make_unique<Scene>();
+    scene->film = MakeFilmSettings(description, options.film, warnings);
+    scene->filter = Filter(description, warnings);
+    scene->camera = MakeCamera(description, scene->film, warnings);
+    ReadSampler(description.sampler, scene.get(), warnings);
+    ReadIntegrator(description.integrator, options.maxDepth, scene.get(), warnings);
+
+    scene->textureSeconds = Timed([&] {
+        scene->textures = TextureTable(description, options.substitute, warnings);
+        scene->materials =
+            MaterialTable(description, scene->textures, options.substitute, warnings);
+    });
+    scene->shapeSeconds = Timed([&] {
+        scene->shapes = ShapeTable(description, scene->textures, options.substitute, warnings);
+        scene->lights = LightTable(description, scene->shapes, warnings);
+    });
+    scene->acceleratorSeconds = Timed(
+        [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });
+
+    // Say what would otherwise be found out by a black picture.
+    if (scene->lights.Count() == 0)
+        warnings.Add(description.integrator.loc,
+                     "the scene has no lights: the image will be black");
+    if (scene->shapes.bounds.IsEmpty()) warnings.Add({}, "the scene has no shapes");
+    return scene;
+}
+
+}  // namespace lull

@@ -1,0 +1,81 @@
+#include "renderer/scene/filter.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <numeric>
+
+namespace lull {
+namespace {
+
+// Evaluates the Mitchell-Netravali filter (1988) at x in [-1, 1], which is two units wide.
+float Mitchell(float x, float b, float c) {
+    x = std::abs(2 * x);
+    if (x > 1)
+        return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x +
+                (8 * b + 24 * c)) /
+               6;
+    return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+}
+
+}  // namespace
+
+Filter::Filter(const Description& description, Warnings& warnings) {
+    const Entity& entity = description.filter;
+    const Parameters& params = entity.parameters;
+    const bool isBox = entity.name == "box";
+    const float width = isBox ? 0.5f : 2.f;
+    radius = {params.GetFloat("xwidth", width), params.GetFloat("ywidth", width)};
+    if (!(radius.minCoeff() > 0) || !radius.allFinite())
+        throw Error(entity.loc, "the filter's \"xwidth\" and \"ywidth\" have to be positive");
+
+    std::function<float(float, float)> evaluate;  // (x, radius of the axis)
+    if (entity.name == "gaussian") {
+        const float alpha = params.GetFloat("alpha", 2);
+        evaluate = [=](float x, float r) {
+            return std::max(0.f, std::exp(-alpha * x * x) - std::exp(-alpha * r * r));
+        };
+    } else if (entity.name == "mitchell") {
+        const float b = params.GetFloat("B", 1 / 3.f), c = params.GetFloat("C", 1 / 3.f);
+        evaluate = [=](float x, float r) { return Mitchell(x / r, b, c); };
+    } else if (entity.name == "triangle") {
+        evaluate = [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
+    } else if (!isBox) {
+        throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
+                                            "mitchell and triangle are",
+                                            entity.name));
+    }
+    params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);
+    if (isBox) return;
+
+    tabulated = true;
+    constexpr int kBins = 1024;
+    for (int i = 0; i < 2; ++i) {
+        Axis& axis = axes[i];
+        std::vector<float> magnitudes(kBins);
+        axis.values.resize(kBins);
+        for (int k = 0; k < kBins; ++k) {
+            axis.values[k] = evaluate((2 * (k + 0.5f) / kBins - 1) * radius[i], radius[i]);
+            magnitudes[k] = std::abs(axis.values[k]);
+        }
+        const double sum = std::accumulate(axis.values.begin(), axis.values.end(), 0.0);
+        if (!(sum > 0)) throw Error(entity.loc, "the filter's integral is not positive");
+        axis.density = Distribution1D(magnitudes);
+        axis.weightScale = float(std::accumulate(magnitudes.begin(), magnitudes.end(), 0.0) / sum);
+    }
+}
+
+FilterSample Filter::SampleTable(const Vec2f& u) const {
+    FilterSample sample{Vec2f::Zero(), 1};
+    for (int i = 0; i < 2; ++i) {
+        float pdf;
+        int bin;
+        const float x = axes[i].density.SampleContinuous(u[i], &pdf, &bin);
+        sample.offset[i] = (2 * x - 1) * radius[i];
+        // The density is proportional to |f| bin by bin, so only the sign of f is left.
+        sample.weight *= std::copysign(axes[i].weightScale, axes[i].values[bin]);
+    }
+    return sample;
+}
+
+}  // namespace lull

@@ -1,0 +1,116 @@
+#include "renderer/scene/light_table.h"
+
+#include <fmt/format.h>
+
+namespace lull {
+namespace {
+
+struct WorldSphere {
+    Vec3f center;
+    float radius;
+};
+
+WorldSphere BoundingSphere(const Bounds3f& bounds) {
+    if (bounds.IsEmpty()) return {Vec3f::Zero(), 1};
+    const Vec3f center = 0.5f * (bounds.lower + bounds.upper);
+    return {center, std::max((bounds.upper - center).norm(), 1e-10f)};
+}
+
+// Makes the light of one LightSource directive: the table of kinds.
+Light MakeLight(const Description& description, const LightEntity& entity, float worldRadius,
+                Warnings& warnings) {
+    entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
+    entity.parameters.GetInt("nsamples", 1);
+    if (entity.name == "point") return PointLight::Make(entity);
+    if (entity.name == "spot") return SpotLight::Make(entity);
+    if (entity.name == "distant") return DistantLight::Make(entity, worldRadius);
+    if (entity.name == "infinite" || entity.name == "exinfinite")
+        return InfiniteLight::Make(description, entity, worldRadius, warnings);
+    throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; point, spot, distant "
+                                        "and infinite are",
+                                        entity.name));
+}
+
+AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
+    if (entity.name != "diffuse" && entity.name != "area")
+        throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not modelled; only "
+                                            "\"diffuse\" is",
+                                            entity.name));
+    const Parameters& params = entity.parameters;
+    AreaLight light;
+    light.L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    light.twoSided = params.GetBool("twosided", false);
+    params.GetInt("samples", 1);
+    params.GetInt("nsamples", 1);
+    params.ReportUnused("AreaLightSource \"" + entity.name + "\"", warnings);
+    light.isHidden = shape.IsInvisible();
+    return light;
+}
+
+}  // namespace
+
+LightTable::LightTable(const Description& description, ShapeTable& shapes, Warnings& warnings) {
+    const WorldSphere world = BoundingSphere(shapes.bounds);
+    for (const LightEntity& entity : description.lights) {
+        lights.push_back(MakeLight(description, entity, world.radius, warnings));
+        entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
+        if (std::holds_alternative<InfiniteLight>(lights.back())) infinite.push_back(Count() - 1);
+    }
+    for (int i = 0; i < shapes.worldShapeCount; ++i) {
+        const auto& entity = description.shapes[i].areaLight;
+        if (!entity) continue;
+        Shape& shape = shapes.shapes[i];
+        AreaLight light = MakeAreaLight(*entity, shape, warnings);
+        if (shape.PrimitiveCount() == 0) {
+            warnings.Add(description.shapes[i].loc, "area light without area", "it gives no light");
+            continue;
+        }
+        shape.firstLight = Count();
+        light.shape = i;
+        for (uint32_t k = 0; k < shape.PrimitiveCount(); ++k) {
+            light.primitive = k;
+            lights.push_back(light);
+        }
+    }
+    if (lights.empty()) return;
+    anyVisible = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
+        const AreaLight* area = std::get_if<AreaLight>(&light);
+        return area ? !area->isHidden : std::holds_alternative<InfiniteLight>(light);
+    });
+
+    const Entity& integrator = description.integrator;
+    std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
+    if (strategy != "uniform" && strategy != "power" && strategy != "spatial") {
+        warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used", strategy);
+        strategy = "spatial";
+    }
+    std::vector<float> weights(lights.size(), 1.f);
+    if (strategy == "power")
+        for (int i = 0; i < Count(); ++i)
+            weights[i] = Luminance(std::visit(
+                [&](const auto& light) {
+                    if constexpr (std::is_same_v<std::decay_t<decltype(light)>, AreaLight>)
+                        return light.Power(shapes);
+                    else
+                        return light.Power();
+                },
+                lights[i]));
+    if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
+        distribution = std::make_unique<LightDistribution>(weights);
+    else
+        distribution = std::make_unique<LightDistribution>(Count(), shapes.bounds);
+}
+
+std::optional<LightSample> LightTable::Sample(int i, const ShapeTable& shapes, const Vec3f& from,
+                                              const Vec2f& u) const {
+    const Light& light = lights[i];
+    if (const AreaLight* area = std::get_if<AreaLight>(&light))
+        return area->Sample(shapes, from, u);
+    if (const InfiniteLight* environment = std::get_if<InfiniteLight>(&light))
+        return environment->Sample(from, u);
+    if (const PointLight* point = std::get_if<PointLight>(&light)) return point->Sample(from);
+    if (const SpotLight* spot = std::get_if<SpotLight>(&light)) return spot->Sample(from);
+    return std::get<DistantLight>(light).Sample(from);
+}
+
+}  // namespace lull

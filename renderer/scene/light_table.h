@@ -1,0 +1,52 @@
+// Owns the lights of a scene: what they emit, how they are sampled, and which is chosen.
+#pragma once
+
+#include <variant>
+
+#include "renderer/base/color.h"
+#include "renderer/scene/light_distribution.h"
+#include "renderer/scene/lights/area.h"
+#include "renderer/scene/lights/distant.h"
+#include "renderer/scene/lights/infinite.h"
+#include "renderer/scene/lights/point.h"
+#include "renderer/scene/lights/spot.h"
+
+namespace lull {
+
+using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, AreaLight>;
+
+class LightTable {
+  public:
+    LightTable() = default;
+    // Makes the lights of the description and one for each primitive of an emitting shape, which
+    // it tells (Shape::firstLight). Throws Error with file and line for unknown kinds.
+    LightTable(const Description&, ShapeTable& shapes, Warnings&);
+
+    int Count() const { return int(lights.size()); }
+    const Light& operator[](int i) const { return lights[i]; }
+    // Lists the lights that rays meet when they leave the scene.
+    const std::vector<int>& Infinite() const { return infinite; }
+
+    // Says whether a ray can meet any light at all.
+    bool AnyVisible() const { return anyVisible; }
+
+    // Samples light i as seen from `from`. Returns nothing where it gives no light there.
+    std::optional<LightSample> Sample(int i, const ShapeTable& shapes, const Vec3f& from,
+                                      const Vec2f& u) const;
+
+    // Chooses a light for points near p, as the scene's strategy says.
+    const Distribution1D& Distribution(const ShapeTable& shapes, const Vec3f& p) const {
+        return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
+            const auto sample = Sample(i, shapes, q, u);
+            return sample ? Luminance(sample->L) / sample->pdf : 0.f;
+        });
+    }
+
+  private:
+    std::vector<Light> lights;
+    std::vector<int> infinite;
+    bool anyVisible = false;
+    std::unique_ptr<LightDistribution> distribution;
+};
+
+}  // namespace lull

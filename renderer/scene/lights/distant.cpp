@@ -1,0 +1,25 @@
+#include "renderer/scene/lights/distant.h"
+
+namespace lull {
+
+DistantLight DistantLight::Make(const LightEntity& entity, float worldRadius) {
+    const Parameters& params = entity.parameters;
+    const Rgb L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
+    const Vec3f to = params.GetPoint3("to", Vec3f(0, 0, 1));
+    const Vec3f w = TransformVector(entity.worldFromLight, from - to);
+    if (!(w.norm() > 0))
+        throw Error(entity.loc, "the distant light's \"from\" and \"to\" coincide");
+    return {w.normalized(), L, worldRadius};
+}
+
+std::optional<LightSample> DistantLight::Sample(const Vec3f& from) const {
+    return LightSample{.L = L,
+                       .wi = w,
+                       .pdf = 1,
+                       .isDelta = true,
+                       .isHidden = false,
+                       .p = from + w * (2 * worldRadius)};
+}
+
+}  // namespace lull

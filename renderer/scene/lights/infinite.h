@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "renderer/base/sampling.h"
+#include "renderer/input/description.h"
+#include "renderer/scene/lights/light_sample.h"
+
+namespace lull {
+
+// Surrounds the scene with radiance: constant, or an image in latitude-longitude form whose
+// brightness guides the sampling (pbrt 3rd ed., 14.2.4).
+class InfiniteLight {
+  public:
+    // Reads the image, if any. Throws Error where it cannot be read; texels that are not finite or
+    // negative count as black, with a counted warning.
+    static InfiniteLight Make(const Description&, const LightEntity&, float worldRadius, Warnings&);
+
+    // Returns the radiance that arrives from direction w (unit, world).
+    Rgb Le(const Vec3f& w) const;
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    // Returns the density, 1/sr, with which Sample finds w.
+    float Pdf(const Vec3f& w) const;
+    Rgb Power() const;
+
+  private:
+    Rgb Lookup(const Vec2f& st) const;
+
+    Mat3f lightFromWorld = Mat3f::Identity(), worldFromLight = Mat3f::Identity();
+    float worldRadius = 1;
+    int width = 1, height = 1;
+    std::vector<Rgb> texels;  // row-major from theta = 0; scaled
+    Distribution2D distribution;
+};
+
+}  // namespace lull

@@ -1,0 +1,18 @@
+// Holds light that may arrive at a point, as a light's sampling proposes it.
+#pragma once
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+struct LightSample {
+    Rgb L;          // radiance arriving, or for delta lights radiant intensity / distance^2
+    Vec3f wi;       // towards the light, unit, world
+    float pdf;      // 1/sr; 1 for delta lights
+    bool isDelta;   // no other strategy can find this direction
+    bool isHidden;  // the emitter is invisible to rays, only this sampling finds it
+    // Where the light sits; at infinity `n` is zero and p is ref + wi * (2 world radii).
+    Vec3f p, pError = Vec3f::Zero(), n = Vec3f::Zero();
+};
+
+}  // namespace lull

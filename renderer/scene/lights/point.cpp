@@ -1,0 +1,25 @@
+#include "renderer/scene/lights/point.h"
+
+namespace lull {
+
+PointLight PointLight::Make(const LightEntity& entity) {
+    const Parameters& params = entity.parameters;
+    const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
+    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    return {TransformPoint(entity.worldFromLight, from), I};
+}
+
+std::optional<LightSample> PointLight::Sample(const Vec3f& from) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    const Rgb L = I / distance2;
+    if (!(distance2 > 0) || !IsFinite(L)) return {};
+    return LightSample{.L = L,
+                       .wi = d / std::sqrt(distance2),
+                       .pdf = 1,
+                       .isDelta = true,
+                       .isHidden = false,
+                       .p = p};
+}
+
+}  // namespace lull

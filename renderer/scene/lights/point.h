@@ -1,0 +1,18 @@
+#pragma once
+
+#include "renderer/input/description.h"
+#include "renderer/scene/lights/light_sample.h"
+
+namespace lull {
+
+// Emits I, W/sr, equally in all directions from one point.
+struct PointLight {
+    Vec3f p;
+    Rgb I;
+
+    static PointLight Make(const LightEntity&);
+    std::optional<LightSample> Sample(const Vec3f& from) const;
+    Rgb Power() const { return 4 * kPi * I; }
+};
+
+}  // namespace lull

@@ -1,0 +1,34 @@
+#include "renderer/scene/lights/spot.h"
+
+namespace lull {
+
+SpotLight SpotLight::Make(const LightEntity& entity) {
+    const Parameters& params = entity.parameters;
+    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const float cone = params.GetFloat("coneangle", 30);
+    const float delta = params.GetFloat("conedeltaangle", 5);
+    const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
+    const Vec3f to = params.GetPoint3("to", Vec3f(0, 0, 1));
+    const Vec3f axis = TransformVector(entity.worldFromLight, (to - from).normalized());
+    if (!(axis.norm() > 0))
+        throw Error(entity.loc, "the spot light's \"from\" and \"to\" coincide");
+    return {TransformPoint(entity.worldFromLight, from), axis.normalized(), I,
+            std::cos(cone * kPi / 180), std::cos((cone - delta) * kPi / 180)};
+}
+
+std::optional<LightSample> SpotLight::Sample(const Vec3f& from) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    const float cosTheta = -wi.dot(axis);
+    if (cosTheta < cosTotalWidth) return {};
+    const float x = cosTheta >= cosFalloffStart
+                        ? 1.f
+                        : (cosTheta - cosTotalWidth) / (cosFalloffStart - cosTotalWidth);
+    const Rgb L = I * (Sqr(Sqr(x)) / distance2);
+    if (!IsFinite(L)) return {};
+    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+}
+
+}  // namespace lull

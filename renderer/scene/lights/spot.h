@@ -1,0 +1,19 @@
+#pragma once
+
+#include "renderer/input/description.h"
+#include "renderer/scene/lights/light_sample.h"
+
+namespace lull {
+
+// Emits I, W/sr, from one point into a cone, falling off smoothly towards its edge.
+struct SpotLight {
+    Vec3f p, axis;
+    Rgb I;
+    float cosTotalWidth, cosFalloffStart;
+
+    static SpotLight Make(const LightEntity&);
+    std::optional<LightSample> Sample(const Vec3f& from) const;
+    Rgb Power() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)) * I; }
+};
+
+}  // namespace lull

@@ -1,0 +1,73 @@
+// Owns the geometry of a scene: shapes, object definitions and instances.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "renderer/scene/material.h"
+#include "renderer/scene/shapes/mesh.h"
+#include "renderer/scene/shapes/quadric.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+struct Shape {
+    std::variant<Mesh, Sphere, Disk> geometry;
+    int material = -1;
+    int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
+    std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)
+
+    bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }
+    uint32_t PrimitiveCount() const;
+};
+
+// Holds a range of ShapeTable::shapes that is placed as a whole.
+struct Object {
+    int firstShape = 0, shapeCount = 0;
+};
+
+struct Instance {
+    int object = -1;
+    Mat4d worldFromInstance, instanceFromWorld;
+};
+
+struct Hit {
+    float t;
+    float b1, b2;  // triangles: weights of the second and third vertex
+    int shape;
+    uint32_t primitive;
+    int instance;  // -1: the shape stands in the world itself
+};
+
+struct ShapeTable {
+    std::vector<Shape> shapes;  // first those of the world, then those of the objects
+    int worldShapeCount = 0;
+    std::vector<Object> objects;
+    std::vector<Instance> instances;
+    Bounds3f bounds;  // of everything placed, world
+
+    // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
+    // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
+    // Zero-area triangles are dropped with a counted warning. Lights are given to shapes later.
+    ShapeTable(const Description&, const TextureTable&, bool substitute, Warnings&);
+    ShapeTable() = default;
+
+    size_t TriangleCount() const;  // instances counted as often as they are placed
+
+    // Fills in the interaction at a hit of `ray`, all but what `needs` leaves out.
+    void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
+                  SurfaceInteraction* interaction) const;
+
+    // Returns the texture coordinates of a hit, for alpha textures.
+    Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
+
+    // Sample a point of an emitting primitive, or return the density, 1/sr, of having sampled
+    // the point p with normal n of it.
+    std::optional<ShapeSample> Sample(int shape, uint32_t primitive, const Vec3f& from,
+                                      const Vec2f& u) const;
+    float Pdf(int shape, uint32_t primitive, const Vec3f& from, const Vec3f& p,
+              const Vec3f& n) const;
+    float Area(int shape, uint32_t primitive) const;
+};
+
+}  // namespace lull

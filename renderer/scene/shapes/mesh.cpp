@@ -1,0 +1,114 @@
+#include "renderer/scene/shapes/mesh.h"
+
+#include "renderer/base/sampling.h"
+
+namespace lull {
+namespace {
+
+// Meshes without uv have pbrt-v3's: (0,0), (1,0), (1,1).
+std::array<Vec2f, 3> Uvs(const Mesh& mesh, const std::array<uint32_t, 3>& v) {
+    if (mesh.uv.empty()) return {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1)};
+    return {mesh.uv[v[0]], mesh.uv[v[1]], mesh.uv[v[2]]};
+}
+
+// Computes tangents and, where asked for, derivatives of the normal as pbrt-v3's triangles have
+// them (its signs included: bump maps show them).
+void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, SurfaceNeeds needs,
+                     SurfaceInteraction* hit) {
+    const auto uv = Uvs(mesh, v);
+    const Vec2f duv02 = uv[0] - uv[2], duv12 = uv[1] - uv[2];
+    const Vec3f dp02 = mesh.p[v[0]] - mesh.p[v[2]], dp12 = mesh.p[v[1]] - mesh.p[v[2]];
+    const float determinant = duv02[0] * duv12[1] - duv02[1] * duv12[0];
+    const bool degenerate = std::abs(determinant) < 1e-8f;
+    if (!degenerate) {
+        hit->dpdu = (duv12[1] * dp02 - duv02[1] * dp12) / determinant;
+        hit->dpdv = (duv02[0] * dp12 - duv12[0] * dp02) / determinant;
+    }
+    if (degenerate || hit->dpdu.cross(hit->dpdv).squaredNorm() == 0)
+        CoordinateSystem(dp02.cross(dp12).normalized(), &hit->dpdu, &hit->dpdv);
+    hit->dndu = hit->dndv = Vec3f::Zero();
+    if (mesh.n.empty()) return;
+
+    // Make an orthonormal shading frame out of dpdu and the interpolated normal.
+    Vec3f s = hit->dpdu.normalized();
+    Vec3f t = s.cross(hit->ns);
+    if (const float length2 = t.squaredNorm(); length2 > 0) {
+        t /= std::sqrt(length2);
+        s = t.cross(hit->ns);
+    } else {
+        CoordinateSystem(hit->ns, &s, &t);
+    }
+    if (needs & kNeedsNormalDerivatives) {
+        const Vec3f dn02 = mesh.n[v[0]] - mesh.n[v[2]], dn12 = mesh.n[v[1]] - mesh.n[v[2]];
+        if (!degenerate) {
+            hit->dndu = (duv12[1] * dn02 - duv02[1] * dn12) / determinant;
+            hit->dndv = (duv02[0] * dn12 - duv12[0] * dn02) / determinant;
+        }
+    }
+    hit->dpdu = s;
+    hit->dpdv = mesh.reverseOrientation ? Vec3f(-t) : t;
+}
+
+}  // namespace
+
+void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
+                    SurfaceInteraction* hit) const {
+    const auto& v = triangles[triangle];
+    const Vec3f &p0 = p[v[0]], &p1 = p[v[1]], &p2 = p[v[2]];
+    const float b0 = 1 - b1 - b2;
+    const Vec3f q0 = b0 * p0, q1 = b1 * p1, q2 = b2 * p2;
+    hit->p = q0 + q1 + q2;
+    hit->pError = Gamma(7) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
+    hit->n = (p0 - p2).cross(p1 - p2).normalized();
+    if (flipNormals) hit->n = -hit->n;
+    hit->ns = hit->n;
+    if (!n.empty()) {
+        // The interpolated normal decides the side of the geometric one.
+        const Vec3f sum = b0 * n[v[0]] + b1 * n[v[1]] + b2 * n[v[2]];
+        if (const float length2 = sum.squaredNorm(); length2 > 0)
+            hit->ns = sum / std::sqrt(length2);
+    }
+    if (needs & kNeedsUv) {
+        const auto uvs = Uvs(*this, v);
+        hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+    }
+    if (needs & (kNeedsTangents | kNeedsNormalDerivatives)) ComputeTangents(*this, v, needs, hit);
+    if (!n.empty()) {
+        if (reverseOrientation) hit->ns = -hit->ns;
+        hit->n = FaceForward(hit->n, hit->ns);
+    }
+}
+
+Vec2f Mesh::Uv(uint32_t triangle, float b1, float b2) const {
+    const auto uvs = Uvs(*this, triangles[triangle]);
+    return (1 - b1 - b2) * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+}
+
+float Mesh::Area(uint32_t triangle) const {
+    const auto& v = triangles[triangle];
+    return 0.5f * (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]).norm();
+}
+
+std::optional<ShapeSample> Mesh::Sample(uint32_t triangle, const Vec3f& from,
+                                        const Vec2f& u) const {
+    const auto& v = triangles[triangle];
+    const Vec2f b = SampleUniformTriangle(u);
+    const float b2 = 1 - b.x() - b.y();
+    const Vec3f q0 = b.x() * p[v[0]], q1 = b.y() * p[v[1]], q2 = b2 * p[v[2]];
+    const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
+    const float twiceArea = cross.norm();
+    ShapeSample sample;
+    sample.p = q0 + q1 + q2;
+    sample.pError = Gamma(6) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
+    sample.n = cross / twiceArea;
+    // The sides are pbrt-v3's: vertex normals decide, without regard to ReverseOrientation.
+    if (!n.empty())
+        sample.n = FaceForward(sample.n, b.x() * n[v[0]] + b.y() * n[v[1]] + b2 * n[v[2]]);
+    else if (flipNormals)
+        sample.n = -sample.n;
+    sample.pdf = SolidAnglePdf(2 / twiceArea, from, sample.p, sample.n);
+    if (!(sample.pdf > 0)) return {};
+    return sample;
+}
+
+}  // namespace lull

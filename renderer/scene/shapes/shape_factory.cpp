@@ -1,0 +1,202 @@
+#include "renderer/scene/shapes/shape_factory.h"
+
+#include <fmt/format.h>
+
+#include "renderer/input/loop_subdivision.h"
+#include "renderer/input/ply_loader.h"
+
+namespace lull {
+namespace {
+
+template <typename Vector>
+std::vector<Vector> VectorsOf(std::span<const float> values) {
+    constexpr int n = Vector::RowsAtCompileTime;
+    std::vector<Vector> vectors(values.size() / n);
+    for (size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = Eigen::Map<const Vector>(values.data() + n * i);
+    return vectors;
+}
+
+// Gathers indices three by three, with each checked.
+std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size_t vertexCount) {
+    const auto indices = entity.parameters.GetInts("indices");
+    if (indices.empty() || indices.size() % 3 != 0)
+        throw Error(entity.loc, fmt::format("\"indices\" has {} values; a mesh needs three for "
+                                            "each triangle",
+                                            indices.size()));
+    std::vector<std::array<uint32_t, 3>> triangles(indices.size() / 3);
+    for (size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] < 0 || size_t(indices[i]) >= vertexCount)
+            throw Error(entity.loc,
+                        fmt::format("index {} is out of range: the mesh has {} vertices",
+                                    indices[i], vertexCount));
+        triangles[i / 3][i % 3] = uint32_t(indices[i]);
+    }
+    return triangles;
+}
+
+std::vector<Vec3f> PositionsOf(const ShapeEntity& entity) {
+    const auto positions =
+        VectorsOf<Vec3f>(entity.parameters.GetFloats(ParameterType::Point3, "P"));
+    if (positions.empty())
+        throw Error(entity.loc, "the mesh has no vertices: \"point P\" is missing");
+    for (const Vec3f& p : positions)
+        if (!p.allFinite()) throw Error(entity.loc, "a vertex of the mesh is not finite");
+    return positions;
+}
+
+MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    MeshData data;
+    data.positions = PositionsOf(entity);
+    data.triangles = TrianglesOf(entity, data.positions.size());
+    // Texture coordinates come under two names and two types.
+    for (const char* name : {"uv", "st"})
+        for (const ParameterType type : {ParameterType::Point2, ParameterType::Float})
+            if (data.uvs.empty()) data.uvs = VectorsOf<Vec2f>(params.GetFloats(type, name));
+    if (data.uvs.size() < data.positions.size()) {
+        if (!data.uvs.empty())
+            warnings.Add(entity.loc, "too few \"uv\" for the mesh; they are left out");
+        data.uvs.clear();
+    } else {
+        data.uvs.resize(data.positions.size());
+    }
+    data.normals = VectorsOf<Vec3f>(params.GetFloats(ParameterType::Normal, "N"));
+    if (!data.normals.empty() && data.normals.size() != data.positions.size()) {
+        warnings.Add(entity.loc, "as many \"N\" as \"P\" are needed; the normals are left out");
+        data.normals.clear();
+    }
+    params.GetInts("faceIndices");  // only Ptex reads them
+    return data;
+}
+
+MeshData SubdividedMesh(const ShapeEntity& entity, Warnings&) {
+    const Parameters& params = entity.parameters;
+    const int levels = params.GetInt("levels", params.GetInt("nlevels", 3));
+    params.GetString("scheme", "loop");
+    const auto positions = PositionsOf(entity);
+    return SubdivideLoop(positions, TrianglesOf(entity, positions.size()), levels, entity.loc);
+}
+
+bool Mirrors(const Mat4d& m) { return m.topLeftCorner<3, 3>().determinant() < 0; }
+
+// Carries the mesh to its place and drops triangles without area, which no ray can hit and no
+// light can shine from.
+Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
+    const Mat4d& m = entity.worldFromObject;
+    const Mat4d inverse = m.inverse();
+    Mesh mesh;
+    mesh.reverseOrientation = entity.reverseOrientation;
+    mesh.flipNormals = entity.reverseOrientation != Mirrors(m);
+    for (Vec3f& p : data.positions) {
+        p = TransformPoint(m, p);
+        if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
+    }
+    for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
+    mesh.p = std::move(data.positions);
+    mesh.n = std::move(data.normals);
+    mesh.uv = std::move(data.uvs);
+    mesh.triangles = std::move(data.triangles);
+    std::erase_if(mesh.triangles, [&](const auto& v) {
+        const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
+        const float area2 = (p1 - p0).cross(p2 - p0).squaredNorm();
+        if (area2 > 0 && std::isfinite(area2)) return false;
+        warnings.Add(entity.loc, "zero-area triangle left out");
+        return true;
+    });
+    mesh.p.push_back(Vec3f::Zero());  // the accelerator reads past the last vertex
+    return mesh;
+}
+
+QuadricPlacement PlacementOf(const ShapeEntity& entity) {
+    const Mat4d& m = entity.worldFromObject;
+    return {m, m.inverse(), entity.reverseOrientation, entity.reverseOrientation != Mirrors(m)};
+}
+
+float PhiMaxOf(const Parameters& params) {
+    return std::clamp(params.GetFloat("phimax", 360), 0.f, 360.f) * kPi / 180;
+}
+
+Sphere MakeSphere(const ShapeEntity& entity, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    Sphere sphere;
+    sphere.place = PlacementOf(entity);
+    sphere.radius = params.GetFloat("radius", 1);
+    if (!(sphere.radius > 0) || !std::isfinite(sphere.radius))
+        throw Error(entity.loc,
+                    fmt::format("a sphere's radius has to be positive; it is {}", sphere.radius));
+    const float r = sphere.radius;
+    const float z0 = params.GetFloat("zmin", -r), z1 = params.GetFloat("zmax", r);
+    sphere.zMin = std::clamp(std::min(z0, z1), -r, r);
+    sphere.zMax = std::clamp(std::max(z0, z1), -r, r);
+    sphere.phiMax = PhiMaxOf(params);
+    if (!(sphere.Area() > 0))
+        throw Error(entity.loc, "the sphere has no area left by its clipping");
+    const Eigen::Matrix3d linear = entity.worldFromObject.topLeftCorner<3, 3>();
+    const double scale = linear.col(0).norm();
+    if (entity.areaLight &&
+        !(linear.transpose() * linear).isApprox(scale * scale * Eigen::Matrix3d::Identity(), 1e-4))
+        warnings.Add(entity.loc, "spherical light with a scale in its transform",
+                     "it is sampled as if there were none");
+    return sphere;
+}
+
+Disk MakeDisk(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    Disk disk;
+    disk.place = PlacementOf(entity);
+    disk.height = params.GetFloat("height", 0);
+    disk.radius = params.GetFloat("radius", 1);
+    disk.innerRadius = params.GetFloat("innerradius", 0);
+    disk.phiMax = PhiMaxOf(params);
+    if (!(disk.radius > 0) || !(disk.innerRadius >= 0) || !(disk.Area() > 0))
+        throw Error(entity.loc, "the disk has no area; \"radius\" has to be above \"innerradius\"");
+    return disk;
+}
+
+// Reads an alpha parameter, in which only 0 matters: such points are cut out.
+std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeEntity& entity,
+                                      const char* name) {
+    const FloatTexture alpha = textures.GetFloat(entity, name, 1);
+    if (alpha.IsConstant() && alpha.constant != 0) return {};
+    return alpha;
+}
+
+}  // namespace
+
+Shape MakeShape(const Description& description, const ShapeEntity& entity,
+                const TextureTable& textures, bool substitute, Warnings& warnings) {
+    Shape shape;
+    shape.material = entity.material;
+    const Parameters& params = entity.parameters;
+    const auto mesh = [&](MeshData data) {
+        shape.alpha = ReadAlpha(textures, entity, "alpha");
+        shape.shadowAlpha = ReadAlpha(textures, entity, "shadowalpha");
+        shape.geometry = PlaceMesh(std::move(data), entity, warnings);
+    };
+    if (entity.name == "plymesh") {
+        const std::string file = params.GetString("filename", "");
+        if (file.empty()) throw Error(entity.loc, "plymesh needs a \"filename\"");
+        mesh(LoadPly(ResolvePath(description, file), warnings, entity.loc));
+    } else if (entity.name == "trianglemesh") {
+        mesh(TriangleMesh(entity, warnings));
+    } else if (entity.name == "loopsubdiv") {
+        mesh(SubdividedMesh(entity, warnings));
+    } else if (entity.name == "sphere") {
+        shape.geometry = MakeSphere(entity, warnings);
+    } else if (entity.name == "disk") {
+        shape.geometry = MakeDisk(entity);
+    } else {
+        const std::string message = fmt::format(
+            "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, sphere and disk are",
+            entity.name);
+        if (!substitute) throw Error(entity.loc, message);
+        warnings.Add(entity.loc, message + "; it is left out");
+        shape.geometry = Mesh{};
+        return shape;
+    }
+    params.ReportUnused("Shape \"" + entity.name + "\"", warnings);
+    return shape;
+}
+
+}  // namespace lull

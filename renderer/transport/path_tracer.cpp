@@ -1,0 +1,205 @@
+#include "renderer/transport/path_tracer.h"
+
+#include "renderer/base/color.h"
+#include "renderer/base/sampling.h"
+
+namespace lull {
+namespace {
+
+// Carries the state of a path from one vertex to the next.
+struct Path {
+    Ray ray;
+    Rgb beta = Rgb::Ones();  // product of f cos / pdf so far
+    float etaScale = 1;      // undoes the radiance scaling of refractions for Russian roulette
+    bool seesLights = true;  // emission counts in full: camera ray, or after a specular bounce
+    // Of the BSDF sample that made `ray`, for Estimator::Combined:
+    float pdf = 0;                           // 1/sr
+    Vec3f origin = Vec3f::Zero();            // the vertex
+    const Distribution1D* choice = nullptr;  // of lights there
+};
+
+// Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
+// the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon).
+bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSample& light) {
+    const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.p - hit.p);
+    const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
+    return !scene.accelerator.Occluded({origin, target - origin, 1 - 0.0001f});
+}
+
+// Returns the light that sampling light `index` brings to the hit, weighted against BSDF sampling.
+// `pmf` is the probability of having chosen the light.
+Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteraction& hit,
+                const Bsdf& bsdf, int index, float pmf, const Vec2f& u) {
+    const auto light = scene.lights.Sample(index, scene.shapes, hit.p, u);
+    if (!light || IsBlack(light->L)) return Rgb::Zero();
+    // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
+    // continues the path is sampled from all of them. A light that rays cannot hit keeps
+    // pbrt-v3's weight in both, so that the mean stays the same.
+    const bool hasOwnRay = estimator == Estimator::PbrtV3 || light->isHidden;
+    const BsdfValue value =
+        bsdf.Evaluate(hit.wo, light->wi, hasOwnRay ? LobeSet::NonSpecular : LobeSet::All);
+    if (IsBlack(value.f)) return Rgb::Zero();
+    const float weight =
+        light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
+    const Rgb L =
+        value.f * light->L * (std::abs(light->wi.dot(hit.ns)) * weight / (light->pdf * pmf));
+    if (IsBlack(L) || !IsVisible(scene, hit, *light)) return Rgb::Zero();
+    return L;
+}
+
+// Returns the light that a BSDF sample of its own finds on light `index`: the other half of
+// pbrt-v3's direct light.
+Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
+                       int index, float pmf, const Vec2f& u) {
+    const Light& light = scene.lights[index];
+    const AreaLight* area = std::get_if<AreaLight>(&light);
+    const InfiniteLight* environment = std::get_if<InfiniteLight>(&light);
+    if (!area && !environment) return Rgb::Zero();  // a direction cannot be found by chance
+    if (area && area->isHidden) return Rgb::Zero();
+    const auto sample = bsdf.Sample(hit.wo, u, LobeSet::NonSpecular);
+    if (!sample) return Rgb::Zero();
+    const Ray ray = hit.SpawnRay(sample->wi);
+    Rgb L;
+    float lightPdf;
+    if (environment) {
+        lightPdf = environment->Pdf(sample->wi);
+        if (lightPdf == 0 || scene.accelerator.Occluded(ray)) return Rgb::Zero();
+        L = environment->Le(sample->wi);
+    } else {
+        Hit lightHit;
+        if (!scene.accelerator.Intersect(ray, &lightHit) || lightHit.shape != area->shape ||
+            lightHit.primitive != area->primitive || lightHit.instance >= 0)
+            return Rgb::Zero();
+        SurfaceInteraction at;
+        scene.shapes.Interact(ray, lightHit, kNeedsNothing, &at);
+        L = area->Le(at.n, -sample->wi);
+        lightPdf = scene.shapes.Pdf(area->shape, area->primitive, hit.p, at.p, at.n);
+        if (lightPdf == 0) return Rgb::Zero();
+    }
+    return sample->f * L *
+           (std::abs(sample->wi.dot(hit.ns)) * PowerHeuristic(sample->pdf, lightPdf) /
+            (sample->pdf * pmf));
+}
+
+// Samples direct light as the estimator says: chooses one light of the table `choice`.
+Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
+                      const SurfaceInteraction& hit, const Bsdf& bsdf,
+                      const Distribution1D& choice) {
+    float pmf;
+    const int index = choice.SampleDiscrete(sampler.Get1D(), &pmf);
+    if (!(pmf > 0)) return Rgb::Zero();
+    Rgb L = SampleLight(scene, estimator, hit, bsdf, index, pmf, sampler.Get2D());
+    if (estimator == Estimator::PbrtV3)
+        L += SampleBsdfForLight(scene, hit, bsdf, index, pmf, sampler.Get2D());
+    return L;
+}
+
+// Returns the weight of emission that the path's own ray has found on light `index`, where light
+// sampling at the last vertex would have found it with density `lightPdf`.
+float EmissionWeight(Estimator estimator, const Path& path, int index, float lightPdf) {
+    if (path.seesLights) return 1;
+    if (estimator == Estimator::PbrtV3) return 0;  // counted at the last vertex
+    return PowerHeuristic(path.pdf, lightPdf * path.choice->Pmf(index));
+}
+
+// Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
+// scene.
+Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
+             const SurfaceInteraction* hit) {
+    if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
+    Rgb sum = Rgb::Zero();
+    if (!hit) {
+        for (const int i : scene.lights.Infinite()) {
+            const auto& light = std::get<InfiniteLight>(scene.lights[i]);
+            const float pdf = path.seesLights ? 0 : light.Pdf(path.ray.d);
+            sum += light.Le(path.ray.d) * EmissionWeight(estimator, path, i, pdf);
+        }
+    } else if (hit->areaLight >= 0) {
+        const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
+        const Rgb L = light.Le(hit->n, hit->wo);
+        if (IsBlack(L)) return sum;
+        const float pdf = path.seesLights ? 0
+                                          : scene.shapes.Pdf(light.shape, light.primitive,
+                                                             path.origin, hit->p, hit->n);
+        sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
+    }
+    return sum;
+}
+
+// Continues the path with a BSDF sample. Returns false where it ends.
+bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path) {
+    const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
+    if (!sample) return false;
+    path->beta *= sample->f * (std::abs(sample->wi.dot(hit.ns)) / sample->pdf);
+    path->seesLights = sample->isSpecular;
+    path->pdf = sample->pdf;
+    path->origin = hit.p;
+    if (sample->isSpecular && sample->isTransmission) {
+        const float eta2 = Sqr(bsdf.Eta());
+        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+    }
+    path->ray = hit.SpawnRay(sample->wi);
+    return true;
+}
+
+// Ends dim paths at random and makes up for it in the others. Returns false where it ends.
+bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
+    const float brightest = path->beta.maxCoeff() * path->etaScale;
+    if (brightest >= threshold) return true;
+    const float q = std::max(0.05f, 1 - brightest);
+    if (sampler.Get1D() < q) return false;
+    path->beta /= 1 - q;
+    return true;
+}
+
+}  // namespace
+
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& cameraRay) {
+    Rgb L = Rgb::Zero();
+    Path path{.ray = cameraRay};
+    for (int bounces = 0;; ++bounces) {
+        // Stop where the ray could only add emission that has been counted or cannot be found.
+        const bool isLast = bounces >= scene.maxDepth;
+        const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
+        if (isLast && !(emissionCounts && scene.lights.AnyVisible())) break;
+
+        // Find the next vertex and add what it emits.
+        Hit found;
+        if (!scene.accelerator.Intersect(path.ray, &found)) {
+            L += path.beta * Emission(scene, estimator, path, nullptr);
+            break;
+        }
+        const Shape& shape = scene.shapes.shapes[found.shape];
+        if (isLast && shape.firstLight < 0) break;
+        SurfaceInteraction hit;
+        scene.shapes.Interact(path.ray, found, scene.materials.Needs(shape.material), &hit);
+        if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
+        if (isLast) break;
+
+        // Sample the light that arrives directly from lights.
+        const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+        if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
+            path.choice = &scene.lights.Distribution(scene.shapes, hit.p);
+            L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, *path.choice);
+        }
+
+        if (!Scatter(bsdf, hit, sampler, &path)) break;
+        if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
+    }
+    return L;
+}
+
+PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
+                        const Vec2i& pixel, uint32_t index) {
+    sampler.StartSample(pixel, index);
+    const FilterSample filter = scene.filter.Sample(sampler.Get2D());
+    const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
+    const Vec2f lens = scene.camera.lensRadius > 0 ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
+    Rgb L = Radiance(scene, estimator, sampler, scene.camera.GenerateRay(film, lens));
+    const float luminance = Luminance(L);
+    if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
+    if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
+    return {L * (filter.weight * scene.film.scale), false};
+}
+
+}  // namespace lull
