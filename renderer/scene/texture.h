@@ -27,15 +27,16 @@ struct TextureHandle {
 using FloatTexture = TextureHandle<float>;
 using SpectrumTexture = TextureHandle<Rgb>;
 
-struct FloatTextureNode;  // one variant of all kinds each, in texture.cpp
+struct FloatTextureNode;  // a variant of all kinds each, in texture.cpp
 struct SpectrumTextureNode;
 
 // Owns the textures and images of a scene. Immutable once made; evaluation is thread-safe.
 class TextureTable {
   public:
-    // Makes every texture of the description. Throws Error naming file and line for an unknown
-    // kind or an unreadable image; with `substitute`, an unknown kind becomes a constant 1 with a
-    // counted warning, as pbrt-v3 goes on without it.
+    // Makes every texture of the description; warns of parameters without effect. Throws Error
+    // naming file and line for a kind that is not modelled or an unreadable image. With
+    // `substitute` these are counted warnings, and the former becomes constant 1, the latter
+    // pbrt-v3's grey.
     TextureTable(const Description&, bool substitute, Warnings&);
     TextureTable();  // empty
     ~TextureTable();
@@ -50,10 +51,10 @@ class TextureTable {
     std::optional<FloatTexture> GetFloatOrNone(const Entity&, const std::string& name) const;
 
     float Evaluate(const FloatTexture& t, const TextureContext& c) const {
-        return t.IsConstant() ? t.constant : EvaluateNode(floats, t.index, c);
+        return t.IsConstant() ? t.constant : EvaluateFloat(t.index, c);
     }
     Rgb Evaluate(const SpectrumTexture& t, const TextureContext& c) const {
-        return t.IsConstant() ? t.constant : EvaluateNode(spectra, t.index, c);
+        return t.IsConstant() ? t.constant : EvaluateSpectrum(t.index, c);
     }
 
     // Says whether a texture reads uv (else only p, or nothing); materials ask for uv only then.
@@ -61,14 +62,18 @@ class TextureTable {
     bool ReadsUv(const SpectrumTexture&) const;
 
     // Returns the memory taken by images, in bytes.
-    size_t Bytes() const;
+    size_t Bytes() const { return imageBytes; }
 
   private:
-    float EvaluateNode(const std::vector<FloatTextureNode>&, int, const TextureContext&) const;
-    Rgb EvaluateNode(const std::vector<SpectrumTextureNode>&, int, const TextureContext&) const;
+    float EvaluateFloat(int index, const TextureContext&) const;
+    Rgb EvaluateSpectrum(int index, const TextureContext&) const;
 
     std::vector<FloatTextureNode> floats;
     std::vector<SpectrumTextureNode> spectra;
+    // What each texture of the description became, by its place there.
+    std::vector<FloatTexture> madeFloats;
+    std::vector<SpectrumTexture> madeSpectra;
+    size_t imageBytes = 0;
 };
 
 }  // namespace lull

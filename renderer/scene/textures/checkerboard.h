@@ -1,0 +1,49 @@
+// Alternates between two textures, square by square or cube by cube.
+#pragma once
+
+#include "renderer/scene/textures/mapping.h"
+
+namespace lull {
+
+// Without differentials pbrt-v3's "closedform" antialiasing takes one point as well, so that
+// there is one kind for both values of "aamode".
+template <typename T>
+struct Checkerboard {
+    std::variant<Mapping2D, Mapping3D> mapping;  // as "dimension" says
+    TextureHandle<T> tex1, tex2;
+};
+
+// Says whether floor(x) is odd; stays in float, since x may be beyond every integer type.
+inline bool IsOdd(float x) {
+    const float lower = std::floor(x);
+    return lower - 2 * std::floor(lower * 0.5f) != 0;
+}
+
+inline bool IsSecondColor(const Mapping2D& mapping, const TextureContext& c) {
+    const Vec2f st = Map(mapping, c);
+    return IsOdd(st.x()) != IsOdd(st.y());
+}
+
+inline bool IsSecondColor(const Mapping3D& mapping, const TextureContext& c) {
+    const Vec3f p = Map(mapping, c);
+    return (IsOdd(p.x()) != IsOdd(p.y())) != IsOdd(p.z());
+}
+
+template <typename T>
+T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const TextureContext& c) {
+    const bool second =
+        std::visit([&](const auto& mapping) { return IsSecondColor(mapping, c); }, board.mapping);
+    return table.Evaluate(second ? board.tex2 : board.tex1, c);
+}
+
+template <typename T>
+bool ReadsUv(const Checkerboard<T>& board, const TextureTable& table) {
+    const auto* mapping = std::get_if<Mapping2D>(&board.mapping);
+    return (mapping && ReadsUv(*mapping)) || table.ReadsUv(board.tex1) || table.ReadsUv(board.tex2);
+}
+
+// Throws Error for a dimension other than 2 and 3; with `substitute` that becomes constant 1.
+template <typename T>
+Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input);
+
+}  // namespace lull

@@ -1,0 +1,73 @@
+#include "renderer/scene/textures/imagemap.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "renderer/base/color.h"
+
+namespace lull {
+
+namespace {
+
+// Says whether a file of that name holds sRGB unless told otherwise. pbrt-v3 knows .png and .tga;
+// the others it cannot read, and they are of the same nature.
+bool IsEncodedByDefault(const std::string& filename) {
+    std::string extension = std::filesystem::path(filename).extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    for (const char* encoded : {".png", ".tga", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"})
+        if (extension == encoded) return true;
+    return false;
+}
+
+Wrap GetWrap(const TextureInput& input) {
+    const std::string wrap = input.entity.parameters.GetString("wrap", "repeat");
+    if (wrap == "black") return Wrap::Black;
+    if (wrap == "clamp") return Wrap::Clamp;
+    if (wrap != "repeat")
+        input.warnings.Add(input.entity.loc, "unknown wrap mode replaced by repeat", wrap);
+    return Wrap::Repeat;
+}
+
+template <typename T>
+T FromRgb(const Rgb& c) {
+    if constexpr (std::is_same_v<T, float>)
+        return c.x();
+    else
+        return c;
+}
+
+}  // namespace
+
+template <typename T>
+Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
+    const TextureEntity& entity = input.entity;
+    const Parameters& parameters = entity.parameters;
+    const std::string filename = parameters.GetString("filename", "");
+    const bool gamma = parameters.GetBool("gamma", IsEncodedByDefault(filename));
+    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), GetWrap(input)};
+    parameters.GetBool("trilinear", false);
+    parameters.GetFloat("maxanisotropy", 8);
+
+    try {
+        if (filename.empty()) throw Error("imagemap without \"string filename\"");
+        map.image = input.images.Get(ResolvePath(input.description, filename), gamma,
+                                     std::is_same_v<T, float>);
+    } catch (const Error& error) {
+        const std::string what =
+            fmt::format("texture \"{}\": {}", entity.textureName, error.what());
+        if (!input.substitute) throw Error(entity.loc, what);
+        input.warnings.Add(entity.loc, "unreadable image replaced by grey", what);
+        const float grey = map.scale * (gamma ? LinearFromSrgb(0.5f) : 0.5f);
+        return ConstantTexture<T>(grey);
+    }
+
+    if (map.image->uniform && map.wrap != Wrap::Black)
+        return TextureHandle<T>{FromRgb<T>(map.scale * *map.image->uniform)};
+    return map;
+}
+
+template Made<float, ImageMap<float>> MakeImageMap(const TextureInput&);
+template Made<Rgb, ImageMap<Rgb>> MakeImageMap(const TextureInput&);
+
+}  // namespace lull

@@ -1,0 +1,53 @@
+// Looks up image files.
+#pragma once
+
+#include "renderer/scene/image_lookup.h"
+#include "renderer/scene/textures/mapping.h"
+#include "renderer/scene/textures/texture_image.h"
+
+namespace lull {
+
+template <typename T>
+struct ImageMap {
+    Mapping2D mapping;
+    std::shared_ptr<const TextureImage> image;  // never null; grey where T is float
+    float scale;
+    Wrap wrap;
+};
+
+template <typename T>
+T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c) {
+    const TextureImage& image = *map.image;
+    const Footprint f = BilinearFootprint(Map(map.mapping, c), image.width, image.height, map.wrap);
+    const auto blend = [&](const auto& texels) -> T {
+        using Stored = typename std::decay_t<decltype(texels.values)>::value_type;
+        constexpr int channels = std::decay_t<decltype(texels)>::kChannels;
+        const auto decode = [&](Stored v) {
+            if constexpr (std::is_same_v<Stored, uint8_t>)
+                return image.decode[v];
+            else
+                return float(v);
+        };
+        if constexpr (channels == 1 && std::is_same_v<T, Rgb>)
+            return Rgb::Constant(Blend<1>(texels.values.data(), 1, image.width, f, decode));
+        else if constexpr (channels == 1 || std::is_same_v<T, Rgb>)
+            return Blend<channels>(texels.values.data(), channels, image.width, f, decode);
+        else
+            return 0;  // float textures have grey images
+    };
+    return map.scale * std::visit(blend, image.texels);
+}
+
+template <typename T>
+bool ReadsUv(const ImageMap<T>& map, const TextureTable&) {
+    return ReadsUv(map.mapping);
+}
+
+// Reads "filename", "gamma" (the file is sRGB-encoded; without it: as its extension suggests),
+// "scale" (after linearisation), "wrap" and the mapping. "trilinear" and "maxanisotropy" have no
+// effect: there are no coarser levels. Throws Error with file and line if the image cannot be
+// read; with `substitute` that becomes pbrt-v3's grey.
+template <typename T>
+Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input);
+
+}  // namespace lull

@@ -1,0 +1,66 @@
+// Maps points of surfaces to the coordinates that textures are defined in.
+#pragma once
+
+#include <variant>
+
+#include "renderer/scene/textures/texture_input.h"
+
+namespace lull {
+
+struct UvMapping {
+    Vec2f scale{1, 1}, offset{0, 0};
+};
+
+// Gives (theta / pi, phi / 2 pi) of the direction from the texture's origin.
+struct SphericalMapping {
+    Eigen::Matrix4f textureFromWorld;
+};
+
+// Gives (phi / 2 pi + 1/2, z) of the *unit* direction from the texture's origin, as pbrt-v3 does.
+struct CylindricalMapping {
+    Eigen::Matrix4f textureFromWorld;
+};
+
+// Projects the world-space point.
+struct PlanarMapping {
+    Vec3f vs, vt;
+    Vec2f offset;
+};
+
+using Mapping2D = std::variant<UvMapping, SphericalMapping, CylindricalMapping, PlanarMapping>;
+
+// Reads "mapping" and its parameters; pbrt-v3's defaults. Throws Error for an unknown mapping;
+// with `substitute` that becomes the plain uv mapping.
+Mapping2D MakeMapping2D(const TextureInput& input);
+
+inline bool ReadsUv(const Mapping2D& mapping) { return std::holds_alternative<UvMapping>(mapping); }
+
+Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p);  // all mappings but uv
+
+inline Vec2f Map(const Mapping2D& mapping, const TextureContext& c) {
+    if (const auto* uv = std::get_if<UvMapping>(&mapping))
+        return uv->scale.cwiseProduct(c.uv) + uv->offset;
+    return MapByPosition(mapping, c.p);
+}
+
+// Maps world space to the space of solid textures. pbrt-v3 applies the current transformation
+// matrix itself here, not its inverse ("Scale 10 10 10" makes a pattern ten times *finer*), and
+// scenes are tuned to that.
+struct Mapping3D {
+    Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
+};
+
+inline Mapping3D MakeMapping3D(const TextureInput& input) {
+    return {input.entity.worldFromTexture.cast<float>()};
+}
+
+inline Vec3f TransformPoint(const Eigen::Matrix4f& m, const Vec3f& p) {
+    const Eigen::Vector4f q = m * p.homogeneous();
+    return q.head<3>() / q.w();
+}
+
+inline Vec3f Map(const Mapping3D& mapping, const TextureContext& c) {
+    return TransformPoint(mapping.matrix, c.p);
+}
+
+}  // namespace lull

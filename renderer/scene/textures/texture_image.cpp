@@ -1,0 +1,120 @@
+#include "renderer/scene/textures/texture_image.h"
+
+#include <algorithm>
+#include <set>
+
+#include "renderer/base/color.h"
+#include "renderer/output/image_io.h"
+
+namespace lull {
+
+namespace {
+
+// Returns what a stored value stands for before any linearisation.
+float Encoded(uint8_t v) { return float(v) / 255; }
+float Encoded(Half v) { return float(v); }
+float Encoded(float v) { return v; }
+
+template <typename T>
+bool AllGrey(const std::vector<T>& texels, int channels) {
+    for (size_t i = 0; i < texels.size(); i += size_t(channels))
+        if (!(texels[i] == texels[i + 1] && texels[i] == texels[i + 2])) return false;
+    return true;
+}
+
+// Maps every pixel of an image, its rows in reverse order; `convert` reads a pixel and writes one.
+template <typename Out, int Count, typename T, typename Convert>
+Texels<Out, Count> Flip(const Image& image, const std::vector<T>& texels, const Convert& convert) {
+    Texels<Out, Count> out;
+    out.values.resize(size_t(image.width) * size_t(image.height) * Count);
+    Out* to = out.values.data();
+    for (int y = image.height - 1; y >= 0; --y) {
+        const T* from = texels.data() + size_t(y) * size_t(image.width) * size_t(image.channels);
+        for (int x = 0; x < image.width; ++x, from += image.channels, to += Count)
+            convert(from, to);
+    }
+    return out;
+}
+
+template <typename T, int Count>
+std::optional<Rgb> FindUniform(const Texels<T, Count>& texels,
+                               const std::array<float, 256>& decode) {
+    const auto& v = texels.values;
+    for (size_t i = Count; i < v.size(); ++i)
+        if (!(v[i] == v[i - Count])) return std::nullopt;
+    const auto value = [&](int c) {
+        if constexpr (std::is_same_v<T, uint8_t>)
+            return decode[v[size_t(c)]];
+        else
+            return float(v[size_t(c)]);
+    };
+    return Rgb(value(0), value(Count > 1 ? 1 : 0), value(Count > 1 ? 2 : 0));
+}
+
+}  // namespace
+
+size_t TextureImage::Bytes() const {
+    return std::visit([](const auto& t) { return t.values.size() * sizeof(t.values[0]); }, texels);
+}
+
+bool TextureImage::IsGrey() const {
+    return std::visit([](const auto& t) { return t.kChannels == 1; }, texels);
+}
+
+TextureImage MakeTextureImage(const Image& image, bool gamma, bool luminance) {
+    const auto linear = [gamma](float v) { return gamma ? LinearFromSrgb(v) : v; };
+    TextureImage result;
+    result.width = image.width;
+    result.height = image.height;
+    for (int i = 0; i < 256; ++i) result.decode[size_t(i)] = linear(Encoded(uint8_t(i)));
+
+    const auto convert = [&](const auto& texels) {
+        using T = typename std::decay_t<decltype(texels)>::value_type;
+        const bool keep = std::is_same_v<T, uint8_t> || !gamma;
+        if (image.channels < 3 || AllGrey(texels, image.channels)) {
+            if (keep)
+                result.texels =
+                    Flip<T, 1>(image, texels, [](const T* from, T* to) { *to = *from; });
+            else
+                result.texels = Flip<float, 1>(
+                    image, texels, [&](const T* from, float* to) { *to = linear(Encoded(*from)); });
+        } else if (luminance) {
+            result.texels = Flip<float, 1>(image, texels, [&](const T* from, float* to) {
+                *to = linear(Luminance(Rgb(Encoded(from[0]), Encoded(from[1]), Encoded(from[2]))));
+            });
+        } else if (keep) {
+            result.texels =
+                Flip<T, 3>(image, texels, [](const T* from, T* to) { std::copy_n(from, 3, to); });
+        } else {
+            result.texels = Flip<float, 3>(image, texels, [&](const T* from, float* to) {
+                for (int c = 0; c < 3; ++c) to[c] = linear(Encoded(from[c]));
+            });
+        }
+    };
+    std::visit(convert, image.texels);
+    result.uniform =
+        std::visit([&](const auto& t) { return FindUniform(t, result.decode); }, result.texels);
+    return result;
+}
+
+std::shared_ptr<const TextureImage> TextureImages::Get(const std::string& path, bool gamma,
+                                                       bool luminance) {
+    const auto found = images.find({path, gamma, luminance});
+    if (found != images.end()) return found->second;
+    auto image =
+        std::make_shared<const TextureImage>(MakeTextureImage(ReadImage(path), gamma, luminance));
+    images[{path, gamma, luminance}] = image;
+    // A grey file serves float and spectrum textures alike.
+    if (!luminance && image->IsGrey()) images[{path, gamma, true}] = image;
+    return image;
+}
+
+size_t TextureImages::Bytes() const {
+    std::set<const TextureImage*> counted;
+    size_t bytes = 0;
+    for (const auto& [key, image] : images)
+        if (counted.insert(image.get()).second) bytes += image->Bytes();
+    return bytes;
+}
+
+}  // namespace lull

@@ -1,0 +1,55 @@
+// Holds the images of imagemap textures, one for all textures that read the same file.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "renderer/output/image.h"
+
+namespace lull {
+
+template <typename T, int Count>
+struct Texels {
+    static constexpr int kChannels = Count;
+    std::vector<T> values;  // rows from the bottom, channels interleaved
+};
+
+// Holds an image ready for look-ups. The first row is the lowest, since texture space has (0, 0)
+// at the lower left. pbrt-v3 resamples images to powers of two first; here they stay as they are,
+// and so do their texels: 8-bit ones go through a table, half ones through the processor's
+// conversion. Only half and float texels that have to be linearised are converted beforehand.
+struct TextureImage {
+    int width = 0, height = 0;
+    std::variant<Texels<uint8_t, 1>, Texels<uint8_t, 3>, Texels<Half, 1>, Texels<Half, 3>,
+                 Texels<float, 1>, Texels<float, 3>>
+        texels;
+    std::array<float, 256> decode{};  // 8-bit texel to linear
+    std::optional<Rgb> uniform;       // the value of all texels, where it is one
+
+    size_t Bytes() const;
+    bool IsGrey() const;
+};
+
+// Makes a TextureImage of an image as read. `gamma` says that texels are sRGB-encoded.
+// `luminance` asks for one channel: grey images as they are, others by their luminance. As in
+// pbrt-v3 that is the luminance of the *encoded* colours, linearised afterwards.
+TextureImage MakeTextureImage(const Image& image, bool gamma, bool luminance);
+
+// Shares images between textures.
+class TextureImages {
+  public:
+    // Reads `path` unless it is here already. Throws Error as ReadImage does.
+    std::shared_ptr<const TextureImage> Get(const std::string& path, bool gamma, bool luminance);
+
+    size_t Bytes() const;
+
+  private:
+    std::map<std::tuple<std::string, bool, bool>, std::shared_ptr<const TextureImage>> images;
+};
+
+}  // namespace lull
