@@ -43,7 +43,8 @@ class Executor {
           options(options),
           film(film),
           schedule(film->Region(), options.schedule),
-          results(schedule.Blocks().size()) {}
+          results(schedule.Blocks().size()),
+          criteria(MakeCriteria()) {}
 
     RenderResult Run() {
         Spawn(schedule.ReadyTiles());
@@ -92,21 +93,45 @@ class Executor {
         return schedule.ReadyTiles() - readyBefore;
     }
 
+    std::vector<std::unique_ptr<Criterion>> MakeCriteria() const {
+        const std::span<const Block> blocks = schedule.Blocks();
+        std::vector<std::unique_ptr<Criterion>> made(blocks.size());
+        if (!options.makeCriterion) return made;
+        const double imageArea = double(film->Region().Area());
+        for (size_t i = 0; i < blocks.size(); ++i)
+            if (blocks[i].votes)
+                made[i] = options.makeCriterion(
+                    {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
+        return made;
+    }
+
+    // Nobody else touches a block between the end of its pass and the decision.
     bool AskCriterion(int i) {
-        // Nobody changes a block between the end of its pass and the decision.
-        const Block& block = schedule.Blocks()[i];
-        if (!block.votes || !options.shouldStop) return false;
+        if (!criteria[i]) return false;
         const Clock::time_point start = Clock::now();
-        bool stop = false;
+        Decision decision;
         // Isolation keeps a criterion that waits for tasks of its own from running a tile here,
         // which would fill the same view.
-        tbb::this_task_arena::isolate([&] {
-            FilmView& view = views.local();
-            film->Extract(block.pixels, &view);
-            stop = options.shouldStop(i, block.spp, view);
-        });
+        tbb::this_task_arena::isolate([&] { decision = Observe(i); });
+        const Block& block = schedule.Blocks()[i];
+        if (decision.judged) results[i].decisions.push_back({block.spp, decision});
         results[i].criterionSeconds += SecondsSince(start);
-        return stop;
+        return decision.stop;
+    }
+
+    Decision Observe(int i) {
+        const Block& block = schedule.Blocks()[i];
+        BlockView blockView;
+        blockView.width = block.pixels.Width();
+        blockView.height = block.pixels.Height();
+        blockView.spp = block.spp;
+        if (const ViewNeed need = criteria[i]->Need(block.spp); need != ViewNeed::Nothing) {
+            FilmView& view = views.local();
+            film->Extract(block.pixels, need == ViewNeed::MeanAndHalf, &view);
+            blockView.mean = view.mean;
+            blockView.halfMean = view.halfMean;
+        }
+        return criteria[i]->Observe(blockView);
     }
 
     void ReportProgress() {
@@ -136,6 +161,7 @@ class Executor {
     std::mutex mutex;  // guards the schedule, `samples` and the tiles' seconds in `results`
     Schedule schedule;
     std::vector<BlockResult> results;
+    std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     int64_t samples = 0;
 
     std::mutex progressMutex;  // guards `nextProgress`, and lets one thread report at a time

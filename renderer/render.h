@@ -5,6 +5,7 @@
 
 #include "renderer/schedule.h"
 #include "renderer/transport/path_tracer.h"
+#include "stopping/criterion.h"
 
 namespace lull {
 
@@ -22,9 +23,8 @@ struct RenderOptions {
     uint64_t seed = 0;
     int threads = 0;  // 0: all
 
-    // Says whether `block` stops at `spp`; called after each pass of a block that votes, by one
-    // thread at a time for the same block, by several for different blocks. Empty: never.
-    std::function<bool(int block, int spp, const FilmView&)> shouldStop;
+    // Makes each block's own stopping criterion; empty: all go on to the cap.
+    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
     // Is told how far things are, by one thread at a time, about every `progressInterval` seconds
     // and at the end. Can be empty.
     std::function<void(const RenderProgress&)> onProgress;
@@ -33,10 +33,17 @@ struct RenderOptions {
     std::function<bool()> isCancelled;
 };
 
+// Records what a criterion said of a block.
+struct DecisionRecord {
+    int spp;
+    Decision decision;
+};
+
 struct BlockResult {
     Block block;
-    double seconds = 0;           // of threads spent on its samples
+    double seconds = 0;           // of threads, spent on its samples
     double criterionSeconds = 0;  // spent on its criterion, the view of the pixels included
+    std::vector<DecisionRecord> decisions;  // those for which the block was looked at
 };
 
 struct RenderResult {
@@ -50,7 +57,7 @@ using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint
 
 // Renders the film's region, which must be without samples. The pixels are the same bits for any
 // number of threads and, at equal samples per pixel, for any size of blocks and length of passes.
-// Passes on what the callbacks throw.
+// Passes on what criteria and callbacks throw.
 RenderResult Render(const SampleSource&, const RenderOptions&, Film*);
 
 // Returns the scene as a source of samples; it must outlive the source.

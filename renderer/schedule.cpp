@@ -1,27 +1,12 @@
 #include "renderer/schedule.h"
 
+#include "stopping/small_blocks.h"
+
 namespace lull {
 
 namespace {
 
 int CeilDiv(int a, int b) { return (a + b - 1) / b; }
-
-bool IsSmall(const Block& block, int smallestSide) {
-    return std::min(block.pixels.Width(), block.pixels.Height()) < smallestSide;
-}
-
-// Returns the largest of the blocks around block (column, row), the first of equals.
-int LargestNeighbour(const std::vector<Block>& blocks, int columns, int column, int row) {
-    const int rows = int(blocks.size()) / columns;
-    int best = -1;
-    for (int y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
-        for (int x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x) {
-            const int i = y * columns + x;
-            if (x == column && y == row) continue;
-            if (best < 0 || blocks[i].pixels.Area() > blocks[best].pixels.Area()) best = i;
-        }
-    return best;
-}
 
 }  // namespace
 
@@ -34,15 +19,14 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
                                          {std::min(x + size, region.max.x()),
                                           std::min(y + size, region.max.y())}}});
 
-    // Let each small block follow its largest neighbour; where that is small as well there is no
-    // block that could vote, and it goes on to the cap by itself.
-    const int columns = CeilDiv(region.Width(), size);
+    std::vector<BlockSize> sizes;
+    for (const Block& block : blocks)
+        sizes.push_back({block.pixels.Width(), block.pixels.Height()});
+    const std::vector<int> leaders =
+        BlockLeaders(std::max(1, CeilDiv(region.Width(), size)), sizes, options.smallestSide);
     for (int i = 0; i < int(blocks.size()); ++i) {
-        blocks[i].votes = !IsSmall(blocks[i], options.smallestSide);
-        if (blocks[i].votes) continue;
-        const int neighbour = LargestNeighbour(blocks, columns, i % columns, i / columns);
-        if (neighbour >= 0 && !IsSmall(blocks[neighbour], options.smallestSide))
-            blocks[i].leader = neighbour;
+        blocks[i].votes = leaders[i] == i;
+        blocks[i].leader = blocks[i].votes ? -1 : leaders[i];
     }
     return blocks;
 }
@@ -94,7 +78,7 @@ void Schedule::Decide(int i, bool stop) {
 
     stop &= block.votes;
     if (stop || block.spp >= options.cap)
-        Stop(i, stop && block.spp < options.cap);
+        Stop(i, stop);
     else
         StartPass(i, std::min(block.spp + options.passLength, options.cap));
     for (int follower = 0; follower < int(blocks.size()); ++follower)

@@ -16,16 +16,16 @@ struct ScheduleOptions {
     int passLength = 20;   // samples per pixel and pass, > 0
     int cap = 10000;       // samples per pixel that no block exceeds, > 0
     int tileSize = 16;     // pixels a side of the pieces that threads take, > 0
-    int smallestSide = 0;  // blocks with a shorter side do not vote, but follow a neighbour
+    int smallestSide = 0;  // blocks with a shorter side follow a neighbour (small_blocks.h)
 };
 
 struct Block {
     PixelRect pixels;
     int spp = 0;                 // samples per pixel of all finished passes
     bool votes = true;           // false: too small for its criterion to be asked
-    int leader = -1;             // of a block that does not vote: the one it stops with
+    int leader = -1;             // of a block that does not vote: the one it stops with, if any
     bool stopped = false;        // takes no more samples
-    bool stoppedByVote = false;  // stopped before the cap, by its own vote or its leader's
+    bool stoppedByVote = false;  // stopped by its own vote or its leader's, not by the cap
 };
 
 // Holds a piece of a block's pass: `count` samples from `first` on for each of the pixels.

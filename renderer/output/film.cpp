@@ -28,17 +28,17 @@ Rgb FilmPixel::HalfMean() const {
     return half > 0 ? Divide(halfSum, half) : Mean();
 }
 
-void Film::Extract(const PixelRect& rect, FilmView* view) const {
+void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
     view->width = rect.Width();
     view->height = rect.Height();
     view->mean.resize(size_t(rect.Area()) * 3);
-    view->halfMean.resize(size_t(rect.Area()) * 3);
+    view->halfMean.resize(withHalf ? size_t(rect.Area()) * 3 : 0);
     size_t at = 0;
     for (int y = rect.min.y(); y < rect.max.y(); ++y)
         for (int x = rect.min.x(); x < rect.max.x(); ++x, at += 3) {
             const FilmPixel& p = At({x, y});
             Store(p.Mean(), &view->mean[at]);
-            Store(p.HalfMean(), &view->halfMean[at]);
+            if (withHalf) Store(p.HalfMean(), &view->halfMean[at]);
         }
 }
 

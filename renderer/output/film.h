@@ -71,8 +71,9 @@ class Film {
     std::span<const FilmPixel> Pixels() const { return pixels; }
     std::span<FilmPixel> Pixels() { return pixels; }
 
-    // Fills `view` with the means of `rect`, which lies inside Region().
-    void Extract(const PixelRect& rect, FilmView* view) const;
+    // Fills `view` with the means of `rect`, which lies inside Region(); `halfMean` is left empty
+    // where it is not wanted.
+    void Extract(const PixelRect& rect, bool withHalf, FilmView* view) const;
 
     // Return the whole image (row-major RGB) and the samples each pixel had.
     std::vector<float> MeanImage() const;
