@@ -1,0 +1,13 @@
+// Unpacks gzip'd files.
+#pragma once
+
+#include "renderer/base/error.h"
+#include "renderer/input/file_contents.h"
+
+namespace lull {
+
+// Returns `contents` unpacked if they are gzip'd, as they are otherwise. Throws Error at `loc` if
+// they are damaged, or unpack to more than any mesh would.
+FileContents Inflated(FileContents contents, const FileLoc& loc);
+
+}  // namespace lull

@@ -1,0 +1,47 @@
+// Reads the headers of PLY files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+enum class PlyFormat { Ascii, LittleEndian, BigEndian };
+
+enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+
+// Returns the bytes of a value in binary files.
+inline int PlyTypeSize(PlyType type) {
+    constexpr int kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[int(type)];
+}
+
+struct PlyProperty {
+    std::string name;
+    PlyType type;
+    bool isList = false;
+    PlyType countType = PlyType::Uint8;  // of a list, always an integer
+};
+
+struct PlyElement {
+    std::string name;
+    int64_t count = 0;  // not yet compared with the data: may be anything up to 2^63 - 1
+    std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+    PlyFormat format = PlyFormat::Ascii;
+    std::vector<PlyElement> elements;
+    size_t bytes = 0;  // where the data start
+    int lines = 0;
+};
+
+// Parses the header at the beginning of `file`, whose name is in `loc`. Throws Error with the line
+// of whatever is wrong.
+PlyHeader ParsePlyHeader(std::string_view file, FileLoc loc);
+
+}  // namespace lull

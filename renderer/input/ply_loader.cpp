@@ -1,0 +1,297 @@
+#include "renderer/input/ply_loader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "renderer/input/inflate.h"
+#include "renderer/input/ply_cursor.h"
+#include "renderer/input/ply_header.h"
+
+namespace lull {
+namespace {
+
+// Embree counts in 32 bits.
+constexpr int64_t kMostElements = std::numeric_limits<int32_t>::max();
+
+// Names where the values of a vertex property go.
+enum Slot { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
+
+// Maps each slot to the property that fills it, -1 for none.
+using SlotMap = std::array<int, kSlots>;
+
+SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
+    SlotMap slots;
+    slots.fill(-1);
+    const auto assign = [&](int first, std::initializer_list<const char*> names) {
+        std::vector<int> found;
+        for (const char* name : names) {
+            const auto it =
+                std::ranges::find_if(vertex.properties, [&](const PlyProperty& property) {
+                    return property.name == name && !property.isList;
+                });
+            if (it == vertex.properties.end()) return false;
+            found.push_back(int(it - vertex.properties.begin()));
+        }
+        std::ranges::copy(found, slots.begin() + first);
+        return true;
+    };
+    if (!assign(kX, {"x", "y", "z"}))
+        throw Error(loc, "the vertices of the PLY file have no x, y and z");
+    assign(kNx, {"nx", "ny", "nz"});
+    assign(kU, {"u", "v"}) || assign(kU, {"s", "t"}) || assign(kU, {"texture_u", "texture_v"}) ||
+        assign(kU, {"texture_s", "texture_t"});
+    return slots;
+}
+
+// Points at where the values of a slot go: one for each vertex, `stride` floats apart.
+struct Column {
+    float* values;
+    size_t stride;
+};
+
+Column ColumnOf(MeshData* mesh, int slot) {
+    if (slot < kNx) return {mesh->positions.data()->data() + slot, 3};
+    if (slot < kU) return {mesh->normals.data()->data() + (slot - kNx), 3};
+    return {mesh->uvs.data()->data() + (slot - kU), 2};
+}
+
+template <typename T>
+void CopyColumn(const char* bytes, size_t rowBytes, size_t rows, bool swap, float* values,
+                size_t stride) {
+    for (size_t i = 0; i < rows; ++i)
+        values[i * stride] = float(LoadPlyValue<T>(bytes + i * rowBytes, swap));
+}
+
+void CopyColumn(PlyType type, const char* bytes, size_t rowBytes, size_t rows, bool swap,
+                float* values, size_t stride) {
+    switch (type) {
+        case PlyType::Int8:
+            return CopyColumn<int8_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Uint8:
+            return CopyColumn<uint8_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Int16:
+            return CopyColumn<int16_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Uint16:
+            return CopyColumn<uint16_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Int32:
+            return CopyColumn<int32_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Uint32:
+            return CopyColumn<uint32_t>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Float32:
+            return CopyColumn<float>(bytes, rowBytes, rows, swap, values, stride);
+        case PlyType::Float64:
+            return CopyColumn<double>(bytes, rowBytes, rows, swap, values, stride);
+    }
+}
+
+// Returns the least bytes that a row of the element can take; a list may be empty.
+size_t LeastRowBytes(const PlyElement& element, PlyFormat format) {
+    size_t bytes = 0;
+    for (const PlyProperty& property : element.properties)
+        bytes += format == PlyFormat::Ascii
+                     ? 1
+                     : PlyTypeSize(property.isList ? property.countType : property.type);
+    return bytes;
+}
+
+bool HasFixedRows(const PlyElement& element, PlyFormat format) {
+    return format != PlyFormat::Ascii &&
+           std::ranges::none_of(element.properties, &PlyProperty::isList);
+}
+
+// Reads rows of fixed size by columns, in chunks that stay in the cache.
+void ReadFixedVertices(const PlyElement& element, const SlotMap& slots, PlyCursor& cursor,
+                       MeshData* mesh) {
+    constexpr size_t kChunk = 1024;
+    std::vector<size_t> offsets;
+    size_t rowBytes = 0;
+    for (const PlyProperty& property : element.properties) {
+        offsets.push_back(rowBytes);
+        rowBytes += PlyTypeSize(property.type);
+    }
+    const bool swap = cursor.format == PlyFormat::BigEndian;
+    const size_t count = size_t(element.count);
+    for (size_t begin = 0; begin < count; begin += kChunk) {
+        const size_t rows = std::min(kChunk, count - begin);
+        const char* const bytes = cursor.Skip(rows * rowBytes);
+        for (int slot = 0; slot < kSlots; ++slot) {
+            if (slots[slot] < 0) continue;
+            const Column column = ColumnOf(mesh, slot);
+            CopyColumn(element.properties[slots[slot]].type, bytes + offsets[slots[slot]], rowBytes,
+                       rows, swap, column.values + begin * column.stride, column.stride);
+        }
+    }
+}
+
+void ReadVertices(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
+    const SlotMap slots = MapSlots(element, cursor.loc);
+    const size_t count = size_t(element.count);
+    mesh->positions.resize(count);
+    if (slots[kNx] >= 0) mesh->normals.resize(count);
+    if (slots[kU] >= 0) mesh->uvs.resize(count);
+    if (HasFixedRows(element, cursor.format)) {
+        ReadFixedVertices(element, slots, cursor, mesh);
+        return;
+    }
+    // A property fills at most one slot, for no name belongs to two.
+    std::vector<int> slotOf(element.properties.size(), -1);
+    for (int slot = 0; slot < kSlots; ++slot)
+        if (slots[slot] >= 0) slotOf[slots[slot]] = slot;
+    for (size_t i = 0; i < count; ++i)
+        for (size_t p = 0; p < element.properties.size(); ++p) {
+            if (slotOf[p] < 0) {
+                cursor.SkipProperty(element.properties[p]);
+                continue;
+            }
+            const Column column = ColumnOf(mesh, slotOf[p]);
+            column.values[i * column.stride] = float(cursor.Read(element.properties[p].type));
+        }
+}
+
+// Reads the rows up to the next that is no triangle, if they hold nothing but a list with 1-byte
+// counts and 4-byte indices in this machine's order. Returns how many.
+int64_t ReadTrianglesInBulk(const PlyElement& element, int64_t most, PlyCursor& cursor,
+                            MeshData* mesh) {
+    const PlyProperty& list = element.properties[0];
+    if (element.properties.size() != 1 || cursor.format != PlyFormat::LittleEndian ||
+        PlyTypeSize(list.countType) != 1 ||
+        (list.type != PlyType::Int32 && list.type != PlyType::Uint32))
+        return 0;
+    constexpr size_t kRow = 1 + 3 * sizeof(uint32_t);
+    int64_t rows = 0;
+    for (; rows < most && cursor.Remaining() >= kRow && *cursor.pos == 3; ++rows)
+        std::memcpy(mesh->triangles.emplace_back().data(), cursor.Skip(kRow) + 1, kRow - 1);
+    return rows;
+}
+
+uint32_t ReadIndex(PlyType type, PlyCursor& cursor) {
+    const double index = cursor.Read(type);
+    if (!(index >= 0 && index <= double(kMostElements)) || index != std::floor(index))
+        throw Error(cursor.loc, "a face has the vertex index " + std::to_string(index));
+    return uint32_t(index);
+}
+
+// Reads one list of vertex indices and adds its triangles.
+void ReadFace(const PlyProperty& list, PlyCursor& cursor, MeshData* mesh, Warnings& warnings) {
+    const size_t count = cursor.ReadListCount(list);
+    if (count == 0) throw Error(cursor.loc, "a face has no vertices");
+    if (count != 3 && count != 4) {
+        for (size_t i = 0; i < count; ++i) cursor.Read(list.type);
+        warnings.Add(cursor.loc, "face left out that is neither triangle nor quad",
+                     "it has " + std::to_string(count) + " vertices");
+        return;
+    }
+    std::array<uint32_t, 4> v;
+    for (size_t i = 0; i < count; ++i) v[i] = ReadIndex(list.type, cursor);
+    mesh->triangles.push_back({v[0], v[1], v[2]});
+    if (count == 4) mesh->triangles.push_back({v[0], v[2], v[3]});
+}
+
+void ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh, Warnings& warnings) {
+    const auto isIndices = [](const PlyProperty& property) {
+        return property.isList &&
+               (property.name == "vertex_indices" || property.name == "vertex_index");
+    };
+    if (std::ranges::count_if(element.properties, isIndices) != 1)
+        throw Error(cursor.loc, "the faces of the PLY file need one list vertex_indices");
+    // Kept to the triangles below, since a face may become two of them or none.
+    const bool hasFaceIndices = std::ranges::any_of(element.properties, [](const auto& property) {
+        return property.name == "face_indices" && !property.isList;
+    });
+    mesh->triangles.reserve(size_t(element.count));
+    for (int64_t i = 0; i < element.count; ++i) {
+        i += ReadTrianglesInBulk(element, element.count - i, cursor, mesh);
+        if (i == element.count) break;
+        int faceIndex = 0;
+        for (const PlyProperty& property : element.properties) {
+            if (isIndices(property)) {
+                ReadFace(property, cursor, mesh, warnings);
+            } else if (property.name == "face_indices" && !property.isList) {
+                const double value = cursor.Read(property.type);
+                if (!(std::abs(value) <= double(kMostElements)))
+                    throw Error(cursor.loc, "a face index is beyond the range of an integer");
+                faceIndex = int(value);
+            } else {
+                cursor.SkipProperty(property);
+            }
+        }
+        if (hasFaceIndices) mesh->faceIndices.resize(mesh->triangles.size(), faceIndex);
+    }
+}
+
+void SkipElement(const PlyElement& element, PlyCursor& cursor) {
+    if (element.properties.empty()) return;
+    if (HasFixedRows(element, cursor.format)) {
+        cursor.Skip(size_t(element.count) * LeastRowBytes(element, cursor.format));
+        return;
+    }
+    for (int64_t i = 0; i < element.count; ++i)
+        for (const PlyProperty& property : element.properties) cursor.SkipProperty(property);
+}
+
+template <typename T>
+void ReplaceNonFinite(std::vector<T>* values, const char* kind, const FileLoc& loc,
+                      Warnings& warnings) {
+    for (T& value : *values)
+        if (!value.allFinite()) {
+            value.setZero();
+            warnings.Add(loc, kind);
+        }
+}
+
+void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
+    if (mesh->positions.empty() || mesh->triangles.empty())
+        throw Error(loc, "the PLY file has no vertices or no triangles");
+    for (size_t i = 0; i < mesh->positions.size(); ++i)
+        if (!mesh->positions[i].allFinite())
+            throw Error(loc, "vertex " + std::to_string(i) + " of the PLY file is not finite");
+    for (size_t i = 0; i < mesh->triangles.size(); ++i)
+        for (const uint32_t index : mesh->triangles[i])
+            if (index >= mesh->positions.size())
+                throw Error(loc, "triangle " + std::to_string(i) + " refers to vertex " +
+                                     std::to_string(index) + ", but there are " +
+                                     std::to_string(mesh->positions.size()));
+    ReplaceNonFinite(&mesh->normals, "normal in a PLY file that is not finite", loc, warnings);
+    ReplaceNonFinite(&mesh->uvs, "uv in a PLY file that is not finite", loc, warnings);
+}
+
+}  // namespace
+
+MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc) {
+    const FileLoc place{std::make_shared<const std::string>(path), 0};
+    const FileContents contents = Inflated(ReadFile(path, loc), place);
+    const std::string_view file = contents.View();
+    const PlyHeader header = ParsePlyHeader(file, place);
+    PlyCursor cursor{file.data() + header.bytes, file.data() + file.size(), header.format, place};
+    if (header.format == PlyFormat::Ascii) cursor.loc.line = header.lines + 1;
+
+    MeshData mesh;
+    bool hasVertices = false, hasFaces = false;
+    for (const PlyElement& element : header.elements) {
+        // Nothing is allocated for rows that cannot be there.
+        const size_t rowBytes = LeastRowBytes(element, header.format);
+        const bool isVertex = element.name == "vertex", isFace = element.name == "face";
+        if (rowBytes > 0 && size_t(element.count) > cursor.Remaining() / rowBytes)
+            throw Error(place, "the PLY file ends before the " + std::to_string(element.count) +
+                                   " rows of element '" + Printable(element.name) + "'");
+        if ((isVertex && std::exchange(hasVertices, true)) ||
+            (isFace && std::exchange(hasFaces, true)))
+            throw Error(place, "the PLY file has two elements '" + element.name + "'");
+        if ((isVertex || isFace) && element.count > kMostElements)
+            throw Error(place, "the PLY file has more than 2^31 - 1 rows in element '" +
+                                   element.name + "'");
+        if (isVertex)
+            ReadVertices(element, cursor, &mesh);
+        else if (isFace)
+            ReadFaces(element, cursor, &mesh, warnings);
+        else
+            SkipElement(element, cursor);
+    }
+    CheckMesh(&mesh, place, warnings);
+    return mesh;
+}
+
+}  // namespace lull
