@@ -1,0 +1,73 @@
+// Helps tests that read and write files.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+// Gives a test a directory of its own, gone with everything in it when the test ends.
+struct TemporaryDirectory {
+    std::filesystem::path path;
+
+    TemporaryDirectory() {
+        std::string name = (std::filesystem::temp_directory_path() / "lull_test_XXXXXX").string();
+        path = mkdtemp(name.data());
+    }
+    TemporaryDirectory(const TemporaryDirectory&) = delete;
+    TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+    ~TemporaryDirectory() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+
+    std::string File(const std::string& name) const { return (path / name).string(); }
+
+    // Writes a file and returns its path.
+    std::string Write(const std::string& name, std::string_view bytes) const {
+        std::ofstream(File(name), std::ios::binary).write(bytes.data(), bytes.size());
+        return File(name);
+    }
+
+    int CountFiles() const {
+        return int(std::distance(std::filesystem::directory_iterator(path), {}));
+    }
+};
+
+inline std::string ReadBytes(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Decodes pairs of hexadecimal digits.
+inline std::string FromHex(std::string_view hex) {
+    std::string bytes;
+    for (size_t i = 0; i + 1 < hex.size(); i += 2)
+        bytes += char(std::strtol(std::string(hex.substr(i, 2)).c_str(), nullptr, 16));
+    return bytes;
+}
+
+// Returns what an Error thrown by `call` says; empty where none was thrown.
+template <typename Call>
+std::string ErrorOf(const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+inline bool Contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace lull
