@@ -148,8 +148,9 @@ struct MicrofacetTransmission {
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
         const Vec3f h = distribution.SampleVisibleNormal(wo, u);
-        if (!(wo.dot(h) > 0)) return false;
-        return Refract(wo, h, wo.z() > 0 ? 1 / eta : eta, wi);
+        if (!Refract(wo, h, wo.z() > 0 ? 1 / eta : eta, wi)) return false;
+        // A steep microfacet may refract back to where the light came from.
+        return !SameHemisphere(wo, *wi);
     }
 };
 

@@ -1,0 +1,93 @@
+// Lists lobes for tests over all of them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "renderer/bsdf/bsdf.h"
+
+namespace lull::test {
+
+using DielectricReflection = MicrofacetReflection<DielectricInterface>;
+using ConductorReflection = MicrofacetReflection<ConductorInterface>;
+
+struct NamedLobe {
+    std::string name;
+    Lobe lobe;
+};
+
+// Returns lobes of every kind that spreads light: smallest to largest alpha, anisotropic both
+// ways, both sides of the interface dense.
+inline std::vector<NamedLobe> SpreadLobes() {
+    const Rgb colour(0.9f, 0.5f, 0.2f);
+    std::vector<NamedLobe> lobes = {
+        {"Lambertian reflection", LambertianReflection{colour}},
+        {"Lambertian transmission", LambertianTransmission{colour}},
+        {"Oren-Nayar 20", OrenNayar(colour, 20)},
+        {"Oren-Nayar 90", OrenNayar(colour, 90)},
+    };
+    const Vec2f alphas[] = {{1e-4f, 1e-4f}, {0.01f, 0.01f}, {0.1f, 0.1f}, {0.5f, 0.5f},
+                            {1.62f, 1.62f}, {0.05f, 0.4f},  {1, 0.2f}};
+    for (const Vec2f& a : alphas) {
+        const TrowbridgeReitz d(a.x(), a.y());
+        const std::string suffix = fmt::format(" {} {}", a.x(), a.y());
+        for (float eta : {1.5f, 1 / 1.5f}) {
+            const std::string index = fmt::format("{} index {}", suffix, eta);
+            lobes.push_back({"dielectric reflection" + index,
+                             DielectricReflection{colour, d, DielectricInterface{eta}}});
+            lobes.push_back({"transmission" + index, MicrofacetTransmission{colour, d, eta}});
+        }
+        const ConductorInterface copper{Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f)};
+        lobes.push_back({"conductor reflection" + suffix, ConductorReflection{colour, d, copper}});
+        lobes.push_back({"Fresnel blend" + suffix, FresnelBlend{colour, Rgb(0.04f, 0.3f, 1), d}});
+    }
+    return lobes;
+}
+
+// Returns lobes of every kind that is perfectly specular.
+inline std::vector<NamedLobe> SpecularLobes() {
+    const Rgb r(0.9f, 0.5f, 0.2f), t(0.7f, 0.8f, 0.1f);
+    std::vector<NamedLobe> lobes = {
+        {"mirror", SpecularReflection<PerfectMirror>{r, {}}},
+        {"smooth conductor",
+         SpecularReflection<ConductorInterface>{r,
+                                                {Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f)}}},
+    };
+    for (float eta : {1.f, 1.0001f, 1.5f, 1 / 1.5f, 3.f}) {
+        const std::string suffix = fmt::format(" {}", eta);
+        lobes.push_back({"coat" + suffix, SpecularReflection<DielectricInterface>{r, {eta}}});
+        lobes.push_back({"refraction" + suffix, SpecularTransmission{t, eta}});
+        lobes.push_back({"glass" + suffix, FresnelSpecular{r, t, eta}});
+    }
+    return lobes;
+}
+
+// Returns the alphas of a lobe's distribution, (1, 1) for a lobe that has none.
+inline Vec2f AlphasOf(const Lobe& lobe) {
+    return VisitLobe(lobe, [](const auto& l) -> Vec2f {
+        if constexpr (requires { l.distribution; })
+            return {l.distribution.AlphaX(), l.distribution.AlphaY()};
+        else
+            return {1, 1};
+    });
+}
+
+// Says whether wi is reached from wo over a microfacet whose outside wo sees. Elsewhere
+// MicrofacetTransmission has pbrt-v3's values, but is never sampled.
+inline bool IsFrontFacing(const Lobe& lobe, const Vec3f& wo, const Vec3f& wi) {
+    const auto* t = std::get_if<MicrofacetTransmission>(&lobe);
+    if (!t) return true;
+    const Vec3f h = wo + (wo.z() > 0 ? t->eta : 1 / t->eta) * wi;
+    return wo.dot(h) * wo.z() * h.z() > 0;
+}
+
+// Makes a Bsdf whose frame is the axes.
+inline Bsdf MakeBsdf(const std::vector<Lobe>& lobes, const Vec3f& ng = Vec3f::UnitZ()) {
+    Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, ng);
+    for (const Lobe& lobe : lobes) bsdf.Add(lobe);
+    return bsdf;
+}
+
+}  // namespace lull::test
