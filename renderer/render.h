@@ -3,19 +3,12 @@
 
 #include <functional>
 
+#include "renderer/output/progress.h"
 #include "renderer/schedule.h"
 #include "renderer/transport/path_tracer.h"
 #include "stopping/criterion.h"
 
 namespace lull {
-
-struct RenderProgress {
-    int blocks = 0, stoppedBlocks = 0;
-    int medianSpp = 0;         // over the blocks
-    int64_t samples = 0;       // taken so far
-    int64_t samplesToCap = 0;  // still to take if no block stops before the cap
-    double seconds = 0;        // since the start
-};
 
 struct RenderOptions {
     ScheduleOptions schedule;

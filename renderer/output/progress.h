@@ -1,0 +1,68 @@
+// Tells how far a render is: a line on a terminal, plain lines in a log, or JSON for programs.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <deque>
+#include <string>
+
+namespace lull {
+
+struct RenderProgress {
+    int blocks = 0, stoppedBlocks = 0;
+    int medianSpp = 0;         // over the blocks
+    int64_t samples = 0;       // taken so far
+    int64_t samplesToCap = 0;  // still to take if no block stops before the cap
+    double seconds = 0;        // since the start
+};
+
+// Estimates the speed from what was done lately, since the blocks that are left can be slower
+// than those that have stopped.
+class RateMeter {
+  public:
+    explicit RateMeter(double windowSeconds = 30) : window(windowSeconds) {}
+
+    void Add(const RenderProgress&);
+    double SamplesPerSecond() const;  // 0: not known
+
+  private:
+    double window;
+    std::deque<RenderProgress> history;
+};
+
+// Format a report of progress. Where blocks stop by themselves (`adaptive`) the time left is an
+// upper bound, and said to be; `rate` is in samples per second.
+std::string ProgressText(const RenderProgress&, double rate, bool adaptive);
+std::string ProgressJson(const RenderProgress&, double rate, bool adaptive);
+
+// Formats seconds as "12.3s", "4:05" or "1:02:03".
+std::string FormatDuration(double seconds);
+// Formats a count with three digits and k, M, G or T.
+std::string FormatCount(double count);
+
+enum class ProgressStyle {
+    Silent,
+    Line,   // one line, rewritten in place; for terminals
+    Plain,  // a line about every 30 seconds
+    Json    // an object a line
+};
+
+class ProgressPrinter {
+  public:
+    // `stream` must outlive the printer.
+    ProgressPrinter(ProgressStyle style, bool adaptive, std::FILE* stream)
+        : style(style), adaptive(adaptive), stream(stream) {}
+
+    void Print(const RenderProgress&);
+    // Prints the last state, and ends the line.
+    void Finish(const RenderProgress&);
+
+  private:
+    ProgressStyle style;
+    bool adaptive;
+    std::FILE* stream;
+    RateMeter rate;
+    double nextPlainLine = 30;  // seconds since the start
+};
+
+}  // namespace lull

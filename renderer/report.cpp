@@ -1,0 +1,113 @@
+#include "renderer/report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace lull {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json RectJson(const PixelRect& r) {
+    return {{"x", r.min.x()}, {"y", r.min.y()}, {"width", r.Width()}, {"height", r.Height()}};
+}
+
+Json ProvenanceJson(const Provenance& p) {
+    return {{"renderer", "lull"},
+            {"version", p.version},
+            {"scene", p.scene},
+            {"seed", p.seed},
+            {"sampler", NameOf(p.sampler)},
+            {"estimator", NameOf(p.estimator)},
+            {"criterion", p.criterion},
+            {"modelChecksum", p.checksum},
+            {"cap", p.schedule.cap},
+            {"pass", p.schedule.passLength},
+            {"blockSize", p.schedule.blockSize},
+            {"maxDepth", p.maxDepth},
+            {"threads", p.threads},
+            {"substitute", p.substitute},
+            {"resolution", {p.resolution.x(), p.resolution.y()}},
+            {"crop", RectJson(p.crop)}};
+}
+
+const char* EndOf(const Block& block) {
+    return !block.stopped ? "interrupted" : block.stoppedByVote ? "stopped" : "cap";
+}
+
+Json BlockJson(const BlockResult& result, int cap) {
+    const Block& block = result.block;
+    Json json = RectJson(block.pixels);
+    json["spp"] = block.spp;
+    json["threshold"] = block.stoppedByVote ? block.spp : cap;
+    json["end"] = EndOf(block);
+    if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
+    json["seconds"] = result.seconds;
+    json["criterionSeconds"] = result.criterionSeconds;
+
+    // List the decisions by column: a tenth of the size of one object for each.
+    Json spp = Json::array(), value = Json::array(), votes = Json::array();
+    for (const DecisionRecord& record : result.decisions) {
+        spp.push_back(record.spp);
+        value.push_back(record.decision.value);
+        votes.push_back(record.decision.votes);
+    }
+    if (!result.decisions.empty())
+        json["decisions"] = {{"threshold", result.decisions.back().decision.threshold},
+                             {"spp", spp},
+                             {"value", value},
+                             {"votes", votes}};
+    return json;
+}
+
+Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
+    const Savings savings = ComputeSavings(result, provenance.schedule.cap);
+    return {{"blocks", result.blocks.size()},
+            {"stoppedBlocks", result.progress.stoppedBlocks},
+            {"medianSpp", result.progress.medianSpp},
+            {"seconds", result.progress.seconds},
+            {"samples", savings.samples},
+            {"samplesAtCap", savings.samplesAtCap},
+            {"samplesSaved", savings.SampleShare()},
+            {"threadSeconds", savings.seconds},
+            {"threadSecondsAtCap", savings.secondsAtCap},
+            {"secondsSaved", savings.SecondShare()},
+            {"criterionSeconds", savings.criterionSeconds},
+            {"rejectedSamples", rejected},
+            {"interrupted", result.cancelled}};
+}
+
+}  // namespace
+
+std::string NameOf(SamplerKind kind) { return kind == SamplerKind::Random ? "random" : "sobol"; }
+
+std::string NameOf(Estimator estimator) {
+    return estimator == Estimator::Combined ? "combined" : "pbrt-v3";
+}
+
+Savings ComputeSavings(const RenderResult& result, int cap) {
+    Savings savings;
+    savings.samples = result.progress.samples;
+    for (const BlockResult& b : result.blocks) {
+        savings.samplesAtCap += b.block.pixels.Area() * cap;
+        savings.criterionSeconds += b.criterionSeconds;
+        savings.seconds += b.seconds + b.criterionSeconds;
+        if (b.block.spp > 0) savings.secondsAtCap += b.seconds / b.block.spp * cap;
+    }
+    return savings;
+}
+
+std::string MakeReport(const Provenance& provenance, const RenderResult& result,
+                       int64_t rejectedSamples, const std::map<std::string, int>& warnings) {
+    Json report;
+    report["provenance"] = ProvenanceJson(provenance);
+    report["totals"] = TotalsJson(provenance, result, rejectedSamples);
+    report["blocks"] = Json::array();
+    for (const BlockResult& block : result.blocks)
+        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap));
+    report["warnings"] = warnings;
+    // A file name that is not UTF-8 must not cost the report.
+    return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace lull
