@@ -70,12 +70,12 @@ MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
     return data;
 }
 
-MeshData SubdividedMesh(const ShapeEntity& entity, Warnings&) {
+MeshData SubdividedMesh(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     const int levels = params.GetInt("levels", params.GetInt("nlevels", 3));
     params.GetString("scheme", "loop");
-    const auto positions = PositionsOf(entity);
-    return SubdivideLoop(positions, TrianglesOf(entity, positions.size()), levels, entity.loc);
+    return LoopSubdivide(params.GetFloats(ParameterType::Point3, "P"), params.GetInts("indices"),
+                         levels, entity.loc);
 }
 
 bool Mirrors(const Mat4d& m) { return m.topLeftCorner<3, 3>().determinant() < 0; }
@@ -181,7 +181,7 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     } else if (entity.name == "trianglemesh") {
         mesh(TriangleMesh(entity, warnings));
     } else if (entity.name == "loopsubdiv") {
-        mesh(SubdividedMesh(entity, warnings));
+        mesh(SubdividedMesh(entity));
     } else if (entity.name == "sphere") {
         shape.geometry = MakeSphere(entity, warnings);
     } else if (entity.name == "disk") {
