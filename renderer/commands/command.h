@@ -1,0 +1,18 @@
+// Lists the subcommands. Each adds its options to the command line and, when it is the one that
+// was given, sets what is to be run.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace lull {
+
+enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
+
+// Does the work of a subcommand and returns the exit code. Throws what went wrong.
+using Command = std::function<ExitCode()>;
+
+void AddRenderCommand(CLI::App& app, Command* command);
+void AddInfoCommand(CLI::App& app, Command* command);
+
+}  // namespace lull

@@ -1,0 +1,122 @@
+#include "renderer/commands/render_files.h"
+
+#include <filesystem>
+#include <sstream>
+
+#include "renderer/output/file_io.h"
+#include "renderer/output/image_io.h"
+#include "renderer/output/spp_map.h"
+#include "stopping/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+using std::filesystem::path;
+
+ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provenance,
+                 const RenderResult& result) {
+    const PixelRect& region = film.Region();
+    ExrImage exr;
+    exr.width = region.Width();
+    exr.height = region.Height();
+    exr.origin = region.min;
+    exr.displaySize = scene.film.resolution;
+
+    const std::vector<float> mean = film.MeanImage();
+    for (int c = 0; c < 3; ++c) {
+        ExrChannel channel{.name = std::string(1, "RGB"[c]), .values = {}};
+        channel.values.reserve(mean.size() / 3);
+        for (size_t i = c; i < mean.size(); i += 3) channel.values.push_back(mean[i]);
+        exr.channels.push_back(std::move(channel));
+    }
+    exr.channels.push_back({.name = "spp", .values = film.SppImage()});
+
+    // Counts go in as text, since an EXR's integers end at 2^31.
+    exr.attributes = {{"renderer", "lull"},
+                      {"version", provenance.version},
+                      {"seed", std::to_string(provenance.seed)},
+                      {"sampler", NameOf(provenance.sampler)},
+                      {"estimator", NameOf(provenance.estimator)},
+                      {"samples", std::to_string(film.SampleCount())},
+                      {"criterion", provenance.criterion},
+                      {"modelChecksum", provenance.checksum},
+                      {"seconds", float(result.progress.seconds)},
+                      {"rejectedSamples", std::to_string(film.RejectedCount())},
+                      {"worldToCamera", WorldToCamera(scene.camera)},
+                      {"worldToNDC", WorldToNdc(scene.camera, scene.film)}};
+    if (result.cancelled)
+        exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
+    return exr;
+}
+
+void WriteMeanPng(const std::string& file, const Film& film) {
+    std::vector<Rgb> pixels;
+    pixels.reserve(film.Pixels().size());
+    for (const FilmPixel& pixel : film.Pixels()) pixels.push_back(pixel.Mean());
+    WritePng(file, pixels, film.Region().Width(), film.Region().Height());
+}
+
+void WriteSppMap(const std::string& file, const Film& film, const ScheduleOptions& schedule,
+                 const RenderResult& result) {
+    std::vector<SppBlock> blocks;
+    for (const BlockResult& b : result.blocks) blocks.push_back({b.block.pixels, b.block.spp});
+    const int lowest = std::min(schedule.passLength, schedule.cap);
+    const SppMap map = DrawSppMap(film.Region(), blocks, lowest, schedule.cap);
+    WritePng(file, map.pixels, map.width, map.height);
+}
+
+void WriteThresholdsRow(const std::string& file, const Provenance& provenance,
+                        const RenderResult& result) {
+    ThresholdsRow row{SceneName(provenance.scene), {}};
+    for (const BlockResult& b : result.blocks)
+        row.spp.push_back(b.block.stoppedByVote ? b.block.spp : provenance.schedule.cap);
+    std::ostringstream text;
+    WriteThresholds(text, {row});
+    WriteFileAtomically(file, text.str());
+}
+
+}  // namespace
+
+bool HasImageExtension(const std::string& output) {
+    const path extension = path(output).extension();
+    return extension == ".exr" || extension == ".png";
+}
+
+RenderFiles NameFiles(const std::string& output, const std::string& report) {
+    auto with = [&](const char* extension) {
+        return path(output).replace_extension(extension).string();
+    };
+    return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
+}
+
+void CheckWritable(const RenderFiles& files) {
+    for (const std::string& file :
+         {files.exr, files.png, files.sppMap, files.thresholds, files.report})
+        if (!file.empty()) CheckWritable(file);
+}
+
+std::string SceneName(const std::string& file) {
+    const path absolute = std::filesystem::absolute(file).lexically_normal();
+    std::string name = absolute.stem().string();
+    if (name == "scene" && absolute.has_parent_path() && absolute.parent_path().has_filename())
+        name = absolute.parent_path().filename().string();
+    for (char& c : name)
+        if (c == ';' || c == '\n' || c == '\r') c = '_';
+    return name.empty() ? "scene" : name;
+}
+
+void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
+                const Provenance& provenance, const RenderResult& result,
+                const Warnings& warnings) {
+    WriteExr(files.exr, MakeExr(scene, film, provenance, result));
+    WriteMeanPng(files.png, film);
+    WriteSppMap(files.sppMap, film, provenance.schedule, result);
+    // Of an interrupted render nobody knows at which spp its blocks would have stopped.
+    if (!result.cancelled) WriteThresholdsRow(files.thresholds, provenance, result);
+    if (!files.report.empty())
+        WriteFileAtomically(
+            files.report, MakeReport(provenance, result, film.RejectedCount(), warnings.Counts()));
+}
+
+}  // namespace lull

@@ -1,0 +1,30 @@
+// Writes the files of a render.
+#pragma once
+
+#include "renderer/report.h"
+
+namespace lull {
+
+// Names the files; those not wanted are empty.
+struct RenderFiles {
+    std::string exr, png, sppMap, thresholds, report;
+};
+
+// Returns the names for `output`, a name that ends in .exr or .png; all lie beside each other.
+RenderFiles NameFiles(const std::string& output, const std::string& report);
+
+// Says whether `output` ends as an image that can be written.
+bool HasImageExtension(const std::string& output);
+
+// Throws Error if one of the files could not be written now.
+void CheckWritable(const RenderFiles&);
+
+// Names a scene in thresholds files: the file without folder and extension, or the folder where
+// the file is called scene.pbrt. Not empty, without what the format has no room for.
+std::string SceneName(const std::string& file);
+
+// Writes all files, each whole or not at all. Throws Error.
+void WriteFiles(const RenderFiles&, const Scene&, const Film&, const Provenance&,
+                const RenderResult&, const Warnings&);
+
+}  // namespace lull

@@ -1,0 +1,93 @@
+#include "renderer/commands/scene_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+
+#include "renderer/input/pbrt_parser.h"
+
+namespace lull {
+
+namespace {
+
+// Reads numbers with `separator` between them; false if `text` is anything else.
+template <typename T, size_t N>
+bool ParseNumbers(const std::string& text, char separator, std::array<T, N>* numbers) {
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (size_t i = 0; i < N; ++i) {
+        if (i > 0 && (at == end || *at++ != separator)) return false;
+        const auto [next, error] = std::from_chars(at, end, (*numbers)[i]);
+        if (error != std::errc()) return false;
+        at = next;
+    }
+    return at == end;
+}
+
+bool ParseResolution(const std::string& text, std::optional<Vec2i>* resolution) {
+    std::array<int, 2> size;
+    if (!ParseNumbers(text, 'x', &size) || size[0] <= 0 || size[1] <= 0) return false;
+    *resolution = Vec2i(size[0], size[1]);
+    return true;
+}
+
+bool ParseCrop(const std::string& text, std::optional<std::array<float, 4>>* crop) {
+    std::array<float, 4> c;
+    const bool valid = ParseNumbers(text, ',', &c) && 0 <= c[0] && c[0] < c[1] && c[1] <= 1 &&
+                       0 <= c[2] && c[2] < c[3] && c[3] <= 1;
+    if (valid) *crop = c;
+    return valid;
+}
+
+// Turns "a bad value" into the error message of an option.
+template <typename T>
+auto Checked(bool (*parse)(const std::string&, T*), T* value, const std::string& wanted) {
+    return [=](const std::string& text) {
+        if (!parse(text, value)) throw CLI::ValidationError(text, "is not " + wanted);
+    };
+}
+
+}  // namespace
+
+void AddSceneOptions(CLI::App& app, SceneOptions* options) {
+    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file")->required();
+    app.add_option_function<std::string>(
+           "--resolution",
+           Checked(ParseResolution, &options->compile.film.resolution,
+                   "a size in pixels such as 800x600"),
+           "Size of the whole image in pixels, WxH, instead of the scene's")
+        ->type_name("WxH");
+    app.add_option_function<std::string>(
+           "--crop",
+           Checked(ParseCrop, &options->compile.film.crop,
+                   "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y"),
+           "Render only this part of the image, as fractions of its sides from the upper left")
+        ->type_name("x0,x1,y0,y1");
+    app.add_option("--max-depth", options->compile.maxDepth,
+                   "Longest path in bounces, instead of the scene's")
+        ->check(CLI::Range(0, 1000000))
+        ->type_name("N");
+    app.add_option("--threads", options->compile.threads, "Threads; 0: one for each core")
+        ->check(CLI::Range(0, 4096))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--substitute", options->compile.substitute,
+                 "Replace materials, textures and shapes that are not modelled, with a warning,\n"
+                 "instead of refusing the scene");
+}
+
+Warnings MakePrintedWarnings() {
+    return Warnings(
+        [](const std::string& message) { fmt::print(stderr, "lull: warning: {}\n", message); });
+}
+
+Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
+    const std::string extension = std::filesystem::path(options.file).extension().string();
+    if (extension == ".gltf" || extension == ".glb")
+        throw Error(options.file + ": is a glTF file; only pbrt-v3 scenes can be read");
+    return ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
+}
+
+}  // namespace lull

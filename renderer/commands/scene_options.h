@@ -1,0 +1,25 @@
+// Holds what all commands that load a scene have in common.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+
+#include "renderer/scene/compile.h"
+
+namespace lull {
+
+struct SceneOptions {
+    std::string file;
+    CompileOptions compile;
+};
+
+// Adds SCENE, --resolution, --crop, --max-depth, --threads and --substitute.
+void AddSceneOptions(CLI::App& app, SceneOptions* options);
+
+// Prints warnings on stderr as they occur.
+Warnings MakePrintedWarnings();
+
+// Reads the scene's file. Throws Error.
+Description LoadDescription(const SceneOptions&, Warnings&);
+
+}  // namespace lull
