@@ -5,12 +5,30 @@
 #include <cstdint>
 #include <variant>
 #include <vector>
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
 
 #include "renderer/base/math.h"
 
 namespace lull {
 
-using Half = Eigen::half;
+// Holds a 16-bit IEEE 754 float. Eigen::half is not used as it is, since Eigen 3.4 converts it in
+// software where the compiler is GCC.
+struct Half {
+    uint16_t bits = 0;
+
+    Half() = default;
+    explicit Half(float v) : bits(Eigen::half(v).x) {}
+    explicit operator float() const {
+#ifdef __F16C__
+        return _cvtsh_ss(bits);
+#else
+        return float(Eigen::half_impl::raw_uint16_to_half(bits));
+#endif
+    }
+    bool operator==(const Half&) const = default;
+};
 
 // Holds an image in its native form: rows from the top, channels interleaved. 8-bit texels stand
 // for 0 to 1 in whatever encoding the file has; half and float are as read.
