@@ -11,9 +11,9 @@ namespace lull {
 namespace {
 
 // Bounds what files included again and again may come to: deep nesting of doubled includes grows
-// without end from a few lines. Every inclusion counts as a page at least.
+// without end from a few lines. Every inclusion counts as kLeastBytes at least.
 constexpr size_t kMostRepeatedBytes = size_t(1) << 30;
-constexpr size_t kPage = 4096;
+constexpr size_t kLeastBytes = size_t(1) << 14;
 // Bounds the length of a string; file names are shorter everywhere.
 constexpr ptrdiff_t kLongestString = 4096;
 
@@ -80,7 +80,7 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     for (const Source& open : sources)
         if (open.canonical == source.canonical)
             throw Error(loc, "'" + Printable(file) + "' includes itself; remove this Include");
-    if (inclusions[source.canonical]++ > 0) repeatedBytes += std::max(source.contents.size, kPage);
+    if (inclusions[source.canonical]++ > 0) repeatedBytes += std::max(source.contents.size, kLeastBytes);
     if (repeatedBytes > kMostRepeatedBytes)
         throw Error(loc,
                     "files included again and again come to more than 1 GiB of text; use "

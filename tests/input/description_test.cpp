@@ -1,0 +1,83 @@
+#include "renderer/input/description.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/input/test_files.h"
+
+namespace lull {
+namespace {
+
+Parameter Floats(ParameterType type, const std::string& name, std::vector<float> values) {
+    return {type, name, {}, std::move(values)};
+}
+
+TEST(Parameters, FindsByNameAndType) {
+    Parameters p;
+    p.Add(Floats(ParameterType::Float, "a", {2}));
+    p.Add({ParameterType::Integer, "a", {}, std::vector<int>{3}});
+    p.Add({ParameterType::Bool, "b", {}, std::vector<int>{1}});
+    p.Add({ParameterType::String, "s", {}, std::vector<std::string>{"text"}});
+    p.Add(Floats(ParameterType::Point3, "p", {1, 2, 3}));
+    p.Add(Floats(ParameterType::Vector3, "v", {4, 5, 6}));
+    p.Add(Floats(ParameterType::Spectrum, "c", {7, 8, 9}));
+    p.Add({ParameterType::Texture, "t", {}, std::vector<TextureRef>{{"wood", 1, -1}}});
+    EXPECT_EQ(p.GetFloat("a", 0), 2);
+    EXPECT_EQ(p.GetInt("a", 0), 3);
+    EXPECT_TRUE(p.GetBool("b", false));
+    EXPECT_EQ(p.GetString("s", ""), "text");
+    EXPECT_EQ(p.GetPoint3("p", Vec3f::Zero()), Vec3f(1, 2, 3));
+    EXPECT_EQ(p.GetVector3("v", Vec3f::Zero()), Vec3f(4, 5, 6));
+    EXPECT_EQ(p.GetSpectrum("c", Rgb::Zero()).matrix(), Vec3f(7, 8, 9));
+    ASSERT_TRUE(p.GetTexture("t"));
+    EXPECT_EQ(p.GetTexture("t")->floatIndex, 1);
+    // The same names as other types are not there.
+    EXPECT_EQ(p.GetFloat("b", 9), 9);
+    EXPECT_EQ(p.GetPoint3("v", Vec3f::Zero()), Vec3f::Zero());
+    EXPECT_EQ(p.GetTexture("s"), nullptr);
+    EXPECT_EQ(p.Find(ParameterType::Float, "none"), nullptr);
+}
+
+TEST(Parameters, SingleLookupNeedsExactlyOneValue) {
+    Parameters p;
+    p.Add(Floats(ParameterType::Float, "f", {1, 2}));
+    p.Add(Floats(ParameterType::Spectrum, "c", {1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(p.GetFloat("f", 7), 7);
+    EXPECT_EQ(p.GetSpectrum("c", Rgb::Constant(5)).x(), 5);
+    EXPECT_EQ(p.GetFloats(ParameterType::Float, "f").size(), 2u);
+    EXPECT_TRUE(p.GetFloats(ParameterType::Float, "g").empty());
+    EXPECT_TRUE(p.GetInts("f").empty());
+}
+
+TEST(Parameters, LaterOneOfSameNameAndTypeCounts) {
+    Parameters p;
+    p.Add(Floats(ParameterType::Float, "f", {1}));
+    p.Add(Floats(ParameterType::Float, "f", {2}));
+    EXPECT_EQ(p.All().size(), 1u);
+    EXPECT_EQ(p.GetFloat("f", 0), 2);
+}
+
+TEST(Parameters, ReportsWhatWasNotLookedUp) {
+    Parameters p;
+    p.Add(Floats(ParameterType::Float, "used", {1}));
+    p.Add(Floats(ParameterType::Float, "unused", {1}));
+    p.Add(Floats(ParameterType::Float, "twice", {1, 2}));
+    p.GetFloat("used", 0);
+    p.GetFloat("twice", 0);  // has two values, so this does not find it
+    std::string first;
+    Warnings warnings([&](const std::string& message) { first = message; });
+    p.ReportUnused("shape \"sphere\"", warnings);
+    EXPECT_EQ(warnings.Total(), 2);
+    EXPECT_EQ(first, "warning: unused parameter: 'unused' of shape \"sphere\" has no effect");
+}
+
+TEST(ResolvePath, StartsAtTheScene) {
+    Description description;
+    EXPECT_EQ(ResolvePath(description, "a.ply"), "a.ply");
+    description.directory = "scenes/room";
+    EXPECT_EQ(ResolvePath(description, "geometry/a.ply"), "scenes/room/geometry/a.ply");
+    EXPECT_EQ(ResolvePath(description, "/data/a.ply"), "/data/a.ply");
+    EXPECT_EQ(ResolvePath(description, ""), "");
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,73 @@
+#include "renderer/input/spectrum.h"
+
+#include "renderer/input/cie_table.h"
+#include "tests/input/test_files.h"
+
+namespace lull {
+namespace {
+
+// Tests against numbers that pbrt-v3's formulas give in single precision (its own) and in double:
+// each channel agrees to 1e-5.
+void ExpectNear(const Rgb& found, double r, double g, double b) {
+    EXPECT_NEAR(found.x(), r, 1e-5 * std::abs(r));
+    EXPECT_NEAR(found.y(), g, 1e-5 * std::abs(g));
+    EXPECT_NEAR(found.z(), b, 1e-5 * std::abs(b));
+}
+
+TEST(Spectrum, CieTableIsWhole) {
+    EXPECT_EQ(kCieTable.size(), 471u);
+    // The maximum of y is 1 at 555 nm, and its sum is the integral that pbrt-v3 divides by.
+    EXPECT_EQ(kCieTable[555 - kCieFirst].y, 1.f);
+    double x = 0, y = 0, z = 0;
+    for (const CieRow& row : kCieTable) {
+        x += row.x;
+        y += row.y;
+        z += row.z;
+    }
+    EXPECT_NEAR(y, 106.856895, 1e-4);
+    EXPECT_NEAR(x, 106.866, 1e-2);  // equal-energy white has x = y = z = 1/3
+    EXPECT_NEAR(z, 106.892, 1e-2);
+}
+
+TEST(Spectrum, Xyz) {
+    ExpectNear(RgbFromXyz(1, 0, 0), 3.240479, -.969256, .055648);
+    ExpectNear(RgbFromXyz(0, 1, 0), -1.53715, 1.875991, -.204043);
+    ExpectNear(RgbFromXyz(0, 0, 1), -.498535, .041556, 1.057311);
+}
+
+TEST(Spectrum, Samples) {
+    const std::vector<float> one = {500, 1};
+    ExpectNear(RgbFromSamples(one), 1.2023317, .94621348, .90734005);
+    const std::vector<float> four = {400, .2f, 500, .9f, 600, .4f, 700, .1f};
+    ExpectNear(RgbFromSamples(four), .28167704, .68869615, .50800484);
+    const std::vector<float> shuffled = {600, .4f, 400, .2f, 700, .1f, 500, .9f};
+    EXPECT_TRUE((RgbFromSamples(shuffled) == RgbFromSamples(four)).all());
+}
+
+TEST(Spectrum, Blackbody) {
+    ExpectNear(RgbFromBlackbody(2700), .53349411, .22157076, .052901801);
+    ExpectNear(RgbFromBlackbody(6500), .92221779, .86949658, .91521716);
+    ExpectNear(RgbFromBlackbody(12000), .23775887, .28607926, .45084539);
+    // Blue is the small rest of a difference here, which single precision knows to 1e-5 only.
+    ExpectNear(RgbFromBlackbody(1000), 4.1257102e-05, 3.5520107e-07, -8.0760118e-07);
+    EXPECT_TRUE(IsFinite(RgbFromBlackbody(1e-30)));
+    EXPECT_TRUE(IsFinite(RgbFromBlackbody(1e30)));
+}
+
+TEST(Spectrum, Copper) {
+    ExpectNear(CopperEta(), .19999069, .92208463, 1.0998759);
+    ExpectNear(CopperK(), 3.9046354, 2.4476333, 2.1376526);
+}
+
+TEST(Spectrum, FilesOfMetals) {
+    const auto scenes = SharedFolder() / "pbrt-scenes";
+    if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "no shared scenes at " << scenes;
+    const auto load = [&](const char* name) { return LoadSpectrum((scenes / name).string()); };
+    ExpectNear(load("bathroom/spds/Ag.eta.spd"), .15493518, .11647548, .13808739);
+    ExpectNear(load("bathroom/spds/Ag.k.spd"), 4.8181009, 3.1156166, 2.1424017);
+    ExpectNear(load("matpreview/spds/Au.eta.spd"), .14282006, .37414363, 1.4394444);
+    ExpectNear(load("matpreview/spds/Au.k.spd"), 3.9747183, 2.3806598, 1.5998104);
+}
+
+}  // namespace
+}  // namespace lull
