@@ -38,7 +38,7 @@ inline Rgb FresnelConductor(float cosI, const Rgb& eta, const Rgb& k) {
     // The denominators vanish only for eta = k = 0 seen head-on or edge-on.
     constexpr float tiny = std::numeric_limits<float>::min();
     const Lanes s = (t1 - t2) / (t1 + t2).max(tiny);
-    const Lanes r = 0.5f * s * (1 + (t3 - t4) / (t3 + t4).max(tiny));
+    const Lanes r = (0.5f * s * (1 + (t3 - t4) / (t3 + t4).max(tiny))).max(0.f);
     return r.head<3>();
 }
 

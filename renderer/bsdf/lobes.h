@@ -95,8 +95,9 @@ struct OrenNayar {
     }
 };
 
-// Below this squared length a half vector is rounding error: wo and wi are opposite.
-inline constexpr float kMinHalf2 = 1e-14f;
+// Below this squared length a half vector is rounding error: wo and wi are opposite. Below this
+// cosine a direction lies in the surface. Together they keep all quotients within float.
+inline constexpr float kMinHalf2 = 1e-14f, kMinCosine = 1e-12f;
 
 // Reflects at microfacets (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20).
 template <typename Interface>
@@ -110,7 +111,7 @@ struct MicrofacetReflection {
         const Vec3f h = wo + wi;
         const float h2 = h.squaredNorm();
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
-        if (cosO == 0 || cosI == 0 || !(h2 > kMinHalf2)) return {};
+        if (std::min(cosO, cosI) < kMinCosine || !(h2 > kMinHalf2)) return {};
         const float d = distribution.D(h, h2);
         const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
         // wi . h / |h| is half of |h|; the interface wants it signed by the side of the normal.
@@ -134,7 +135,7 @@ struct MicrofacetTransmission {
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
-        if (cosO == 0 || cosI == 0 || SameHemisphere(wo, wi)) return {};
+        if (std::min(cosO, cosI) < kMinCosine || SameHemisphere(wo, wi)) return {};
         const float ratio = wo.z() > 0 ? eta : 1 / eta;
         const Vec3f h = wo + ratio * wi;  // its length is the root of the Jacobian's denominator
         const float h2 = h.squaredNorm(), oh = wo.dot(h), ih = wi.dot(h);
@@ -220,7 +221,7 @@ struct FresnelBlend {
         const float h2 = h.squaredNorm();
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
         const float cosMax = std::max(cosO, cosI);
-        if (cosMax == 0 || !(h2 > kMinHalf2)) return {};
+        if (cosMax < kMinCosine || !(h2 > kMinHalf2)) return {};
         const auto fade = [](float c) {
             const float v = 1 - 0.5f * c;
             return 1 - Sqr(Sqr(v)) * v;
