@@ -15,13 +15,17 @@ namespace lull {
 struct BlockView {
     int width = 0, height = 0;  // pixels, > 0
     int spp = 0;                // samples that every pixel has had, > 0
-    // Linear radiance, 3 * width * height values: R, G, B of the first pixel, row by row. Values
-    // that are not finite count as 0. The half mean is that of one fixed half of the samples.
+    // Linear radiance, 3 * width * height values: R, G, B of the first pixel, row by row. All
+    // finite (others lead to no NaN, but to no sense either). The half mean is the mean over one
+    // fixed half of the samples.
     std::span<const float> mean, halfMean;
 };
 
 // Says which spans of a BlockView a criterion reads; the others may be left empty.
 enum class ViewNeed { Nothing, Mean, MeanAndHalf };
+
+// Checks that a view has a size, samples and the spans in `need`. Throws std::invalid_argument.
+void CheckView(const BlockView& view, ViewNeed need);
 
 // Records an answer of a criterion. No number in it is ever NaN.
 struct Decision {
@@ -71,8 +75,8 @@ struct RuleContext {
 
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.
 struct CriterionFactory {
-    std::string rule;      // as it was given, for headers and reports
-    std::string checksum;  // of the file that the rule reads; empty if it reads none
+    std::string rule = {};      // as it was given, for headers and reports
+    std::string checksum = {};  // of the file that the rule reads; empty if it reads none
     // Pixels a side below which a block does not judge itself but follows a neighbour (see
     // small_blocks.h); 0 for rules that only count samples.
     int smallestSide = 0;

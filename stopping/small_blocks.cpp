@@ -11,9 +11,7 @@ std::vector<int> BlockLeaders(int columns, std::span<const BlockSize> sizes, int
     if (columns <= 0 || count % columns != 0)
         throw std::invalid_argument("block sizes do not fill whole rows of the grid");
 
-    auto isSmall = [&](int i) {
-        return std::min(sizes[i].width, sizes[i].height) < smallestSide;
-    };
+    auto isSmall = [&](int i) { return std::min(sizes[i].width, sizes[i].height) < smallestSide; };
     auto largestNeighbour = [&](int i) {
         const int x = i % columns, y = i / columns, rows = count / columns;
         int best = -1;

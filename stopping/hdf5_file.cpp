@@ -1,0 +1,209 @@
+#include "stopping/hdf5_file.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+static_assert(std::is_same_v<hid_t, int64_t>);
+
+using Close = herr_t (*)(hid_t);
+
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error("cannot " + what); }
+
+void Check(herr_t status, const std::string& what) {
+    if (status < 0) Fail(what);
+}
+
+// Owns an identifier, which is negative if the call that returns it has failed.
+class Handle {
+  public:
+    Handle(hid_t id, Close close, const std::string& what) : id(id), close(close) {
+        if (id < 0) Fail(what);
+    }
+    ~Handle() { close(id); }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id; }
+
+  private:
+    hid_t id;
+    Close close;
+};
+
+std::shared_ptr<const int64_t> Share(hid_t id, Close close, const std::string& what) {
+    if (id < 0) Fail(what);
+    return {new int64_t(id), [close](const int64_t* owned) {
+                close(*owned);
+                delete owned;
+            }};
+}
+
+// Keeps the library from printing an account of its errors, which are thrown.
+void BeQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::vector<int64_t> ShapeOf(hid_t space) {
+    const int rank = H5Sget_simple_extent_ndims(space);
+    std::vector<hsize_t> shape(size_t(std::max(0, rank)));
+    if (rank > 0) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+    return {shape.begin(), shape.end()};
+}
+
+size_t Count(hid_t space) {
+    return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+}
+
+void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t space,
+                    const void* data) {
+    const std::string what = "write attribute '" + name + "'";
+    const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, what);
+    Check(H5Awrite(attribute, type, data), what);
+}
+
+}  // namespace
+
+Hdf5Group Hdf5Group::Open(const std::string& path) {
+    BeQuiet();
+    return Hdf5Group(
+        Share(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it as HDF5"));
+}
+
+Hdf5Group Hdf5Group::Create(const std::string& path) {
+    BeQuiet();
+    return Hdf5Group(Share(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Fclose, "create it"));
+}
+
+void Hdf5Group::Flush() { Check(H5Fflush(*id, H5F_SCOPE_GLOBAL), "write it to the end"); }
+
+bool Hdf5Group::HasGroup(const std::string& name) const {
+    return H5Lexists(*id, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Hdf5Group Hdf5Group::Group(const std::string& name) const {
+    return Hdf5Group(
+        Share(H5Gopen2(*id, name.c_str(), H5P_DEFAULT), H5Gclose, "find the group '" + name + "'"));
+}
+
+Hdf5Group Hdf5Group::MakeGroup(const std::string& name) {
+    return Hdf5Group(Share(H5Gcreate2(*id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Gclose, "make the group '" + name + "'"));
+}
+
+bool Hdf5Group::HasAttribute(const std::string& name) const {
+    return H5Aexists(*id, name.c_str()) > 0;
+}
+
+int Hdf5Group::Int(const std::string& name) const {
+    const std::string what = "read attribute '" + name + "', which must be an integer";
+    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_INTEGER || Count(space) != 1) Fail(what);
+    int value = 0;
+    Check(H5Aread(attribute, H5T_NATIVE_INT, &value), what);
+    return value;
+}
+
+std::vector<std::string> Hdf5Group::Strings(const std::string& name) const {
+    const std::string what = "read attribute '" + name + "', which must be text";
+    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_STRING) Fail(what);
+    std::vector<std::string> strings(Count(space));
+    if (strings.empty()) return strings;
+
+    if (H5Tis_variable_str(type) > 0) {
+        std::vector<char*> texts(strings.size(), nullptr);
+        Check(H5Aread(attribute, type, texts.data()), what);
+        for (size_t i = 0; i < texts.size(); ++i)
+            if (texts[i]) strings[i] = texts[i];
+        H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+    } else {
+        const size_t size = H5Tget_size(type);
+        std::vector<char> texts(strings.size() * size);
+        Check(H5Aread(attribute, type, texts.data()), what);
+        for (size_t i = 0; i < strings.size(); ++i)
+            strings[i].assign(&texts[i * size], strnlen(&texts[i * size], size));
+    }
+    return strings;
+}
+
+std::string Hdf5Group::String(const std::string& name) const {
+    const std::vector<std::string> strings = Strings(name);
+    if (strings.size() != 1) Fail("read attribute '" + name + "', which must be one text");
+    return strings[0];
+}
+
+void Hdf5Group::SetInt(const std::string& name, int value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    WriteAttribute(*id, name, H5T_NATIVE_INT, space, &value);
+}
+
+void Hdf5Group::SetString(const std::string& name, const std::string& text) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+    Check(H5Tset_size(type, H5T_VARIABLE), "make a text type");
+    const char* pointer = text.c_str();
+    WriteAttribute(*id, name, type, space, &pointer);
+}
+
+// Writes one array of texts of the same length, padded with zeros, as Keras does through h5py.
+void Hdf5Group::SetStrings(const std::string& name, std::span<const std::string> texts) {
+    size_t size = 1;
+    for (const std::string& text : texts) size = std::max(size, text.size());
+    std::vector<char> padded(size * texts.size());
+    for (size_t i = 0; i < texts.size(); ++i)
+        std::copy(texts[i].begin(), texts[i].end(), padded.begin() + ptrdiff_t(i * size));
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+    Check(H5Tset_size(type, size), "make a text type");
+    Check(H5Tset_strpad(type, H5T_STR_NULLPAD), "make a text type");
+    const hsize_t count = texts.size();
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, "make an array of texts");
+    WriteAttribute(*id, name, type, space, padded.data());
+}
+
+std::vector<int64_t> Hdf5Group::Shape(const std::string& path) const {
+    const std::string what = "find the array '" + path + "'";
+    const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);
+    const Handle space(H5Dget_space(data), H5Sclose, what);
+    return ShapeOf(space);
+}
+
+std::vector<float> Hdf5Group::Floats(const std::string& path,
+                                     std::span<const int64_t> shape) const {
+    const std::string what = "read the array '" + path + "'";
+    const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);
+    const Handle space(H5Dget_space(data), H5Sclose, what);
+    const Handle type(H5Dget_type(data), H5Tclose, what);
+    if (!std::ranges::equal(ShapeOf(space), shape)) {
+        std::string text;
+        for (int64_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
+        Fail(what + ": it does not have the shape " + text);
+    }
+    if (H5Tget_class(type) != H5T_FLOAT) Fail(what + ": it holds no floating-point numbers");
+    std::vector<float> values(Count(space));
+    Check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+    return values;
+}
+
+void Hdf5Group::AddFloats(const std::string& path, std::span<const int64_t> shape,
+                          std::span<const float> values) {
+    const std::string what = "write the array '" + path + "'";
+    const std::vector<hsize_t> size(shape.begin(), shape.end());
+    const Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, what);
+    if (Count(space) != values.size()) Fail(what + ": its values do not fill its shape");
+    const Handle data(
+        H5Dcreate2(*id, path.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose, what);
+    Check(H5Dwrite(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+}
+
+}  // namespace lull

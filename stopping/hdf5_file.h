@@ -1,0 +1,51 @@
+// Reads and writes HDF5 files: the little of that format that lull uses. Only hdf5_file.cpp names
+// the library. One thread at a time, as the library has it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lull {
+
+// Stands for a group of an open file; the first one for its root. Copies stand for the same group,
+// and the file is closed with the last of them. All functions throw std::runtime_error saying what
+// could not be done; none of the messages names the file.
+class Hdf5Group {
+  public:
+    // Opens a file for reading, or begins a new one (in place of an old one) for writing.
+    static Hdf5Group Open(const std::string& path);
+    static Hdf5Group Create(const std::string& path);
+    // Writes to disk all there is so far.
+    void Flush();
+
+    bool HasGroup(const std::string& name) const;
+    Hdf5Group Group(const std::string& name) const;
+    Hdf5Group MakeGroup(const std::string& name);
+
+    // Read and write attributes. Strings may be of fixed or variable length and text encoding.
+    bool HasAttribute(const std::string& name) const;
+    int Int(const std::string& name) const;
+    std::string String(const std::string& name) const;
+    std::vector<std::string> Strings(const std::string& name) const;
+    void SetInt(const std::string& name, int value);
+    void SetString(const std::string& name, const std::string& text);
+    void SetStrings(const std::string& name, std::span<const std::string> texts);
+
+    // Read and write arrays of floating-point numbers, row-major. Floats() checks the shape before
+    // it takes memory for the array.
+    std::vector<int64_t> Shape(const std::string& path) const;
+    std::vector<float> Floats(const std::string& path, std::span<const int64_t> shape) const;
+    void AddFloats(const std::string& path, std::span<const int64_t> shape,
+                   std::span<const float> values);
+
+  private:
+    using Id = std::shared_ptr<const int64_t>;
+    explicit Hdf5Group(Id id) : id(std::move(id)) {}
+
+    Id id;
+};
+
+}  // namespace lull

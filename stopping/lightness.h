@@ -1,0 +1,18 @@
+// Turns linear radiance into what an observer sees on a display: 8-bit sRGB, and its lightness.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace lull {
+
+// Applies the sRGB transfer curve (IEC 61966-2-1) to linear values, clamps to [0, 1] and rounds
+// to 8 bits. NaN becomes 0. Throws std::invalid_argument if the lengths differ.
+void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);
+
+// Computes the CIE 1976 lightness, in [0, 100], of pixels in 8-bit sRGB (row-major R, G, B):
+// L = 116 f(Y) - 16 with f(t) = cbrt(t) where t > 0.008856 and 7.787 t + 16/116 elsewhere.
+// Throws std::invalid_argument if `srgb` is not three times as long as `lightness`.
+void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness);
+
+}  // namespace lull

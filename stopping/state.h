@@ -1,0 +1,69 @@
+// Packs the state of a criterion into bytes and back, with the layout of the machine it runs on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace lull {
+
+class StateWriter {
+  public:
+    template <typename T>
+    void Put(const T& value) {
+        PutAll(std::span<const T>(&value, 1));
+    }
+    template <typename T>
+    void PutAll(std::span<const T> values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        if (values.empty()) return;
+        const size_t size = bytes.size();
+        bytes.resize(size + values.size_bytes());
+        std::memcpy(&bytes[size], values.data(), values.size_bytes());
+    }
+
+    std::vector<std::byte> bytes;
+};
+
+// Reads what a StateWriter has written, in the same order. All calls throw std::runtime_error
+// where the bytes end too early.
+class StateReader {
+  public:
+    explicit StateReader(std::span<const std::byte> bytes) : rest(bytes) {}
+
+    template <typename T>
+    T Get() {
+        T value;
+        GetAll(std::span<T>(&value, 1));
+        return value;
+    }
+    template <typename T>
+    void GetAll(std::span<T> values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        if (rest.size() < values.size_bytes())
+            throw std::runtime_error("the saved state of a stopping rule is cut short");
+        if (!values.empty()) std::memcpy(values.data(), rest.data(), values.size_bytes());
+        rest = rest.subspan(values.size_bytes());
+    }
+    // Returns how many bytes are left.
+    size_t Left() const { return rest.size(); }
+    // Checks that nothing is left.
+    void Finish() const {
+        if (!rest.empty())
+            throw std::runtime_error("the saved state of a stopping rule is longer than expected");
+    }
+    // Checks that the next value is `tag`, which tells the states of different rules apart.
+    void Expect(uint32_t tag) {
+        if (Get<uint32_t>() != tag)
+            throw std::runtime_error("the saved state belongs to another stopping rule");
+    }
+
+  private:
+    std::span<const std::byte> rest;
+};
+
+}  // namespace lull

@@ -1,0 +1,30 @@
+// Gives tests a file name of their own and removes the file afterwards.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace lull {
+
+class ScratchFile {
+  public:
+    explicit ScratchFile(const std::string& suffix) {
+        static int count = 0;
+        path = (std::filesystem::temp_directory_path() /
+                ("lull-" + std::to_string(getpid()) + "-" + std::to_string(count++) + suffix))
+                   .string();
+    }
+    ScratchFile(const std::string& suffix, const std::string& text) : ScratchFile(suffix) {
+        std::ofstream(path) << text;
+    }
+    ~ScratchFile() { std::filesystem::remove(path); }
+    ScratchFile(const ScratchFile&) = delete;
+    ScratchFile& operator=(const ScratchFile&) = delete;
+
+    std::string path;
+};
+
+}  // namespace lull
