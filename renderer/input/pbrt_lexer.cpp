@@ -80,7 +80,8 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     for (const Source& open : sources)
         if (open.canonical == source.canonical)
             throw Error(loc, "'" + Printable(file) + "' includes itself; remove this Include");
-    if (inclusions[source.canonical]++ > 0) repeatedBytes += std::max(source.contents.size, kLeastBytes);
+    if (inclusions[source.canonical]++ > 0)
+        repeatedBytes += std::max(source.contents.size, kLeastBytes);
     if (repeatedBytes > kMostRepeatedBytes)
         throw Error(loc,
                     "files included again and again come to more than 1 GiB of text; use "

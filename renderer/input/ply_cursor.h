@@ -92,9 +92,9 @@ struct PlyCursor {
     // Reads the count of a list: at least 0 and no more than the values that can follow.
     size_t ReadListCount(const PlyProperty& list) {
         const double count = Read(list.countType);
-        if (!(count >= 0))
-            throw Error(loc,
-                        "a list of property '" + Printable(list.name) + "' has a negative count");
+        if (!(count >= 0) || count != std::floor(count))
+            throw Error(loc, "a list of property '" + Printable(list.name) +
+                                 "' has a count that is negative or no integer");
         const size_t bytes = format == PlyFormat::Ascii ? 1 : PlyTypeSize(list.type);
         if (count > double(Remaining() / bytes)) FailTruncated();
         return size_t(count);

@@ -127,7 +127,7 @@ void ReadFixedVertices(const PlyElement& element, const SlotMap& slots, PlyCurso
 }
 
 void ReadVertices(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
-    const SlotMap slots = MapSlots(element, cursor.loc);
+    const SlotMap slots = MapSlots(element, {cursor.loc.file});
     const size_t count = size_t(element.count);
     mesh->positions.resize(count);
     if (slots[kNx] >= 0) mesh->normals.resize(count);
@@ -196,7 +196,7 @@ void ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh, War
                (property.name == "vertex_indices" || property.name == "vertex_index");
     };
     if (std::ranges::count_if(element.properties, isIndices) != 1)
-        throw Error(cursor.loc, "the faces of the PLY file need one list vertex_indices");
+        throw Error({cursor.loc.file}, "the faces of the PLY file need one list vertex_indices");
     // Kept to the triangles below, since a face may become two of them or none.
     const bool hasFaceIndices = std::ranges::any_of(element.properties, [](const auto& property) {
         return property.name == "face_indices" && !property.isList;

@@ -34,7 +34,9 @@ class TestFolder {
     // Writes a file and returns its path.
     std::string Write(const std::string& name, std::string_view contents) const {
         std::filesystem::create_directories((folder / name).parent_path());
-        std::ofstream out(folder / name, std::ios::binary | std::ios::trunc);
+        // A new file, for some file systems wait for the disk when an old one is cut to nothing.
+        std::filesystem::remove(folder / name);
+        std::ofstream out(folder / name, std::ios::binary);
         out.write(contents.data(), std::streamsize(contents.size()));
         out.close();
         if (!out) throw Error("cannot write " + Path(name));
