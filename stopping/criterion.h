@@ -18,7 +18,7 @@ struct BlockView {
     // Linear radiance, 3 * width * height values: R, G, B of the first pixel, row by row. All
     // finite (others lead to no NaN, but to no sense either). The half mean is the mean over one
     // fixed half of the samples.
-    std::span<const float> mean, halfMean;
+    std::span<const float> mean = {}, halfMean = {};
 };
 
 // Says which spans of a BlockView a criterion reads; the others may be left empty.
@@ -67,10 +67,10 @@ struct BlockInfo {
 
 // Holds what a rule can depend on beside its own text.
 struct RuleContext {
-    int passSpp = 20;          // samples per pixel and pass, > 0; the first pass ends at this spp
-    int blockCount = 0;        // blocks in the image; 0: not known
-    std::string sceneName;     // the row that `thresholds:FILE` takes; may be empty
-    std::string defaultModel;  // the file that `learned` reads; may be empty
+    int passSpp = 20;            // samples per pixel and pass, > 0; the first pass ends at this spp
+    int blockCount = 0;          // blocks in the image; 0: not known
+    std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty
+    std::string defaultModel = {};  // the file that `learned` reads; may be empty
 };
 
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.
