@@ -24,7 +24,7 @@ struct Half {
 #ifdef __F16C__
         return _cvtsh_ss(bits);
 #else
-        return float(Eigen::half_impl::raw_uint16_to_half(bits));
+        return float(Eigen::numext::bit_cast<Eigen::half>(bits));
 #endif
     }
     bool operator==(const Half&) const = default;

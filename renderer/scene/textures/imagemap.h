@@ -33,7 +33,7 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
         else if constexpr (channels == 1 || std::is_same_v<T, Rgb>)
             return Blend<channels>(texels.values.data(), channels, image.width, f, decode);
         else
-            return 0;  // float textures have grey images
+            return T();  // never: float textures have grey images
     };
     return map.scale * std::visit(blend, image.texels);
 }
