@@ -164,8 +164,9 @@ ExitCode RunRender(Options options) {
     // Check all that can be wrong before the work begins.
     Warnings warnings = MakePrintedWarnings();
     const Description description = LoadDescription(options.scene, warnings);
+    Warnings unheard;  // Compile() will give them again
     const FilmSettings filmSettings =
-        MakeFilmSettings(description, options.scene.compile.film, warnings);
+        MakeFilmSettings(description, options.scene.compile.film, unheard);
     const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
     const CriterionFactory factory = MakeFactory(options, region, &options.schedule);
     const RenderFiles files =
