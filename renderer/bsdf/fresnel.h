@@ -22,23 +22,23 @@ inline float FresnelDielectric(float cosI, float eta) {
     return 0.5f * (Sqr(parallel) + Sqr(perpendicular));
 }
 
-// Returns the reflectance of a conductor of index eta + i k, relative to the medium around it, for
+// Holds a colour in four lanes, the last one padding: roots and quotients are one instruction each.
+using RgbLanes = Eigen::Array4f;
+
+// Returns the reflectance of a conductor of index n + i k, relative to the medium around it, for
 // unpolarised light (Born and Wolf 1999, section 14.4). `cosI` in [0, 1].
-inline Rgb FresnelConductor(float cosI, const Rgb& eta, const Rgb& k) {
-    // Works on four lanes, so that roots and quotients are one instruction each.
-    using Lanes = Eigen::Array4f;
-    const Lanes n(eta.x(), eta.y(), eta.z(), 1), m(k.x(), k.y(), k.z(), 0);
+inline Rgb FresnelConductor(float cosI, const RgbLanes& n, const RgbLanes& k) {
     const float cos2 = std::min(Sqr(cosI), 1.f), sin2 = 1 - cos2;
-    const Lanes n2 = n * n, m2 = m * m;
-    const Lanes t0 = n2 - m2 - sin2;
-    const Lanes a2b2 = (t0 * t0 + 4 * n2 * m2).sqrt();
-    const Lanes a = (0.5f * (a2b2 + t0)).max(0.f).sqrt();
-    const Lanes t1 = a2b2 + cos2, t2 = (2 * std::min(cosI, 1.f)) * a;
-    const Lanes t3 = cos2 * a2b2 + Sqr(sin2), t4 = t2 * sin2;
-    // The denominators vanish only for eta = k = 0 seen head-on or edge-on.
+    const RgbLanes n2 = n * n, k2 = k * k;
+    const RgbLanes t0 = n2 - k2 - sin2;
+    const RgbLanes a2b2 = (t0 * t0 + 4 * n2 * k2).sqrt();
+    const RgbLanes a = (0.5f * (a2b2 + t0)).max(0.f).sqrt();
+    const RgbLanes t1 = a2b2 + cos2, t2 = (2 * std::min(cosI, 1.f)) * a;
+    const RgbLanes t3 = cos2 * a2b2 + Sqr(sin2), t4 = t2 * sin2;
+    // Rs = (t1 - t2) / (t1 + t2) and Rp = Rs (t3 - t4) / (t3 + t4); their mean is one quotient.
+    // The denominator vanishes only for eta = k = 0 seen head-on or edge-on.
     constexpr float tiny = std::numeric_limits<float>::min();
-    const Lanes s = (t1 - t2) / (t1 + t2).max(tiny);
-    const Lanes r = (0.5f * s * (1 + (t3 - t4) / (t3 + t4).max(tiny))).max(0.f);
+    const RgbLanes r = ((t1 - t2) * t3).max(0.f) / ((t1 + t2) * (t3 + t4)).max(tiny);
     return r.head<3>();
 }
 
@@ -63,9 +63,17 @@ struct DielectricInterface {
     float eta;  // index beyond the surface over the index on the normal's side
     float operator()(float cosI) const { return FresnelDielectric(cosI, eta); }
 };
-struct ConductorInterface {
-    StoredRgb eta, k;
-    Rgb operator()(float cosI) const { return FresnelConductor(std::abs(cosI), eta, k); }
+class ConductorInterface {
+  public:
+    // The index is eta + i k.
+    ConductorInterface(const Rgb& eta, const Rgb& k)
+        : eta{eta.x(), eta.y(), eta.z(), 1}, k{k.x(), k.y(), k.z(), 0} {}
+    Rgb operator()(float cosI) const {
+        return FresnelConductor(std::abs(cosI), RgbLanes::Map(eta), RgbLanes::Map(k));
+    }
+
+  private:
+    float eta[4], k[4];  // in lanes, so that no hit has to assemble them
 };
 struct PerfectMirror {
     float operator()(float) const { return 1; }

@@ -254,7 +254,7 @@ using Lobe =
                  SpecularReflection<PerfectMirror>, SpecularReflection<DielectricInterface>,
                  SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
                  FresnelBlend>;
-static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 48);
+static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
 Lobe Scaled(const Lobe& lobe, const Rgb& scale);

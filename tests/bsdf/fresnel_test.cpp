@@ -8,6 +8,8 @@
 namespace lull::test {
 namespace {
 
+Rgb Conductor(float cosI, const Rgb& eta, const Rgb& k) { return ConductorInterface(eta, k)(cosI); }
+
 TEST(FresnelDielectric, HasTextbookValues) {
     EXPECT_NEAR(FresnelDielectric(1, 1.5f), 0.04f, 1e-7f);
     EXPECT_NEAR(FresnelDielectric(-1, 1.5f), 0.04f, 1e-7f);
@@ -39,7 +41,7 @@ TEST(FresnelConductor, AgreesWithAmplitudes) {
         const Rgb eta(0.1f + 3 * random.Float(), 0.05f + random.Float(), 1);
         const Rgb k(0.05f + 5 * random.Float(), 0.05f + 10 * random.Float(),
                     0.05f + random.Float());
-        const Rgb f = FresnelConductor(c, eta, k);
+        const Rgb f = Conductor(c, eta, k);
         for (int j = 0; j < 3; ++j)
             EXPECT_NEAR(f[j], ReferenceFresnel(c, std::complex<double>(eta[j], k[j])), 1e-4)
                 << c << " " << eta[j] << " " << k[j];
@@ -49,7 +51,7 @@ TEST(FresnelConductor, AgreesWithAmplitudes) {
 TEST(FresnelConductor, IsFiniteForDegenerateIndices) {
     for (float c : {0.f, 1e-6f, 0.5f, 1.f})
         for (float k : {0.f, 1e-6f, 1.f, 100.f}) {
-            const Rgb f = FresnelConductor(c, Rgb(0, 1, 1e-6f), Rgb::Constant(k));
+            const Rgb f = Conductor(c, Rgb(0, 1, 1e-6f), Rgb::Constant(k));
             EXPECT_TRUE(IsFinite(f) && (f >= 0).all() && (f <= 1 + 1e-5f).all()) << c << " " << k;
         }
 }
