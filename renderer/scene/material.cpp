@@ -37,10 +37,6 @@ struct Material {
 
 namespace {
 
-SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
-    return SurfaceNeeds(uint8_t(a) | uint8_t(b));
-}
-
 void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
     if (material.isConstant) {
         for (const Lobe& lobe : material.constantLobes) bsdf->Add(lobe);
@@ -70,7 +66,7 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
             kind.VisitTextures([&](const auto& texture) {
                 if (texture.IsConstant()) return;
                 m->isConstant = false;
-                if (textures.ReadsUv(texture)) m->lobeNeeds = m->lobeNeeds | kNeedsUv;
+                m->lobeNeeds = m->lobeNeeds | textures.Needs(texture);
             });
             if constexpr (requires { kind.roughness; })
                 if (!kind.roughness.IsIsotropic()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
@@ -90,8 +86,8 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
         m->kind);
     m->needs = m->lobeNeeds;
     if (m->bump) {
-        m->needs = m->needs | kNeedsTangents | kNeedsNormalDerivatives;
-        if (textures.ReadsUv(*m->bump)) m->needs = m->needs | kNeedsUv;
+        m->needs = m->needs | kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint |
+                   textures.Needs(*m->bump);
     }
 }
 
@@ -141,19 +137,20 @@ Material MakeMaterial(const MaterialEntity& entity, const TextureTable& textures
 void FoldConstants(const TextureTable& textures, std::span<const Material> made, Material* m) {
     if (!m->isConstant) return;
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
-    const MaterialInputs in{textures, {Vec3f::Zero(), Vec2f::Zero()}, made};
+    const MaterialInputs in{textures, TextureContext{Vec3f::Zero(), Vec2f::Zero()}, made};
     std::visit([&](const auto& kind) { kind.AddLobes(in, &bsdf); }, m->kind);
     m->maxLobes = bsdf.LobeCount(LobeSet::All);
     for (int i = 0; i < m->maxLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
     m->constantEta = bsdf.Eta();
 }
 
-// Returns the frame with s along dpdu, which anisotropy refers to.
+// Returns the frame with s along dpdu, which anisotropy refers to; any where dpdu is none.
 Frame TangentFrame(const SurfaceInteraction& hit) {
     const Vec3f s = hit.dpdu - hit.ns * hit.ns.dot(hit.dpdu);
     const float length = s.norm();
     Frame frame{s / length, {}, hit.ns};
-    if (length > 0 && length < kInfinity)
+    // Less is left over from rounding.
+    if (length > 1e-4f * hit.dpdu.norm() && length < kInfinity)
         frame.t = hit.ns.cross(frame.s);
     else
         CoordinateSystem(hit.ns, &frame.s, &frame.t);
@@ -194,7 +191,7 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
     Bsdf bsdf(frame, hit->n);
-    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv}, materials}, &bsdf);
+    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials}, &bsdf);
     return bsdf;
 }
 
