@@ -88,7 +88,7 @@ Network ReadNetwork(const Hdf5Group& root, const KerasModel& model, int64_t inpu
 
 ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs) {
     ModelSettings s;
-    if (inputs > 10000) throw std::runtime_error("the network takes too many values");
+    if (inputs > 1000000) throw std::runtime_error("the network takes too many values");
     s.m = int(inputs);
     if (timeSteps > 0) s.k = timeSteps;
     if (file.HasGroup("lull")) {

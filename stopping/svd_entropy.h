@@ -1,5 +1,5 @@
 // Measures how evenly the energy of an image is spread over its singular values: noise raises the
-// small ones, so their entropy falls as a rendering converges (the paper, section 3).
+// small ones, so their entropy falls as a rendering converges.
 //
 // "The paper" is, here and elsewhere: Buisine, Bigand, Synave, Delepoulle, Renaud: Stopping
 // Criterion during Rendering of Computer-Generated Images Based on SVD-Entropy. Entropy 2021,

@@ -19,7 +19,7 @@ struct VoteSchedule {
     int Spacing() const { return std::gcd(n, voteSpacing); }
 };
 
-// Counts noiseless votes in a row (the paper's section 4: three, because of single wrong ones).
+// Counts noiseless votes in a row; the paper asks for three, as single ones can be wrong.
 struct VoteCounter {
     int needed = 3;
     int inRow = 0;

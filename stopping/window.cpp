@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stopping/small_blocks.h"
+
 namespace lull {
 
 std::string FeatureName(Feature feature) {
@@ -34,7 +36,7 @@ void CheckSettings(const ModelSettings& s) {
     };
     check("k", s.k, 1, 1000);
     check("n", s.n, 1, 1000000);
-    check("m", s.m, 1, 10000);
+    check("m", s.m, 1, smallestVotingSide * smallestVotingSide);
     check("votes", s.votes, 1, 1000);
     check("vote_spacing", s.voteSpacing, 0, 1000000);
     const int side = int(std::lround(std::sqrt(s.m)));

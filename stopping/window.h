@@ -30,7 +30,8 @@ struct ModelSettings {
     int voteSpacing = 0;  // spp between votes; 0: vote after every pass
 };
 
-// Throws std::invalid_argument naming the setting that is out of range.
+// Throws std::invalid_argument naming the setting that is out of range. (More sub-blocks than the
+// smallest block that votes has pixels are too many, so that no block turns out to be too small.)
 void CheckSettings(const ModelSettings& settings);
 
 // Returns (v - min) / (max - min + 2.2e-16) for each value: in [0, 1], and all 0 if they are

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -114,8 +117,10 @@ void ExpectError(const std::string& path, const std::string& part) {
 // Writes a model of one dense layer of one unit after an LSTM layer of one unit, whose weights
 // have the given shapes and all the same value.
 void WriteSmallModel(const std::string& path, const std::string& config, float value,
-                     std::vector<int64_t> kernelShape = {4, 4}) {
+                     std::vector<int64_t> kernelShape = {4, 4},
+                     const std::function<void(Hdf5Group)>& addSettings = {}) {
     Hdf5Group file = Hdf5Group::Create(path);
+    if (addSettings) addSettings(file.MakeGroup("lull"));
     file.SetString("model_config", config);
     Hdf5Group root = file.MakeGroup("model_weights");
     auto write = [&](const std::string& layer, const std::string& name,
@@ -169,6 +174,33 @@ TEST(ModelFile, RefusesContradictingSettings) {
     const ScratchFile file(".h5");
     WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 25});
     ExpectError(file.path, "/lull says k = 8 and m = 25, but the network takes 8 steps of 4");
+}
+
+TEST(ModelFile, RefusesSettingsOfNoSense) {
+    const ScratchFile file(".h5");
+    auto expect = [&](const std::string& error, const std::function<void(Hdf5Group)>& add) {
+        WriteSmallModel(file.path, smallConfig, 0.5f, {4, 4}, add);
+        ExpectError(file.path, error);
+    };
+    expect("attribute 'k', which must be an integer", [](Hdf5Group g) { g.SetString("k", "8"); });
+    expect("attribute 'feature', which must be text", [](Hdf5Group g) { g.SetInt("feature", 1); });
+    expect("feature 'H3' is not known", [](Hdf5Group g) { g.SetString("feature", "H3"); });
+    expect("votes = 0 is not in", [](Hdf5Group g) { g.SetInt("votes", 0); });
+    // One setting alone leaves the others at their defaults.
+    WriteSmallModel(file.path, smallConfig, 0.5f, {4, 4}, [](Hdf5Group g) { g.SetInt("n", 80); });
+    EXPECT_EQ(ReadModel(file.path).settings.n, 80);
+    EXPECT_TRUE(ReadModel(file.path).settings.snorm);
+}
+
+TEST(ModelFile, RefusesFilesCutShort) {
+    const ScratchFile whole(".h5"), part(".h5");
+    WriteModel(whole.path, RandomNetwork(25, {7, 5}, 1), {.m = 25});
+    std::ifstream in(whole.path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    for (size_t size = 0; size < bytes.size(); size += 500) {
+        std::ofstream(part.path, std::ios::binary) << bytes.substr(0, size);
+        EXPECT_NE(ErrorOf(part.path), "") << size;
+    }
 }
 
 TEST(ModelFile, RefusesOtherFiles) {
