@@ -9,11 +9,11 @@ exec </dev/null
 install_packages $build_packages $test_packages
 
 echo "== format"
-git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format --dry-run -Werror
+find renderer stopping tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
 
 for preset in release sanitize; do
     echo "== $preset"
     cmake --preset $preset
     cmake --build --preset $preset
-    ctest --preset $preset
+    ctest --preset $preset -j"$(nproc)"
 done

@@ -120,7 +120,8 @@ def revolve(path, outline, sides, v_scale=1):
     for i in range(len(outline) - 1):
         for j in range(sides):
             a, b = i * row + j, (i + 1) * row + j
-            triangles += [(a, b, a + 1), (a + 1, b, b + 1)]
+            triangles += [(a, b, a + 1)] * (outline[i][0] > 0)  # none of no area at the axis
+            triangles += [(a + 1, b, b + 1)]
     write_ply(path, vertices, triangles)
 
 
