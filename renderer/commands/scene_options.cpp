@@ -79,8 +79,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
 }
 
 Warnings MakePrintedWarnings() {
-    return Warnings(
-        [](const std::string& message) { fmt::print(stderr, "lull: warning: {}\n", message); });
+    return Warnings([](const std::string& message) { fmt::print(stderr, "lull: {}\n", message); });
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {

@@ -1,0 +1,206 @@
+// Gives the program scenes and files that are broken: it must say what is wrong and where, with
+// exit code 1, and leave all files as they are.
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kRender = "render scene.pbrt -o out.exr --spp 2";
+
+void ExpectBadScene(const std::string& text, const std::vector<std::string>& parts) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", text);
+    ExpectFailure(directory, kRender, parts);
+}
+
+// A mesh of one triangle; `vertex` is its third vertex, `index` the place of it.
+std::string PlyText(const std::string& vertex, const std::string& index) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+           "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+           "end_header\n-1 -1 0\n1 -1 0\n" +
+           vertex + "\n3 0 1 " + index + "\n";
+}
+
+void ExpectBadMesh(const std::string& ply, const std::vector<std::string>& parts) {
+    const TemporaryDirectory directory;
+    directory.Write("mesh.ply", ply);
+    directory.Write("scene.pbrt", SceneText("Shape \"plymesh\" \"string filename\" \"mesh.ply\""));
+    ExpectFailure(directory, kRender, parts);
+}
+
+TEST(BadInput, MissingScene) {
+    const TemporaryDirectory directory;
+    ExpectFailure(directory, kRender, {"scene.pbrt"});
+}
+
+TEST(BadInput, DirectoryAsScene) {
+    const TemporaryDirectory directory;
+    std::filesystem::create_directory(directory.File("folder.pbrt"));
+    ExpectFailure(directory, "render folder.pbrt -o out.exr --spp 2", {"folder.pbrt"});
+}
+
+TEST(BadInput, SceneThatIsNoText) {
+    ExpectBadScene(std::string("\x7f\x45\x4c\x46\0\1\2\3", 8), {"scene.pbrt:1"});
+}
+
+TEST(BadInput, SceneWithoutAWorld) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", "");
+    ExpectFailure(directory, kRender, {"scene.pbrt"});
+}
+
+TEST(BadInput, GltfScene) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.gltf", "{}");
+    ExpectFailure(directory, "render scene.gltf -o out.exr --spp 2", {"scene.gltf"});
+}
+
+TEST(BadInput, UnknownDirective) {
+    ExpectBadScene(SceneText("\nShapely \"sphere\""), {"scene.pbrt:8", "Shapely"});
+}
+
+TEST(BadInput, UnbalancedBegin) {
+    ExpectBadScene(SceneText("AttributeBegin\nShape \"sphere\""), {"scene.pbrt:"});
+}
+
+TEST(BadInput, UnbalancedEnd) {
+    ExpectBadScene(SceneText("Shape \"sphere\"\nAttributeEnd"), {"scene.pbrt:8"});
+}
+
+TEST(BadInput, RecursiveInclude) {
+    ExpectBadScene(SceneText("Include \"scene.pbrt\""), {"scene.pbrt:"});
+}
+
+TEST(BadInput, MissingInclude) {
+    ExpectBadScene(SceneText("Include \"nowhere.pbrt\""), {"scene.pbrt:7", "nowhere.pbrt"});
+}
+
+TEST(BadInput, UnfinishedString) { ExpectBadScene(SceneText("Shape \"sphere"), {"scene.pbrt:7"}); }
+
+TEST(BadInput, UnknownPlugins) {
+    ExpectBadScene(SceneText("Shape \"blob\""), {"scene.pbrt:7", "blob"});
+    ExpectBadScene(SceneText("Material \"velvet\"\nShape \"sphere\""), {"scene.pbrt:7", "velvet"});
+    ExpectBadScene(SceneText("LightSource \"torch\""), {"scene.pbrt:7", "torch"});
+}
+
+TEST(BadInput, NegativeOrHugeResolution) {
+    for (const char* size : {"-24", "0", "2000000000"}) {
+        const std::string film = std::string("\"integer xresolution\" [") + size + "]";
+        ExpectBadScene(SceneText(kSphere, film), {"scene.pbrt:3"});
+    }
+}
+
+TEST(BadInput, SingularTransform) {
+    ExpectBadScene(SceneText("Scale 1 0 1\nShape \"sphere\""), {"scene.pbrt:"});
+    ExpectBadScene("Scale 0 0 0\n" + SceneText(kSphere), {"scene.pbrt:"});
+}
+
+TEST(BadInput, MissingMesh) {
+    ExpectBadScene(SceneText("Shape \"plymesh\" \"string filename\" \"gone.ply\""),
+                   {"scene.pbrt:7", "gone.ply"});
+}
+
+TEST(BadInput, TruncatedMesh) {
+    const std::string whole = PlyText("0 1 0", "2");
+    for (const size_t length : {size_t(0), size_t(3), whole.size() / 2, whole.size() - 8})
+        ExpectBadMesh(whole.substr(0, length), {"mesh.ply"});
+}
+
+TEST(BadInput, IndexOutOfRange) {
+    ExpectBadMesh(PlyText("0 1 0", "3"), {"mesh.ply"});
+    ExpectBadMesh(PlyText("0 1 0", "-1"), {"mesh.ply"});
+    ExpectBadScene(SceneText("Shape \"trianglemesh\" \"integer indices\" [0 1 7]"
+                             " \"point P\" [0 0 0 1 0 0 0 1 0]"),
+                   {"scene.pbrt:7"});
+}
+
+TEST(BadInput, UnreadableTexture) {
+    const TemporaryDirectory directory;
+    directory.Write("image.png", "\x89PNG but not for long");
+    directory.Write("scene.pbrt",
+                    SceneText("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
+                              "\"image.png\"\nMaterial \"matte\" \"texture Kd\" \"t\"\n" +
+                              std::string(kSphere)));
+    ExpectFailure(directory, kRender, {"scene.pbrt:7", "image.png"});
+}
+
+TEST(BadInput, DirectoryAsOutput) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    std::filesystem::create_directory(directory.File("folder.exr"));
+    ExpectFailure(directory, "render scene.pbrt -o folder.exr --spp 2", {"folder.exr"});
+    ExpectFailure(directory, "render scene.pbrt -o nowhere/out.exr --spp 2", {"nowhere"});
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --spp 2 --report nowhere/r.json",
+                  {"nowhere"});
+}
+
+TEST(BadInput, BadRules) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    for (const char* rule : {"frogs", "fixed", "fixed:0", "fixed:-3", "fixed:12x", "dammertz:-1",
+                             "dammertz:nan", "cycles:", "''"})
+        ExpectFailure(directory, std::string("render scene.pbrt -o out.exr --stop ") + rule,
+                      {"--stop"});
+}
+
+TEST(BadInput, BadThresholdsFile) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    auto fail = [&](const std::string& file, const std::vector<std::string>& parts) {
+        ExpectFailure(directory, "render scene.pbrt -o out.exr --stop thresholds:" + file, parts);
+    };
+    fail("gone.csv", {"gone.csv"});
+    directory.Write("words.csv", "scene;twenty;\n");
+    fail("words.csv:scene", {"words.csv:1"});
+    directory.Write("other.csv", "elsewhere;20;\n");
+    fail("other.csv:scene", {"scene"});
+    directory.Write("many.csv", "scene;20;40;60;80;\n");  // the image has one block
+    fail("many.csv:scene", {"many.csv"});
+}
+
+TEST(BadInput, BadModelFile) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("model.h5", "not HDF5 at all");
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:model.h5", {"model.h5"});
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:gone.h5", {"gone.h5"});
+}
+
+// What is broken but harmless is counted, not refused.
+TEST(BadInput, BrokenTrianglesAreLeftOut) {
+    const TemporaryDirectory directory;
+    directory.Write("mesh.ply", PlyText("nan 1 0", "2"));
+    directory.Write("scene.pbrt",
+                    SceneText("AreaLightSource \"diffuse\"\nShape \"trianglemesh\" \"integer "
+                              "indices\" [0 1 2] \"point P\" [0 0 0 1 1 1 2 2 2]\n" +
+                              std::string(kSphere)));
+    const Outcome outcome = RunLull(directory, kRender);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "warning")) << outcome.err;
+}
+
+TEST(BadInput, NanVertex) {
+    const TemporaryDirectory directory;
+    directory.Write("mesh.ply", PlyText("nan 1 0", "2"));
+    directory.Write("scene.pbrt", SceneText("Shape \"plymesh\" \"string filename\" \"mesh.ply\""));
+    const Outcome outcome = RunLull(directory, kRender);
+    EXPECT_LE(outcome.exitCode, 1);  // refused or left out, but said
+    EXPECT_TRUE(Contains(outcome.err, "mesh.ply") || Contains(outcome.err, "scene.pbrt:7"))
+        << outcome.err;
+}
+
+// The limit on the size of files stands in for a full disk: every write beyond it fails.
+TEST(BadInput, FullDisk) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("out.exr", "precious");
+    const Outcome outcome = RunShell(
+        directory, "trap '' XFSZ; ulimit -f 1; LULL render scene.pbrt -o out.exr --spp 1 --quiet");
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "out.")) << outcome.err;
+    EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,175 @@
+// Runs the program as its help describes it.
+#include <algorithm>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+struct SceneDirectory : TemporaryDirectory {
+    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
+};
+
+TEST(CommandLine, RefusesWrongUsage) {
+    const SceneDirectory directory;
+    for (const char* arguments : {"",
+                                  "paint",
+                                  "render",
+                                  "render scene.pbrt --frobnicate",
+                                  "render scene.pbrt extra",
+                                  "render scene.pbrt --resolution -3x4",
+                                  "render scene.pbrt --resolution 3",
+                                  "render scene.pbrt --resolution 3x4x5",
+                                  "render scene.pbrt --crop 0.5,0.2,0,1",
+                                  "render scene.pbrt --crop 0,1",
+                                  "render scene.pbrt --crop 0,nan,0,1",
+                                  "render scene.pbrt --threads -1",
+                                  "render scene.pbrt --threads many",
+                                  "render scene.pbrt --seed -1",
+                                  "render scene.pbrt --seed 1.5",
+                                  "render scene.pbrt --cap 0",
+                                  "render scene.pbrt --pass 0",
+                                  "render scene.pbrt --block 0",
+                                  "render scene.pbrt --spp 0",
+                                  "render scene.pbrt --spp 4 --stop fixed:5",
+                                  "render scene.pbrt --sampler halton",
+                                  "render scene.pbrt --estimator best",
+                                  "render scene.pbrt -o image.jpg",
+                                  "render scene.pbrt -o image",
+                                  "render scene.pbrt --max-depth -1",
+                                  "info"}) {
+        const Outcome outcome = RunLull(directory, arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.err;
+        EXPECT_NE(outcome.err, "") << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+    }
+    EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+TEST(CommandLine, HelpsAndTellsItsVersion) {
+    const TemporaryDirectory directory;
+    for (const char* arguments : {"--help", "render --help", "info --help", "--version"}) {
+        const Outcome outcome = RunLull(directory, arguments);
+        EXPECT_EQ(outcome.exitCode, 0) << arguments;
+        EXPECT_TRUE(Contains(outcome.out, "lull")) << arguments;
+        EXPECT_EQ(outcome.err, "") << arguments;
+    }
+}
+
+TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
+    const SceneDirectory directory;
+    for (const char* output : {"image.exr", "image.png"}) {
+        const Outcome outcome = RunLull(
+            directory, std::string("render scene.pbrt --spp 4 --report r.json -o ") + output);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.out,
+                  "image.exr\nimage.png\nimage.spp.png\nimage.thresholds.csv\nr.json\n");
+    }
+    EXPECT_EQ(directory.CountFiles(), 6);
+    EXPECT_TRUE(ReadBytes(directory.File("image.thresholds.csv")).ends_with(";4;\n"));
+    const Image png = ReadImage(directory.File("image.png"));
+    EXPECT_EQ(png.width, 24);
+    EXPECT_EQ(png.height, 16);
+}
+
+TEST(CommandLine, TakesTheFileNameOfTheScene) {
+    const TemporaryDirectory directory;
+    directory.Write("a.pbrt", SceneText(kSphere, "\"string filename\" \"picture.tga\""));
+    EXPECT_EQ(RunLull(directory, "render a.pbrt --spp 1 --quiet").out,
+              "picture.exr\npicture.png\npicture.spp.png\npicture.thresholds.csv\n");
+    EXPECT_TRUE(ReadBytes(directory.File("picture.thresholds.csv")).starts_with("a;"));
+}
+
+TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
+    const SceneDirectory directory;
+    const Outcome outcome =
+        RunLull(directory,
+                "render scene.pbrt --spp 6 --seed 18446744073709551615 --crop 0.25,0.75,0,0.5 "
+                "--estimator pbrt-v3 -o image.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const ExrImage exr = ReadExr(directory.File("image.exr"));
+    EXPECT_EQ(exr.width, 12);
+    EXPECT_EQ(exr.height, 8);
+    EXPECT_EQ(exr.origin, Vec2i(6, 0));
+    EXPECT_EQ(exr.displaySize, Vec2i(24, 16));
+    auto text = [&](const char* name) { return std::get<std::string>(exr.attributes.at(name)); };
+    EXPECT_EQ(text("renderer"), "lull");
+    EXPECT_EQ(text("seed"), "18446744073709551615");
+    EXPECT_EQ(text("sampler"), "random");
+    EXPECT_EQ(text("estimator"), "pbrt-v3");
+    EXPECT_EQ(text("criterion"), "fixed:6");
+    EXPECT_EQ(text("samples"), std::to_string(12 * 8 * 6));
+    EXPECT_EQ(text("rejectedSamples"), "0");
+    for (const char* name : {"version", "modelChecksum", "seconds", "worldToCamera", "worldToNDC"})
+        EXPECT_TRUE(exr.attributes.contains(name)) << name;
+    ASSERT_TRUE(exr.Find("spp"));
+    EXPECT_EQ(exr.Find("spp")->values, std::vector<float>(12 * 8, 6));
+}
+
+TEST(CommandLine, KeepsPixelsWhateverTheThreadsBlocksAndPasses) {
+    const SceneDirectory directory;
+    RunLull(directory, "render scene.pbrt --spp 8 -o a.exr --threads 1");
+    RunLull(directory, "render scene.pbrt --spp 8 -o b.exr --threads 3 --block 5 --pass 3");
+    EXPECT_EQ(ReadExr(directory.File("a.exr")).Find("G")->values,
+              ReadExr(directory.File("b.exr")).Find("G")->values);
+    EXPECT_EQ(ReadBytes(directory.File("a.png")), ReadBytes(directory.File("b.png")));
+}
+
+TEST(CommandLine, StopsBlocksAsARuleSays) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("rows.csv", "scene;20;60;\n");
+    const Outcome outcome = RunLull(directory,
+                                    "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
+                                    "--stop thresholds:rows.csv:scene");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(ReadBytes(directory.File("image.thresholds.csv")).ends_with(";20;60;\n"));
+    const ExrImage exr = ReadExr(directory.File("image.exr"));
+    EXPECT_EQ(exr.Find("spp")->values.front(), 20);
+    EXPECT_EQ(exr.Find("spp")->values.back(), 60);
+}
+
+TEST(CommandLine, PrintsProgressAsJson) {
+    const SceneDirectory directory;
+    const Outcome outcome = RunLull(directory,
+                                    "render scene.pbrt --spp 2 -o i.exr --json-progress "
+                                    "--quiet");
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_TRUE(Contains(outcome.err, "{\"percent\":100.00,")) << outcome.err;
+}
+
+TEST(CommandLine, IsQuietWhenAsked) {
+    const SceneDirectory directory;
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --spp 2 -o i.exr --quiet").err, "");
+}
+
+TEST(CommandLine, TellsWhatIsInAScene) {
+    const SceneDirectory directory;
+    const Outcome outcome = RunLull(directory, "info scene.pbrt");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    for (const char* part : {"sphere", "matte", "infinite", "24 x 16", "random", "perspective"})
+        EXPECT_TRUE(Contains(outcome.out, part)) << part << "\n" << outcome.out;
+    EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+// The first signal ends the render in order: files are there, with what was rendered.
+TEST(CommandLine, WritesWhatThereIsWhenInterrupted) {
+    for (const char* signal : {"INT", "TERM"}) {
+        const SceneDirectory directory;
+        const Outcome outcome = RunShell(
+            directory, std::string("LULL render scene.pbrt --spp 16777216 -o i.exr --json-progress "
+                                   "2>progress & until grep -q percent progress; do sleep 0.05; "
+                                   "done; kill -") +
+                           signal + " $!; wait $!");
+        EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+        EXPECT_EQ(outcome.out, "i.exr\ni.png\ni.spp.png\n");
+        const ExrImage exr = ReadExr(directory.File("i.exr"));
+        EXPECT_TRUE(exr.attributes.contains("note"));
+        const auto& spp = exr.Find("spp")->values;
+        EXPECT_GT(*std::max_element(spp.begin(), spp.end()), 0);
+    }
+}
+
+}  // namespace
+}  // namespace lull

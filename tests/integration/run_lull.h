@@ -1,0 +1,72 @@
+// Runs the program as a user would.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "tests/output/test_files.h"
+
+namespace lull {
+
+struct Outcome {
+    int exitCode;  // 128 + the signal's number where one ended the program, as in a shell
+    std::string out, err;
+};
+
+// Runs `command`, in which LULL stands for the program, with a shell in `directory`.
+inline Outcome RunShell(const TemporaryDirectory& directory, std::string command) {
+    for (size_t at = 0; (at = command.find("LULL", at)) != std::string::npos;)
+        command.replace(at, 4, LULL_PROGRAM);
+    const TemporaryDirectory logs;
+    const std::string line = "cd '" + directory.path.string() + "' && (" + command + ") >'" +
+                             logs.File("out") + "' 2>'" + logs.File("err") + "' </dev/null";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            ReadBytes(logs.File("out")), ReadBytes(logs.File("err"))};
+}
+
+inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& arguments) {
+    return RunShell(directory, "LULL " + arguments);
+}
+
+// A small scene that renders at once; `world` is what is in it.
+inline std::string SceneText(const std::string& world, const std::string& film = "") {
+    return "LookAt 0 0 -3  0 0 0  0 1 0\n"
+           "Camera \"perspective\" \"float fov\" [40]\n"
+           "Film \"image\" \"integer xresolution\" [24] \"integer yresolution\" [16] " +
+           film +
+           "\n"
+           "Sampler \"random\"\n"
+           "WorldBegin\n"
+           "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" +
+           world + "\nWorldEnd\n";
+}
+
+inline const char* const kSphere = "Shape \"sphere\"";
+
+// Returns the lines that begin as errors do.
+inline int CountErrorLines(const std::string& err) {
+    const std::string mark = "lull: error: ";
+    int count = 0;
+    for (size_t at = 0; (at = err.find(mark, at)) != std::string::npos; ++at)
+        count += at == 0 || err[at - 1] == '\n';
+    return count;
+}
+
+// Expects exit code 1 and one line of error that holds `parts`, and no change to any file.
+inline void ExpectFailure(const TemporaryDirectory& directory, const std::string& arguments,
+                          const std::vector<std::string>& parts) {
+    directory.Write("out.exr", "precious");
+    const int filesBefore = directory.CountFiles();
+    const Outcome outcome = RunLull(directory, arguments);
+    EXPECT_EQ(outcome.exitCode, 1) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.back(), '\n');
+    for (const std::string& part : parts)
+        EXPECT_TRUE(Contains(outcome.err, part)) << "no '" << part << "' in: " << outcome.err;
+    EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
+    EXPECT_EQ(directory.CountFiles(), filesBefore);
+}
+
+}  // namespace lull
