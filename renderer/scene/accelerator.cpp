@@ -98,7 +98,9 @@ RTCRay MakeRay(const Ray& ray) {
     RTCRay r;
     r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
     r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
-    r.tnear = 0;
+    // The range is closed for Embree. A ray that starts in an axis-aligned plane through the
+    // origin, where error bounds are 0, meets that plane at exactly 0, which must not count.
+    r.tnear = std::numeric_limits<float>::min();
     r.tfar = ray.tMax;
     r.time = 0;
     r.mask = ~0u;

@@ -16,6 +16,10 @@ struct Camera {
     Mat3f rotation = Mat3f::Identity();
     Vec3f position = Vec3f::Zero();
 
+    // How far samples lie apart, in pixels, for texture filtering: 1 / sqrt(samples per pixel) that
+    // the scene asks for, as in pbrt-v3, even if the stopping rule takes more or fewer.
+    float sampleSpacing = 1;
+
     // Returns the ray through `film` (pixels) and the lens point that u chooses; direction unit.
     Ray GenerateRay(const Vec2f& film, const Vec2f& lens) const;
 };

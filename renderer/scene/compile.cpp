@@ -53,6 +53,7 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     scene->filter = Filter(description, warnings);
     scene->camera = MakeCamera(description, scene->film, warnings);
     ReadSampler(description.sampler, scene.get(), warnings);
+    scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
     ReadIntegrator(description.integrator, options.maxDepth, scene.get(), warnings);
 
     scene->textureSeconds = Timed([&] {

@@ -12,7 +12,12 @@ enum SurfaceNeeds : uint8_t {
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
+    kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise
 };
+
+constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
+    return SurfaceNeeds(uint8_t(a) | uint8_t(b));
+}
 
 struct SurfaceInteraction {
     Vec3f p;       // world
@@ -23,6 +28,12 @@ struct SurfaceInteraction {
     Vec2f uv;
     Vec3f dpdu, dpdv;  // of the shading geometry
     Vec3f dndu, dndv;
+    // Where a camera ray hits and the material needs it: the derivatives of the surface itself,
+    // how far p moves from one sample to the next across the image, and half of what u and v then
+    // move by. The latter stay 0 at all other hits.
+    Vec3f surfaceDpdu, surfaceDpdv;
+    Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
+    Vec2f uvStep = Vec2f::Zero();
     int material = -1;
     int areaLight = -1;  // into the scene's lights; -1: emits nothing
 

@@ -191,7 +191,8 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
     Bsdf bsdf(frame, hit->n);
-    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials}, &bsdf);
+    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials},
+             &bsdf);
     return bsdf;
 }
 

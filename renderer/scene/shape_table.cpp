@@ -37,6 +37,8 @@ void Place(const Instance& instance, SurfaceInteraction* hit) {
     hit->ns = FaceForward(hit->ns, hit->n);
     hit->dpdu = TransformVector(m, hit->dpdu);
     hit->dpdv = TransformVector(m, hit->dpdv);
+    hit->surfaceDpdu = TransformVector(m, hit->surfaceDpdu);
+    hit->surfaceDpdv = TransformVector(m, hit->surfaceDpdv);
     hit->dndu = TransformNormal(instance.instanceFromWorld, hit->dndu);
     hit->dndv = TransformNormal(instance.instanceFromWorld, hit->dndv);
 }

@@ -115,8 +115,8 @@ std::optional<TextureHandle<T>> Find(const std::vector<TextureHandle<T>>& made,
 }
 
 template <typename Node>
-bool NodeReadsUv(const Node& node, const TextureTable& table) {
-    return std::visit([&](const auto& kind) { return ReadsUv(kind, table); }, node.kind);
+SurfaceNeeds NodeNeeds(const Node& node, const TextureTable& table) {
+    return std::visit([&](const auto& kind) { return Needs(kind, table); }, node.kind);
 }
 
 }  // namespace
@@ -159,12 +159,12 @@ std::optional<FloatTexture> TextureTable::GetFloatOrNone(const Entity& entity,
     return Find(madeFloats, entity, name);
 }
 
-bool TextureTable::ReadsUv(const FloatTexture& t) const {
-    return !t.IsConstant() && NodeReadsUv(floats[size_t(t.index)], *this);
+SurfaceNeeds TextureTable::Needs(const FloatTexture& t) const {
+    return t.IsConstant() ? kNeedsNothing : NodeNeeds(floats[size_t(t.index)], *this);
 }
 
-bool TextureTable::ReadsUv(const SpectrumTexture& t) const {
-    return !t.IsConstant() && NodeReadsUv(spectra[size_t(t.index)], *this);
+SurfaceNeeds TextureTable::Needs(const SpectrumTexture& t) const {
+    return t.IsConstant() ? kNeedsNothing : NodeNeeds(spectra[size_t(t.index)], *this);
 }
 
 float TextureTable::EvaluateFloat(int index, const TextureContext& c) const {

@@ -6,14 +6,17 @@
 
 #include "renderer/base/math.h"
 #include "renderer/input/description.h"
+#include "renderer/scene/interaction.h"
 
 namespace lull {
 
-// Holds what a texture may depend on. There are no ray differentials: images are filtered
-// bilinearly on the finest level, procedural textures are evaluated at full detail.
+// Holds what a texture may depend on. Images are filtered bilinearly on the finest level: after
+// thousands of samples nothing else is needed. Noise leaves out octaves that are finer than the
+// distance of samples, as pbrt-v3's does; where that is not known it is 0, for full detail.
 struct TextureContext {
     Vec3f p;  // world
     Vec2f uv;
+    Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();  // of p, from one sample to the next
 };
 
 // Refers to a texture of a TextureTable, or is a constant, which is evaluated without a look-up.
@@ -57,9 +60,9 @@ class TextureTable {
         return t.IsConstant() ? t.constant : EvaluateSpectrum(t.index, c);
     }
 
-    // Says whether a texture reads uv (else only p, or nothing); materials ask for uv only then.
-    bool ReadsUv(const FloatTexture&) const;
-    bool ReadsUv(const SpectrumTexture&) const;
+    // Say what a texture reads beyond p, in terms of kNeedsUv and kNeedsFootprint.
+    SurfaceNeeds Needs(const FloatTexture&) const;
+    SurfaceNeeds Needs(const SpectrumTexture&) const;
 
     // Returns the memory taken by images, in bytes.
     size_t Bytes() const { return imageBytes; }

@@ -2,6 +2,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/sampling.h"
+#include "renderer/scene/footprint.h"
 
 namespace lull {
 namespace {
@@ -154,9 +155,10 @@ bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
 
 }  // namespace
 
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& cameraRay) {
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
+             const Vec2f& lens) {
     Rgb L = Rgb::Zero();
-    Path path{.ray = cameraRay};
+    Path path{.ray = scene.camera.GenerateRay(film, lens)};
     for (int bounces = 0;; ++bounces) {
         // Stop where the ray could only add emission that has been counted or cannot be found.
         const bool isLast = bounces >= scene.maxDepth;
@@ -172,7 +174,10 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ra
         const Shape& shape = scene.shapes.shapes[found.shape];
         if (isLast && shape.firstLight < 0) break;
         SurfaceInteraction hit;
-        scene.shapes.Interact(path.ray, found, scene.materials.Needs(shape.material), &hit);
+        const SurfaceNeeds needs = scene.materials.Needs(shape.material);
+        scene.shapes.Interact(path.ray, found, needs, &hit);
+        if (bounces == 0 && (needs & kNeedsFootprint))
+            ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
         if (isLast) break;
 
@@ -195,7 +200,7 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
     const Vec2f lens = scene.camera.lensRadius > 0 ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
-    Rgb L = Radiance(scene, estimator, sampler, scene.camera.GenerateRay(film, lens));
+    Rgb L = Radiance(scene, estimator, sampler, film, lens);
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;

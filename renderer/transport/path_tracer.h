@@ -21,7 +21,8 @@ struct PathSample {
 PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
                         const Vec2i& pixel, uint32_t index);
 
-// Returns the radiance that arrives at the ray's origin.
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& cameraRay);
+// Returns the radiance that arrives along the camera ray through `film` (pixels) and `lens`.
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
+             const Vec2f& lens);
 
 }  // namespace lull

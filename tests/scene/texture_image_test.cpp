@@ -179,7 +179,7 @@ TEST(ImageMap, FoldsUniformImages) {
     const SpectrumTexture texture = builder.Spectrum(table, folded);
     EXPECT_TRUE(texture.IsConstant());
     ExpectRgb(texture.constant, {0.5f, 0, 0.5f * LinearFromSrgb(137 / 255.f)});
-    EXPECT_FALSE(table.ReadsUv(texture));
+    EXPECT_FALSE(table.Needs(texture) & kNeedsUv);
     EXPECT_FALSE(builder.Spectrum(table, black).IsConstant());
     EXPECT_NEAR(builder.Float(table, luminance).constant, Luminance({1, 0, 137 / 255.f}), 1e-6f);
 }

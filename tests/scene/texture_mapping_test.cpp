@@ -26,7 +26,7 @@ void ExpectMap(const Mapping2D& mapping, const Vec3f& p, float s, float t) {
 
 TEST(UvMapping, ScalesAndShifts) {
     const Mapping2D plain = Make({});
-    EXPECT_TRUE(ReadsUv(plain));
+    EXPECT_TRUE(Needs(plain) & kNeedsUv);
     EXPECT_EQ(Map(plain, At(0.25f, 0.5f)), Vec2f(0.25f, 0.5f));
     const Mapping2D mapping =
         Make({FloatParameter("uscale", {2}), FloatParameter("vscale", {-3}),
@@ -38,7 +38,7 @@ TEST(SphericalMapping, GivesAnglesOverPi) {
     Mat4d shift = Mat4d::Identity();
     shift(0, 3) = 100;  // the inverse is applied, unlike for solid textures
     const Mapping2D mapping = Make({StringParameter("mapping", "spherical")}, shift);
-    EXPECT_FALSE(ReadsUv(mapping));
+    EXPECT_FALSE(Needs(mapping) & kNeedsUv);
     ExpectMap(mapping, {100, 0, 5}, 0, 0);
     ExpectMap(mapping, {103, 0, 0}, 0.5f, 0);
     ExpectMap(mapping, {100, 2, 0}, 0.5f, 0.25f);
@@ -49,7 +49,7 @@ TEST(SphericalMapping, GivesAnglesOverPi) {
 
 TEST(CylindricalMapping, GivesAngleAndHeightOfTheUnitDirection) {
     const Mapping2D mapping = Make({StringParameter("mapping", "cylindrical")});
-    EXPECT_FALSE(ReadsUv(mapping));
+    EXPECT_FALSE(Needs(mapping) & kNeedsUv);
     ExpectMap(mapping, {2, 0, 0}, 0.5f, 0);
     ExpectMap(mapping, {0, 2, 0}, 0.75f, 0);
     ExpectMap(mapping, {0, -3, 4}, 0.25f, 0.8f);

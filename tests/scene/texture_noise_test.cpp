@@ -56,8 +56,8 @@ const MarbleCase kMarbleCases[] = {
 TEST(Noise, EqualsPbrt) {
     for (const NoiseCase& c : kNoiseCases) {
         EXPECT_NEAR(Noise(c.p), c.noise, 2e-6f) << c.p.transpose();
-        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0.5f, 8), c.fbm, 2e-5f) << c.p.transpose();
-        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0.7f, 3), c.rough, 2e-5f) << c.p.transpose();
+        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0, 0.5f, 8), c.fbm, 2e-5f) << c.p.transpose();
+        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0, 0.7f, 3), c.rough, 2e-5f) << c.p.transpose();
     }
 }
 
@@ -90,7 +90,7 @@ TEST(Fbm, AppliesTheTransformationAsPbrt) {
         EXPECT_EQ(v.x(), v.z());
         EXPECT_NEAR(table.Evaluate(builder.Float(table, rough), at), c.rough, 2e-5f);
     }
-    EXPECT_FALSE(table.ReadsUv(builder.Float(table, rough)));
+    EXPECT_FALSE(table.Needs(builder.Float(table, rough)) & kNeedsUv);
 }
 
 TEST(Marble, EqualsPbrt) {

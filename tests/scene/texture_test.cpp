@@ -110,7 +110,7 @@ TEST(Scale, Multiplies) {
     EXPECT_FALSE(texture.IsConstant());
     EXPECT_TRUE((table.Evaluate(texture, At(0.5f, 0.5f)) == Rgb(2, 6, 12)).all());
     EXPECT_TRUE((table.Evaluate(texture, At(1.5f, 0.5f)) == Rgb(8, 15, 24)).all());
-    EXPECT_TRUE(table.ReadsUv(texture));
+    EXPECT_TRUE(table.Needs(texture) & kNeedsUv);
 }
 
 TEST(Scale, FoldsConstants) {
@@ -143,7 +143,7 @@ TEST(Mix, Interpolates) {
     const SpectrumTexture texture = builder.Spectrum(table, mix);
     EXPECT_TRUE((table.Evaluate(texture, At(0.5f, 0.5f)) == Rgb(1, 4, 7)).all());
     EXPECT_TRUE((table.Evaluate(texture, At(1.5f, 0.5f)) == Rgb(8, 4, 0)).all());
-    EXPECT_TRUE(table.ReadsUv(texture));
+    EXPECT_TRUE(table.Needs(texture) & kNeedsUv);
 }
 
 TEST(Mix, HasPbrtDefaultsAndFoldsConstants) {
@@ -190,7 +190,7 @@ TEST(Checkerboard, AlternatesInThreeDimensions) {
     const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 3)}, scale);
     const TextureTable table = builder.Build();
     const FloatTexture texture = builder.Float(table, board);
-    EXPECT_FALSE(table.ReadsUv(texture));
+    EXPECT_FALSE(table.Needs(texture) & kNeedsUv);
     // As in pbrt-v3 the transformation is applied itself: cubes of 0.1.
     EXPECT_EQ(table.Evaluate(texture, AtPoint({0.05f, 0.05f, 0.05f})), 1);
     EXPECT_EQ(table.Evaluate(texture, AtPoint({0.15f, 0.05f, 0.05f})), 0);

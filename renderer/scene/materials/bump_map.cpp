@@ -4,15 +4,18 @@ namespace lull {
 
 void ApplyBumpMap(const FloatTexture& displacement, const TextureTable& textures,
                   SurfaceInteraction* hit) {
-    constexpr float kStep = 0.0005f;
+    // Step half a sample's distance where it is known.
+    constexpr float kSmallStep = 0.0005f;
+    const float du = hit->uvStep.x() > 0 ? hit->uvStep.x() : kSmallStep;
+    const float dv = hit->uvStep.y() > 0 ? hit->uvStep.y() : kSmallStep;
     const auto height = [&](const Vec3f& p, const Vec2f& uv) {
-        return textures.Evaluate(displacement, TextureContext{p, uv});
+        return textures.Evaluate(displacement, TextureContext{p, uv, hit->dpdx, hit->dpdy});
     };
     const float h = height(hit->p, hit->uv);
-    const float hu = height(hit->p + kStep * hit->dpdu, hit->uv + Vec2f(kStep, 0));
-    const float hv = height(hit->p + kStep * hit->dpdv, hit->uv + Vec2f(0, kStep));
-    const Vec3f dpdu = hit->dpdu + (hu - h) / kStep * hit->ns + h * hit->dndu;
-    const Vec3f dpdv = hit->dpdv + (hv - h) / kStep * hit->ns + h * hit->dndv;
+    const float hu = height(hit->p + du * hit->dpdu, hit->uv + Vec2f(du, 0));
+    const float hv = height(hit->p + dv * hit->dpdv, hit->uv + Vec2f(0, dv));
+    const Vec3f dpdu = hit->dpdu + (hu - h) / du * hit->ns + h * hit->dndu;
+    const Vec3f dpdv = hit->dpdv + (hv - h) / dv * hit->ns + h * hit->dndv;
     const Vec3f n = dpdu.cross(dpdv);
     const float length = n.norm();
     if (!(length > 0 && length < kInfinity)) return;

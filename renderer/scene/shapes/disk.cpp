@@ -38,6 +38,8 @@ void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds,
     FinishQuadricHit(disk.place, p, Vec3f::Zero(), hit);
     hit->dpdu = TransformVector(disk.place.worldFromShape, dpdu);
     hit->dpdv = TransformVector(disk.place.worldFromShape, dpdv);
+    hit->surfaceDpdu = hit->dpdu;
+    hit->surfaceDpdv = hit->dpdv;
 }
 
 std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {

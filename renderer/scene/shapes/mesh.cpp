@@ -27,6 +27,8 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
     if (degenerate || hit->dpdu.cross(hit->dpdv).squaredNorm() == 0)
         CoordinateSystem(dp02.cross(dp12).normalized(), &hit->dpdu, &hit->dpdv);
     hit->dndu = hit->dndv = Vec3f::Zero();
+    hit->surfaceDpdu = hit->dpdu;
+    hit->surfaceDpdv = hit->dpdv;
     if (mesh.n.empty()) return;
 
     // Make an orthonormal shading frame out of dpdu and the interpolated normal.
@@ -72,7 +74,8 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
         const auto uvs = Uvs(*this, v);
         hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
     }
-    if (needs & (kNeedsTangents | kNeedsNormalDerivatives)) ComputeTangents(*this, v, needs, hit);
+    if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))
+        ComputeTangents(*this, v, needs, hit);
     if (!n.empty()) {
         if (reverseOrientation) hit->ns = -hit->ns;
         hit->n = FaceForward(hit->n, hit->ns);

@@ -30,6 +30,8 @@ void FinishQuadricHit(const QuadricPlacement& place, const Vec3f& pShape, const 
     hit->ns = hit->n;
     hit->dpdu = TransformVector(m, hit->dpdu);
     hit->dpdv = TransformVector(m, hit->dpdv);
+    hit->surfaceDpdu = hit->dpdu;
+    hit->surfaceDpdv = hit->dpdv;
     hit->dndu = TransformNormal(place.shapeFromWorld, hit->dndu);
     hit->dndv = TransformNormal(place.shapeFromWorld, hit->dndv);
 }

@@ -37,9 +37,10 @@ T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const Textur
 }
 
 template <typename T>
-bool ReadsUv(const Checkerboard<T>& board, const TextureTable& table) {
+SurfaceNeeds Needs(const Checkerboard<T>& board, const TextureTable& table) {
     const auto* mapping = std::get_if<Mapping2D>(&board.mapping);
-    return (mapping && ReadsUv(*mapping)) || table.ReadsUv(board.tex1) || table.ReadsUv(board.tex2);
+    return (mapping ? Needs(*mapping) : kNeedsNothing) | table.Needs(board.tex1) |
+           table.Needs(board.tex2);
 }
 
 // Throws Error for a dimension other than 2 and 3; with `substitute` that becomes constant 1.

@@ -20,7 +20,8 @@ inline int GetOctaves(const TextureInput& input) {
 
 template <typename T>
 T Evaluate(const Fbm<T>& fbm, const TextureTable&, const TextureContext& c) {
-    const float v = FractionalBrownianMotion(Map(fbm.mapping, c), fbm.roughness, fbm.octaves);
+    const float v = FractionalBrownianMotion(Map(fbm.mapping, c), Spacing2(fbm.mapping, c),
+                                             fbm.roughness, fbm.octaves);
     if constexpr (std::is_same_v<T, float>)
         return v;
     else
@@ -28,8 +29,8 @@ T Evaluate(const Fbm<T>& fbm, const TextureTable&, const TextureContext& c) {
 }
 
 template <typename T>
-bool ReadsUv(const Fbm<T>&, const TextureTable&) {
-    return false;
+SurfaceNeeds Needs(const Fbm<T>&, const TextureTable&) {
+    return kNeedsFootprint;
 }
 
 template <typename T>

@@ -39,8 +39,8 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
 }
 
 template <typename T>
-bool ReadsUv(const ImageMap<T>& map, const TextureTable&) {
-    return ReadsUv(map.mapping);
+SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
+    return Needs(map.mapping);
 }
 
 // Reads "filename", "gamma" (the file is sRGB-encoded; without it: as its extension suggests),

@@ -33,7 +33,9 @@ using Mapping2D = std::variant<UvMapping, SphericalMapping, CylindricalMapping, 
 // with `substitute` that becomes the plain uv mapping.
 Mapping2D MakeMapping2D(const TextureInput& input);
 
-inline bool ReadsUv(const Mapping2D& mapping) { return std::holds_alternative<UvMapping>(mapping); }
+inline SurfaceNeeds Needs(const Mapping2D& mapping) {
+    return std::holds_alternative<UvMapping>(mapping) ? kNeedsUv : kNeedsNothing;
+}
 
 Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p);  // all mappings but uv
 
@@ -61,6 +63,12 @@ inline Vec3f TransformPoint(const Eigen::Matrix4f& m, const Vec3f& p) {
 
 inline Vec3f Map(const Mapping3D& mapping, const TextureContext& c) {
     return TransformPoint(mapping.matrix, c.p);
+}
+
+// Returns the square of the larger distance between samples in texture space; 0 if not known.
+inline float Spacing2(const Mapping3D& mapping, const TextureContext& c) {
+    const auto linear = mapping.matrix.topLeftCorner<3, 3>();
+    return std::max((linear * c.dpdx).squaredNorm(), (linear * c.dpdy).squaredNorm());
 }
 
 }  // namespace lull

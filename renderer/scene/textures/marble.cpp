@@ -17,7 +17,9 @@ constexpr int kSegments = 6;
 Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c) {
     const Vec3f p = Map(marble.mapping, c) * marble.scale;
     const float angle =
-        p.y() + marble.variation * FractionalBrownianMotion(p, marble.roughness, marble.octaves);
+        p.y() + marble.variation *
+                    FractionalBrownianMotion(p, Sqr(marble.scale) * Spacing2(marble.mapping, c),
+                                             marble.roughness, marble.octaves);
     float t = (0.5f + 0.5f * std::sin(angle)) * kSegments;
     if (!(t >= 0)) t = 0;  // NaN of an infinite coordinate
 

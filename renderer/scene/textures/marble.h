@@ -15,7 +15,7 @@ struct Marble {
 
 Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c);
 
-inline bool ReadsUv(const Marble&, const TextureTable&) { return false; }
+inline SurfaceNeeds Needs(const Marble&, const TextureTable&) { return kNeedsFootprint; }
 
 inline Made<Rgb, Marble> MakeMarble(const TextureInput& input) {
     const Parameters& parameters = input.entity.parameters;

@@ -18,8 +18,8 @@ T Evaluate(const Mix<T>& mix, const TextureTable& table, const TextureContext& c
 }
 
 template <typename T>
-bool ReadsUv(const Mix<T>& mix, const TextureTable& table) {
-    return table.ReadsUv(mix.tex1) || table.ReadsUv(mix.tex2) || table.ReadsUv(mix.amount);
+SurfaceNeeds Needs(const Mix<T>& mix, const TextureTable& table) {
+    return table.Needs(mix.tex1) | table.Needs(mix.tex2) | table.Needs(mix.amount);
 }
 
 template <typename T>

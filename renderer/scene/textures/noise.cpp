@@ -73,13 +73,19 @@ float Noise(const Vec3f& p) {
     return Lerp(wz, planes[0], planes[1]);
 }
 
-float FractionalBrownianMotion(const Vec3f& p, float roughness, int octaves) {
+float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, int octaves) {
+    const float resolved = spacing2 > 0
+                               ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
+                               : float(octaves);
+    const int whole = int(resolved);
     float sum = 0, frequency = 1, amplitude = 1;
-    for (int i = 0; i < octaves; ++i) {
+    for (int i = 0; i < whole; ++i) {
         sum += amplitude * Noise(frequency * p);
         frequency *= 1.99f;
         amplitude *= roughness;
     }
+    const float t = std::clamp((resolved - whole - 0.3f) / 0.4f, 0.f, 1.f);
+    if (t > 0) sum += amplitude * t * t * (3 - 2 * t) * Noise(frequency * p);
     return sum;
 }
 

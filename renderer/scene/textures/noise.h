@@ -10,8 +10,9 @@ namespace lull {
 // infinite ones and NaN count as 0.
 float Noise(const Vec3f& p);
 
-// Sums `octaves` octaves of noise: sum_i roughness^i Noise(1.99^i p). The ratio is not 2 so that
-// the zeros of the octaves do not coincide. This is pbrt-v3's FBm without differentials.
-float FractionalBrownianMotion(const Vec3f& p, float roughness, int octaves);
+// Sums at most `octaves` octaves of noise: sum_i roughness^i Noise(1.99^i p). The ratio is not 2 so
+// that the zeros of the octaves do not coincide. Octaves finer than twice the distance of samples,
+// whose square is `spacing2`, are left out and the last one fades (pbrt-v3's FBm).
+float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, int octaves);
 
 }  // namespace lull

@@ -16,8 +16,8 @@ T Evaluate(const Scale<T>& scale, const TextureTable& table, const TextureContex
 }
 
 template <typename T>
-bool ReadsUv(const Scale<T>& scale, const TextureTable& table) {
-    return table.ReadsUv(scale.tex1) || table.ReadsUv(scale.tex2);
+SurfaceNeeds Needs(const Scale<T>& scale, const TextureTable& table) {
+    return table.Needs(scale.tex1) | table.Needs(scale.tex2);
 }
 
 template <typename T>
