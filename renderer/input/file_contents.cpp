@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 namespace lull {
 namespace {
@@ -41,7 +42,8 @@ FileContents ReadFile(const std::string& path, const FileLoc& loc) {
 
     FileContents contents;
     contents.size = size_t(status.st_size);
-    contents.bytes = std::make_unique_for_overwrite<char[]>(contents.size);
+    contents.bytes.reset(new (std::nothrow) char[contents.size]);
+    if (!contents.bytes) fail("it is too large for the memory");
     for (size_t done = 0; done < contents.size;) {
         const ssize_t n = read(file.fd, contents.bytes.get() + done, contents.size - done);
         if (n < 0 && errno == EINTR) continue;
