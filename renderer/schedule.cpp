@@ -34,7 +34,10 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
 Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options)
     : options(options), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
     for (int i = 0; i < int(blocks.size()); ++i)
-        if (blocks[i].leader < 0) StartPass(i, std::min(options.passLength, options.cap));
+        if (blocks[i].leader >= 0)
+            progress[blocks[i].leader].followers.push_back(i);
+        else
+            StartPass(i, std::min(options.passLength, options.cap));
 }
 
 int Schedule::TileCount(int block) const {
@@ -43,7 +46,10 @@ int Schedule::TileCount(int block) const {
 }
 
 void Schedule::StartPass(int block, int target) {
-    progress[block] = {.target = target, .underWay = true};
+    Progress& pass = progress[block];
+    pass.target = target;
+    pass.tilesGiven = pass.tilesFinished = 0;
+    pass.underWay = true;
     ready.insert({blocks[block].spp, block});
     readyTiles += TileCount(block);
 }
@@ -81,8 +87,7 @@ void Schedule::Decide(int i, bool stop) {
         Stop(i, stop);
     else
         StartPass(i, std::min(block.spp + options.passLength, options.cap));
-    for (int follower = 0; follower < int(blocks.size()); ++follower)
-        if (blocks[follower].leader == i) CatchUp(follower);
+    for (const int follower : progress[i].followers) CatchUp(follower);
 }
 
 void Schedule::CatchUp(int follower) {

@@ -74,6 +74,7 @@ class Schedule {
         int tilesGiven = 0;  // of this pass
         int tilesFinished = 0;
         bool underWay = false;
+        std::vector<int> followers;  // of the block
     };
 
     int TileCount(int block) const;

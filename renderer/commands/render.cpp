@@ -95,6 +95,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::IsMember(estimators))
         ->type_name("combined|pbrt-v3");
     app.add_option("--seed", o->seed, "Another seed gives other, equally good, samples")
+        ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--report", o->report, "Write what happened to each block as JSON")
@@ -124,7 +125,7 @@ CriterionFactory MakeFactory(const Options& options, const PixelRect& region,
     if (const int spp = FixedSpp(options.rule)) schedule->cap = std::min(schedule->cap, spp);
     return factory;
 } catch (const std::logic_error& e) {
-    throw Error(fmt::format("--stop {}: {}", options.rule, e.what()));
+    throw Error(std::string("--stop: ") + e.what());
 }
 
 ProgressPrinter MakePrinter(const Options& options) {

@@ -40,11 +40,11 @@ ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provena
                       {"estimator", NameOf(provenance.estimator)},
                       {"samples", std::to_string(film.SampleCount())},
                       {"criterion", provenance.criterion},
-                      {"modelChecksum", provenance.checksum},
                       {"seconds", float(result.progress.seconds)},
                       {"rejectedSamples", std::to_string(film.RejectedCount())},
                       {"worldToCamera", WorldToCamera(scene.camera)},
                       {"worldToNDC", WorldToNdc(scene.camera, scene.film)}};
+    if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
     return exr;
