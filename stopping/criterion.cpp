@@ -18,7 +18,7 @@ namespace lull {
 namespace {
 
 constexpr const char* ruleForms =
-    "fixed:N, dammertz:T[:area], cycles:T, luxtile:T, thresholds:FILE[:NAME] and "
+    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, thresholds:FILE[:NAME] and "
     "learned[:MODEL.h5]";
 
 // Parses all of `text` as a number > 0, finite.
@@ -147,7 +147,8 @@ void Criterion::Restore(std::span<const std::byte> state) {
         throw std::runtime_error("the saved state belongs to another stopping rule");
 }
 
-CriterionFactory MakeCriterionFactory(const std::string& rule, const RuleContext& context) {
+CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContext& context) {
+    const std::string rule = given == "dammertz" ? defaultRule : given;
     const size_t colon = rule.find(':');
     const std::string kind = rule.substr(0, colon);
     const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);

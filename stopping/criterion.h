@@ -85,9 +85,13 @@ struct CriterionFactory {
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
 };
 
+// The rule where none is asked for, and what a bare `dammertz` means. In the middle greys an error
+// of 0.02 in square-root brightness is about two steps of an 8-bit display.
+inline constexpr const char* defaultRule = "dammertz:0.02";
+
 // Reads a stopping rule and the files it names:
 //     fixed:N                 stop at N samples per pixel
-//     dammertz:T[:area]       stop when the block's mean error is < T
+//     dammertz[:T[:area]]     stop when the block's mean error is < T; without T: defaultRule
 //     cycles:T                stop when no pixel's error is >= T
 //     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
 //     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file

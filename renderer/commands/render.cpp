@@ -19,7 +19,7 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::string output, report;  // empty: as the scene says; none
-    std::string rule = "dammertz";
+    std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
     ScheduleOptions schedule;
     std::optional<SamplerKind> sampler;
@@ -32,7 +32,7 @@ constexpr const char* kFooter =
     R"(Stopping rules (--stop):
   dammertz[:T]            until a block's mean error in square-root brightness is below T
   cycles:T                until every pixel of the block has an error below T
-  luxtile:T               until the largest display error of the block is below T, as 6/256
+  luxtile:T               until the largest display error of the block is below T
   learned[:MODEL.h5]      until a network that was trained on human judgements says so
   thresholds:FILE[:NAME]  until the spp that a thresholds file has for the block
   fixed:N                 until N samples per pixel
