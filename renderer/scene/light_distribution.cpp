@@ -3,28 +3,77 @@
 #include <numeric>
 
 namespace lull {
+namespace {
 
-LightDistribution::LightDistribution(std::span<const float> weights) : fixed(weights) {}
+// Turns weights into running sums of probabilities that end at exactly 1. Weights without a
+// positive finite sum give the uniform choice.
+std::vector<float> Normalized(std::vector<float> weights) {
+    double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(total > 0) || !std::isfinite(total)) {
+        std::fill(weights.begin(), weights.end(), 1.f);
+        total = double(weights.size());
+    }
+    double running = 0;
+    for (float& w : weights) {
+        running += w;
+        w = std::min(float(running / total), 1.f);
+    }
+    // Lights of weight 0 at the end share the last sum, so that they are never chosen.
+    const float last = weights.back();
+    for (auto w = weights.rbegin(); w != weights.rend() && *w == last; ++w) *w = 1;
+    return weights;
+}
+
+}  // namespace
+
+LightDistribution::LightDistribution(std::span<const float> weights)
+    : lightCount(int(weights.size())) {
+    AllocateTables();
+    const std::vector<float> sums = Normalized({weights.begin(), weights.end()});
+    std::copy(sums.begin(), sums.end(), tables.get());
+}
 
 LightDistribution::LightDistribution(int count, const Bounds3f& bounds)
     : lightCount(count), bounds(bounds) {
-    // Make the voxels roughly cubes.
+    // Make the voxels roughly cubes, and fewer where there are so many lights that the tables
+    // could not even be addressed.
+    constexpr double kMaxEntries = double(1ull << 31);
     const Vec3f diagonal = bounds.Diagonal();
     const float longest = std::max(diagonal.maxCoeff(), std::numeric_limits<float>::min());
-    for (int i = 0; i < 3; ++i) {
-        resolution[i] = std::max(1, int(std::round(diagonal[i] / longest * float(kMaxVoxels))));
-        voxelsPerUnit[i] = diagonal[i] > 0 ? resolution[i] / diagonal[i] : 0;
+    for (int most = kMaxVoxels; most >= 1; most /= 2) {
+        for (int i = 0; i < 3; ++i) {
+            resolution[i] = std::max(1, int(std::round(diagonal[i] / longest * float(most))));
+            voxelsPerUnit[i] = diagonal[i] > 0 ? resolution[i] / diagonal[i] : 0;
+        }
+        if (resolution.cast<double>().prod() * count <= kMaxEntries) break;
     }
-    voxels = std::vector<Voxel>(size_t(resolution.x()) * resolution.y() * resolution.z());
+    for (int i = 0; i < kSamples; ++i)
+        points.push_back({{RadicalInverse(2, i), RadicalInverse(3, i), RadicalInverse(5, i)},
+                          {RadicalInverse(7, i), RadicalInverse(11, i)}});
+    AllocateTables();
 }
 
-Distribution1D LightDistribution::FromContributions(std::vector<float> sums) const {
+void LightDistribution::AllocateTables() {
+    const size_t voxels = size_t(resolution.x()) * resolution.y() * resolution.z();
+    tables.reset(static_cast<float*>(std::calloc(voxels * lightCount, sizeof(float))));
+    if (!tables) throw std::bad_alloc();
+}
+
+Bounds3f LightDistribution::VoxelBounds(size_t voxel) const {
+    const Vec3i v(int(voxel % resolution.x()), int(voxel / resolution.x() % resolution.y()),
+                  int(voxel / resolution.x() / resolution.y()));
+    const Vec3f size = bounds.Diagonal().cwiseQuotient(resolution.cast<float>());
+    const Vec3f lower = bounds.lower + size.cwiseProduct(v.cast<float>());
+    return {lower, lower + size};
+}
+
+std::vector<float> LightDistribution::RunningSums(std::vector<float> contributions) const {
     // Leave every light some probability: the points may all have missed where it shines.
-    const float sum = std::accumulate(sums.begin(), sums.end(), 0.f);
+    const float sum = std::accumulate(contributions.begin(), contributions.end(), 0.f);
     const float average = sum / (float(kSamples) * lightCount);
     const float least = average > 0 ? 0.001f * average : 1.f;
-    for (float& s : sums) s = std::max(s, least);
-    return Distribution1D(sums);
+    for (float& c : contributions) c = std::max(c, least);
+    return Normalized(std::move(contributions));
 }
 
 }  // namespace lull

@@ -4,38 +4,65 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <span>
 
 #include "renderer/base/sampling.h"
 
 namespace lull {
 
-// Follows pbrt-v3's light sampling strategies (pbrt-v3's lightdistrib; "spatial" is its default).
+// Holds the probabilities of choosing each light, as running sums: the last one is 1.
+class LightChoice {
+  public:
+    explicit LightChoice(std::span<const float> sums) : sums(sums) {}
+    LightChoice() = default;
+
+    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive.
+    int Sample(float u, float* pmf) const {
+        // Count the sums that u has passed; short tables fastest without a branch.
+        constexpr size_t kShort = 32;
+        int i = 0;
+        if (sums.size() <= kShort)
+            for (const float s : sums) i += s <= u;
+        else
+            i = int(std::upper_bound(sums.begin(), sums.end(), u) - sums.begin());
+        *pmf = Pmf(i);
+        return i;
+    }
+    float Pmf(int i) const { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
+
+  private:
+    std::span<const float> sums;
+};
+
+// Follows pbrt-v3's light sampling strategies; "spatial", with a table for every voxel of the
+// scene, is its default.
 class LightDistribution {
   public:
-    // Chooses by fixed weights, one a light.
+    // Chooses by fixed nonnegative weights, one a light.
     explicit LightDistribution(std::span<const float> weights);
 
     // Chooses among `count` lights by the voxel of p within the scene's bounds.
     LightDistribution(int count, const Bounds3f& bounds);
 
-    // Returns the table for p, which stays valid as long as this object. The table of a voxel is
+    // Returns the choice for p, which stays valid as long as this object. The table of a voxel is
     // made when it is first asked for; it is a function of the voxel alone, so that no order of
     // threads can change it. contribution(light, p, u) estimates what a light gives at p:
     // luminance over density of its sample u, without visibility.
     template <typename Contribution>
-    const Distribution1D& Lookup(const Vec3f& p, const Contribution& contribution) const {
-        if (voxels.empty()) return fixed;
-        const Vec3i v = VoxelOf(p);
-        const size_t index = (size_t(v.z()) * resolution.y() + v.y()) * resolution.x() + v.x();
-        Voxel& voxel = voxels[index];
-        if (!voxel.isReady.load(std::memory_order_acquire)) {
-            std::lock_guard lock(locks[index % kLocks]);
-            if (!voxel.isReady.load(std::memory_order_relaxed)) {
-                voxel.table = Compute(v, contribution);
-                voxel.isReady.store(true, std::memory_order_release);
+    LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
+        const size_t voxel = VoxelOf(p);
+        const std::span<float> sums(tables.get() + voxel * lightCount, lightCount);
+        // A table that is not made yet is all zeros; its last sum, written last, tells.
+        std::atomic_ref<float> last(sums.back());
+        if (last.load(std::memory_order_acquire) == 0) {
+            std::lock_guard lock(locks[voxel % kLocks]);
+            if (last.load(std::memory_order_relaxed) == 0) {
+                const std::vector<float> made = Compute(voxel, contribution);
+                std::copy(made.begin(), made.end() - 1, sums.begin());
+                last.store(made.back(), std::memory_order_release);
             }
         }
-        return voxel.table;
+        return LightChoice(sums);
     }
 
   private:
@@ -43,40 +70,46 @@ class LightDistribution {
     static constexpr int kSamples = 128;   // a voxel
     static constexpr int kLocks = 64;
 
-    Vec3i VoxelOf(const Vec3f& p) const {
+    struct HaltonPoint {
+        Vec3f p;
+        Vec2f u;
+    };
+
+    size_t VoxelOf(const Vec3f& p) const {
         Vec3i v;
         for (int i = 0; i < 3; ++i)
             v[i] =
                 std::clamp(int((p[i] - bounds.lower[i]) * voxelsPerUnit[i]), 0, resolution[i] - 1);
-        return v;
+        return (size_t(v.z()) * resolution.y() + v.y()) * resolution.x() + v.x();
     }
+    Bounds3f VoxelBounds(size_t voxel) const;
 
     // Averages over a Halton set of points in the voxel and on the lights.
     template <typename Contribution>
-    Distribution1D Compute(const Vec3i& voxel, const Contribution& contribution) const {
-        const Vec3f size = bounds.Diagonal().cwiseQuotient(resolution.cast<float>());
-        const Vec3f lower = bounds.lower + size.cwiseProduct(voxel.cast<float>());
+    std::vector<float> Compute(size_t voxel, const Contribution& contribution) const {
+        const Bounds3f box = VoxelBounds(voxel);
+        const Vec3f size = box.Diagonal();
         std::vector<float> sums(lightCount, 0.f);
-        for (int i = 0; i < kSamples; ++i) {
-            const Vec3f t(RadicalInverse(2, i), RadicalInverse(3, i), RadicalInverse(5, i));
-            const Vec2f u(RadicalInverse(7, i), RadicalInverse(11, i));
+        for (const HaltonPoint& h : points)
             for (int k = 0; k < lightCount; ++k)
-                sums[k] += contribution(k, lower + size.cwiseProduct(t), u);
-        }
-        return FromContributions(std::move(sums));
+                sums[k] += contribution(k, box.lower + size.cwiseProduct(h.p), h.u);
+        return RunningSums(std::move(sums));
     }
-    Distribution1D FromContributions(std::vector<float> sums) const;
+    std::vector<float> RunningSums(std::vector<float> contributions) const;
+    void AllocateTables();
 
-    Distribution1D fixed;
+    struct Free {
+        void operator()(float* p) const { std::free(p); }
+    };
+
     int lightCount = 0;
     Bounds3f bounds;
-    Vec3i resolution = Vec3i::Zero();
+    Vec3i resolution = Vec3i::Ones();
     Vec3f voxelsPerUnit = Vec3f::Zero();
-    struct Voxel {
-        std::atomic<bool> isReady = false;
-        Distribution1D table;
-    };
-    mutable std::vector<Voxel> voxels;
+    std::vector<HaltonPoint> points;
+    // One table after another, voxels in x, y, z order. From calloc, so that only the pages of
+    // voxels that paths visit take memory.
+    std::unique_ptr<float[], Free> tables;
     mutable std::array<std::mutex, kLocks> locks;
 };
 

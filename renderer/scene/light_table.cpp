@@ -66,9 +66,13 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, Warni
             continue;
         }
         shape.firstLight = Count();
-        light.shape = i;
         for (uint32_t k = 0; k < shape.PrimitiveCount(); ++k) {
-            light.primitive = k;
+            if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry))
+                light.surface = mesh->Sampler(k);
+            else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
+                light.surface = sphere;
+            else
+                light.surface = &std::get<Disk>(shape.geometry);
             lights.push_back(light);
         }
     }
@@ -87,25 +91,17 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, Warni
     std::vector<float> weights(lights.size(), 1.f);
     if (strategy == "power")
         for (int i = 0; i < Count(); ++i)
-            weights[i] = Luminance(std::visit(
-                [&](const auto& light) {
-                    if constexpr (std::is_same_v<std::decay_t<decltype(light)>, AreaLight>)
-                        return light.Power(shapes);
-                    else
-                        return light.Power();
-                },
-                lights[i]));
+            weights[i] =
+                Luminance(std::visit([](const auto& light) { return light.Power(); }, lights[i]));
     if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
         distribution = std::make_unique<LightDistribution>(weights);
     else
         distribution = std::make_unique<LightDistribution>(Count(), shapes.bounds);
 }
 
-std::optional<LightSample> LightTable::Sample(int i, const ShapeTable& shapes, const Vec3f& from,
-                                              const Vec2f& u) const {
+std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Vec2f& u) const {
     const Light& light = lights[i];
-    if (const AreaLight* area = std::get_if<AreaLight>(&light))
-        return area->Sample(shapes, from, u);
+    if (const AreaLight* area = std::get_if<AreaLight>(&light)) return area->Sample(from, u);
     if (const InfiniteLight* environment = std::get_if<InfiniteLight>(&light))
         return environment->Sample(from, u);
     if (const PointLight* point = std::get_if<PointLight>(&light)) return point->Sample(from);

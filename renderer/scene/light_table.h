@@ -19,7 +19,8 @@ class LightTable {
   public:
     LightTable() = default;
     // Makes the lights of the description and one for each primitive of an emitting shape, which
-    // it tells (Shape::firstLight). Throws Error with file and line for unknown kinds.
+    // it tells (Shape::firstLight); `shapes` must outlive the table and stay where it is. Throws
+    // Error with file and line for unknown kinds.
     LightTable(const Description&, ShapeTable& shapes, Warnings&);
 
     int Count() const { return int(lights.size()); }
@@ -31,13 +32,12 @@ class LightTable {
     bool AnyVisible() const { return anyVisible; }
 
     // Samples light i as seen from `from`. Returns nothing where it gives no light there.
-    std::optional<LightSample> Sample(int i, const ShapeTable& shapes, const Vec3f& from,
-                                      const Vec2f& u) const;
+    std::optional<LightSample> Sample(int i, const Vec3f& from, const Vec2f& u) const;
 
     // Chooses a light for points near p, as the scene's strategy says.
-    const Distribution1D& Distribution(const ShapeTable& shapes, const Vec3f& p) const {
+    LightChoice Choice(const Vec3f& p) const {
         return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
-            const auto sample = Sample(i, shapes, q, u);
+            const auto sample = Sample(i, q, u);
             return sample ? Luminance(sample->L) / sample->pdf : 0.f;
         });
     }

@@ -117,38 +117,12 @@ void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
     if (hit.instance >= 0) Place(instances[hit.instance], interaction);
     interaction->wo = -ray.d;
     interaction->material = shape.material;
-    interaction->areaLight = shape.firstLight < 0 ? -1 : shape.firstLight + int(hit.primitive);
+    interaction->areaLight = LightAt(hit);
 }
 
 Vec2f ShapeTable::Uv(int shape, uint32_t primitive, float b1, float b2) const {
     const Mesh* mesh = std::get_if<Mesh>(&shapes[shape].geometry);
     return mesh ? mesh->Uv(primitive, b1, b2) : Vec2f(Vec2f::Zero());
-}
-
-std::optional<ShapeSample> ShapeTable::Sample(int shape, uint32_t primitive, const Vec3f& from,
-                                              const Vec2f& u) const {
-    const auto& geometry = shapes[shape].geometry;
-    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) return mesh->Sample(primitive, from, u);
-    if (const Sphere* sphere = std::get_if<Sphere>(&geometry))
-        return lull::Sample(*sphere, from, u);
-    return lull::Sample(std::get<Disk>(geometry), from, u);
-}
-
-float ShapeTable::Pdf(int shape, uint32_t primitive, const Vec3f& from, const Vec3f& p,
-                      const Vec3f& n) const {
-    const auto& geometry = shapes[shape].geometry;
-    if (const Mesh* mesh = std::get_if<Mesh>(&geometry))
-        return SolidAnglePdf(1 / mesh->Area(primitive), from, p, n);
-    if (const Sphere* sphere = std::get_if<Sphere>(&geometry))
-        return lull::Pdf(*sphere, from, p, n);
-    return lull::Pdf(std::get<Disk>(geometry), from, p, n);
-}
-
-float ShapeTable::Area(int shape, uint32_t primitive) const {
-    const auto& geometry = shapes[shape].geometry;
-    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) return mesh->Area(primitive);
-    if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) return sphere->Area();
-    return std::get<Disk>(geometry).Area();
 }
 
 }  // namespace lull

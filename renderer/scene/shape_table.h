@@ -58,16 +58,14 @@ struct ShapeTable {
     void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
                   SurfaceInteraction* interaction) const;
 
+    // Returns the light whose surface was hit, -1 for none.
+    int LightAt(const Hit& hit) const {
+        const int first = shapes[hit.shape].firstLight;
+        return first < 0 ? -1 : first + int(hit.primitive);
+    }
+
     // Returns the texture coordinates of a hit, for alpha textures.
     Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
-
-    // Sample a point of an emitting primitive, or return the density, 1/sr, of having sampled
-    // the point p with normal n of it.
-    std::optional<ShapeSample> Sample(int shape, uint32_t primitive, const Vec3f& from,
-                                      const Vec2f& u) const;
-    float Pdf(int shape, uint32_t primitive, const Vec3f& from, const Vec3f& p,
-              const Vec3f& n) const;
-    float Area(int shape, uint32_t primitive) const;
 };
 
 }  // namespace lull

@@ -14,9 +14,9 @@ struct Path {
     float etaScale = 1;      // undoes the radiance scaling of refractions for Russian roulette
     bool seesLights = true;  // emission counts in full: camera ray, or after a specular bounce
     // Of the BSDF sample that made `ray`, for Estimator::Combined:
-    float pdf = 0;                           // 1/sr
-    Vec3f origin = Vec3f::Zero();            // the vertex
-    const Distribution1D* choice = nullptr;  // of lights there
+    float pdf = 0;                 // 1/sr
+    Vec3f origin = Vec3f::Zero();  // the vertex
+    LightChoice choice;            // of lights there
 };
 
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
@@ -31,7 +31,7 @@ bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSam
 // `pmf` is the probability of having chosen the light.
 Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteraction& hit,
                 const Bsdf& bsdf, int index, float pmf, const Vec2f& u) {
-    const auto light = scene.lights.Sample(index, scene.shapes, hit.p, u);
+    const auto light = scene.lights.Sample(index, hit.p, u);
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
     // continues the path is sampled from all of them. A light that rays cannot hit keeps
@@ -68,13 +68,12 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
         L = environment->Le(sample->wi);
     } else {
         Hit lightHit;
-        if (!scene.accelerator.Intersect(ray, &lightHit) || lightHit.shape != area->shape ||
-            lightHit.primitive != area->primitive || lightHit.instance >= 0)
+        if (!scene.accelerator.Intersect(ray, &lightHit) || scene.shapes.LightAt(lightHit) != index)
             return Rgb::Zero();
         SurfaceInteraction at;
         scene.shapes.Interact(ray, lightHit, kNeedsNothing, &at);
         L = area->Le(at.n, -sample->wi);
-        lightPdf = scene.shapes.Pdf(area->shape, area->primitive, hit.p, at.p, at.n);
+        lightPdf = area->Pdf(hit.p, at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
     return sample->f * L *
@@ -84,10 +83,9 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
 
 // Samples direct light as the estimator says: chooses one light of the table `choice`.
 Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
-                      const SurfaceInteraction& hit, const Bsdf& bsdf,
-                      const Distribution1D& choice) {
+                      const SurfaceInteraction& hit, const Bsdf& bsdf, const LightChoice& choice) {
     float pmf;
-    const int index = choice.SampleDiscrete(sampler.Get1D(), &pmf);
+    const int index = choice.Sample(sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
     Rgb L = SampleLight(scene, estimator, hit, bsdf, index, pmf, sampler.Get2D());
     if (estimator == Estimator::PbrtV3)
@@ -100,7 +98,7 @@ Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
 float EmissionWeight(Estimator estimator, const Path& path, int index, float lightPdf) {
     if (path.seesLights) return 1;
     if (estimator == Estimator::PbrtV3) return 0;  // counted at the last vertex
-    return PowerHeuristic(path.pdf, lightPdf * path.choice->Pmf(index));
+    return PowerHeuristic(path.pdf, lightPdf * path.choice.Pmf(index));
 }
 
 // Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
@@ -119,9 +117,7 @@ Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
         const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
         const Rgb L = light.Le(hit->n, hit->wo);
         if (IsBlack(L)) return sum;
-        const float pdf = path.seesLights ? 0
-                                          : scene.shapes.Pdf(light.shape, light.primitive,
-                                                             path.origin, hit->p, hit->n);
+        const float pdf = path.seesLights ? 0 : light.Pdf(path.origin, hit->p, hit->n);
         sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
     }
     return sum;
@@ -184,8 +180,8 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         // Sample the light that arrives directly from lights.
         const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
-            path.choice = &scene.lights.Distribution(scene.shapes, hit.p);
-            L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, *path.choice);
+            path.choice = scene.lights.Choice(hit.p);
+            L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice);
         }
 
         if (!Scatter(bsdf, hit, sampler, &path)) break;

@@ -10,16 +10,16 @@ struct AreaLight {
     Rgb L;
     bool twoSided = false;
     bool isHidden = false;  // its shape has alpha 0
-    int shape = -1;
-    uint32_t primitive = 0;
+    // The emitting surface; spheres and disks belong to the shape table.
+    std::variant<TriangleSampler, const Sphere*, const Disk*> surface;
 
     // Returns the radiance that leaves a point with normal n towards w.
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
         return twoSided || n.dot(w) > 0 ? L : Rgb(Rgb::Zero());
     }
-    std::optional<LightSample> Sample(const ShapeTable& shapes, const Vec3f& from,
-                                      const Vec2f& u) const {
-        const auto s = shapes.Sample(shape, primitive, from, u);
+
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const {
+        const auto s = SampleSurface(from, u);
         if (!s) return {};
         const Vec3f wi = (s->p - from).normalized();
         const Rgb emitted = Le(s->n, -wi);
@@ -33,8 +33,31 @@ struct AreaLight {
                            .pError = s->pError,
                            .n = s->n};
     }
-    Rgb Power(const ShapeTable& shapes) const {
-        return (twoSided ? 2 : 1) * kPi * shapes.Area(shape, primitive) * L;
+
+    // Returns the density, 1/sr, of having sampled the point p of the surface with normal n.
+    float Pdf(const Vec3f& from, const Vec3f& p, const Vec3f& n) const {
+        if (const auto* triangle = std::get_if<TriangleSampler>(&surface))
+            return SolidAnglePdf(triangle->areaPdf, from, p, n);
+        if (const auto* sphere = std::get_if<const Sphere*>(&surface))
+            return lull::Pdf(**sphere, from, p, n);
+        return lull::Pdf(*std::get<const Disk*>(surface), from, p, n);
+    }
+
+    float Area() const {
+        if (const auto* triangle = std::get_if<TriangleSampler>(&surface))
+            return 1 / triangle->areaPdf;
+        if (const auto* sphere = std::get_if<const Sphere*>(&surface)) return (*sphere)->Area();
+        return std::get<const Disk*>(surface)->Area();
+    }
+    Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L; }
+
+  private:
+    std::optional<ShapeSample> SampleSurface(const Vec3f& from, const Vec2f& u) const {
+        if (const auto* triangle = std::get_if<TriangleSampler>(&surface))
+            return triangle->Sample(from, u);
+        if (const auto* sphere = std::get_if<const Sphere*>(&surface))
+            return lull::Sample(**sphere, from, u);
+        return lull::Sample(*std::get<const Disk*>(surface), from, u);
     }
 };
 

@@ -10,7 +10,7 @@ Glass::Glass(const MaterialReader& in)
 
 void Glass::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float index = in(eta);
-    const Rgb r = in.Colour(kr), t = in.Colour(kt);
+    const Rgb r = in.Color(kr), t = in.Color(kt);
     bsdf->SetEta(index);
     if (IsBlack(r) && IsBlack(t)) return;
 

@@ -50,7 +50,7 @@ struct MaterialInputs {
 
     float operator()(const FloatTexture& t) const { return textures.Evaluate(t, context); }
     // Colours may be anything from textures; scattering takes them as nonnegative.
-    Rgb Colour(const SpectrumTexture& t) const { return Raw(t).max(0.f); }
+    Rgb Color(const SpectrumTexture& t) const { return Raw(t).max(0.f); }
     Rgb Raw(const SpectrumTexture& t) const { return textures.Evaluate(t, context); }
 };
 

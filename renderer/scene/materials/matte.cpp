@@ -3,7 +3,7 @@
 namespace lull {
 
 void Matte::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb r = in.Colour(kd);
+    const Rgb r = in.Color(kd);
     if (IsBlack(r)) return;
     const float degrees = std::clamp(in(sigma), 0.f, 90.f);
     if (degrees == 0)

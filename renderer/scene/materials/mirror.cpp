@@ -3,7 +3,7 @@
 namespace lull {
 
 void Mirror::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb r = in.Colour(kr);
+    const Rgb r = in.Color(kr);
     if (!IsBlack(r)) bsdf->Add(SpecularReflection<PerfectMirror>{r, {}});
 }
 

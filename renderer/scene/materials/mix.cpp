@@ -16,7 +16,7 @@ std::string Mix::Problem(const MaterialReader& in) const {
 }
 
 void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb first = in.Colour(amount), second = (1 - first).max(0.f);
+    const Rgb first = in.Color(amount), second = (1 - first).max(0.f);
     // As in pbrt-v3 a lobe scaled to black stays among those to choose from.
     const int begin = bsdf->LobeCount(LobeSet::All);
     AddOperandLobes(operands[0], in, bsdf);

@@ -8,7 +8,7 @@ Plastic::Plastic(const MaterialReader& in)
       roughness(in, in.Float("roughness", 0.1f), in.Float("roughness", 0.1f)) {}
 
 void Plastic::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb diffuse = in.Colour(kd), glossy = in.Colour(ks);
+    const Rgb diffuse = in.Color(kd), glossy = in.Color(ks);
     if (!IsBlack(diffuse)) bsdf->Add(LambertianReflection{diffuse});
     if (IsBlack(glossy)) return;
     // pbrt-v3 has the dense side of the interface outside, so that the coat reflects totally at

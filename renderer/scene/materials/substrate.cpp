@@ -8,7 +8,7 @@ Substrate::Substrate(const MaterialReader& in)
       roughness(in, in.Float("uroughness", 0.1f), in.Float("vroughness", 0.1f)) {}
 
 void Substrate::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb diffuse = in.Colour(kd), glossy = in.Colour(ks);
+    const Rgb diffuse = in.Color(kd), glossy = in.Color(ks);
     if (IsBlack(diffuse) && IsBlack(glossy)) return;
     bsdf->Add(FresnelBlend{diffuse, glossy, roughness.Evaluate(in)});
 }

@@ -12,15 +12,15 @@ Translucent::Translucent(const MaterialReader& in)
 void Translucent::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     constexpr float kIndex = 1.5f;
     bsdf->SetEta(kIndex);
-    const Rgb r = in.Colour(reflect), t = in.Colour(transmit);
+    const Rgb r = in.Color(reflect), t = in.Color(transmit);
     if (IsBlack(r) && IsBlack(t)) return;
     // A black product still counts as a lobe: that is how pbrt-v3 chooses among them.
-    const Rgb diffuse = in.Colour(kd);
+    const Rgb diffuse = in.Color(kd);
     if (!IsBlack(diffuse)) {
         if (!IsBlack(r)) bsdf->Add(LambertianReflection{Rgb(r * diffuse)});
         if (!IsBlack(t)) bsdf->Add(LambertianTransmission{Rgb(t * diffuse)});
     }
-    const Rgb glossy = in.Colour(ks);
+    const Rgb glossy = in.Color(ks);
     if (!IsBlack(glossy)) {
         const TrowbridgeReitz distribution = roughness.Evaluate(in);
         if (!IsBlack(r))

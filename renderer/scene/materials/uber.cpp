@@ -30,22 +30,22 @@ int Uber::MaxLobes() const {
 
 void Uber::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float index = in(eta);
-    const Rgb op = in.Colour(opacity), through = (1 - op).max(0.f);
+    const Rgb op = in.Color(opacity), through = (1 - op).max(0.f);
     if (IsBlack(through))
         bsdf->SetEta(index);
     else
         bsdf->Add(SpecularTransmission{through, 1});
 
-    const Rgb diffuse = op * in.Colour(kd);
+    const Rgb diffuse = op * in.Color(kd);
     if (!IsBlack(diffuse)) bsdf->Add(LambertianReflection{diffuse});
-    const Rgb glossy = op * in.Colour(ks);
+    const Rgb glossy = op * in.Color(ks);
     if (!IsBlack(glossy))
         bsdf->Add(MicrofacetReflection<DielectricInterface>{glossy, roughness.Evaluate(in),
                                                             DielectricInterface{index}});
-    const Rgb mirror = op * in.Colour(kr);
+    const Rgb mirror = op * in.Color(kr);
     if (!IsBlack(mirror))
         bsdf->Add(SpecularReflection<DielectricInterface>{mirror, DielectricInterface{index}});
-    const Rgb glass = op * in.Colour(kt);
+    const Rgb glass = op * in.Color(kt);
     if (!IsBlack(glass)) bsdf->Add(SpecularTransmission{glass, index});
 }
 

@@ -92,24 +92,26 @@ float Mesh::Area(uint32_t triangle) const {
     return 0.5f * (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]).norm();
 }
 
-std::optional<ShapeSample> Mesh::Sample(uint32_t triangle, const Vec3f& from,
-                                        const Vec2f& u) const {
+TriangleSampler Mesh::Sampler(uint32_t triangle) const {
     const auto& v = triangles[triangle];
-    const Vec2f b = SampleUniformTriangle(u);
-    const float b2 = 1 - b.x() - b.y();
-    const Vec3f q0 = b.x() * p[v[0]], q1 = b.y() * p[v[1]], q2 = b2 * p[v[2]];
     const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
     const float twiceArea = cross.norm();
+    Vec3f normal = cross / twiceArea;
+    if (!n.empty())
+        normal = FaceForward(normal, n[v[0]] + n[v[1]] + n[v[2]]);
+    else if (flipNormals)
+        normal = -normal;
+    return {p[v[0]], p[v[1]], p[v[2]], normal, 2 / twiceArea};
+}
+
+std::optional<ShapeSample> TriangleSampler::Sample(const Vec3f& from, const Vec2f& u) const {
+    const Vec2f b = SampleUniformTriangle(u);
+    const Vec3f q0 = b.x() * p0, q1 = b.y() * p1, q2 = (1 - b.x() - b.y()) * p2;
     ShapeSample sample;
     sample.p = q0 + q1 + q2;
     sample.pError = Gamma(6) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
-    sample.n = cross / twiceArea;
-    // The sides are pbrt-v3's: vertex normals decide, without regard to ReverseOrientation.
-    if (!n.empty())
-        sample.n = FaceForward(sample.n, b.x() * n[v[0]] + b.y() * n[v[1]] + b2 * n[v[2]]);
-    else if (flipNormals)
-        sample.n = -sample.n;
-    sample.pdf = SolidAnglePdf(2 / twiceArea, from, sample.p, sample.n);
+    sample.n = n;
+    sample.pdf = SolidAnglePdf(areaPdf, from, sample.p, n);
     if (!(sample.pdf > 0)) return {};
     return sample;
 }

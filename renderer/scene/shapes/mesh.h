@@ -9,6 +9,15 @@
 
 namespace lull {
 
+// Holds what sampling an emitting triangle reads, in one place.
+struct TriangleSampler {
+    Vec3f p0, p1, p2, n;
+    float areaPdf;  // 1 / area
+
+    // Samples uniformly by area. Returns nothing for a degenerate configuration.
+    std::optional<ShapeSample> Sample(const Vec3f& from, const Vec2f& u) const;
+};
+
 struct Mesh {
     std::vector<Vec3f> p;
     std::vector<Vec3f> n;   // empty or one a vertex; need not be unit
@@ -24,8 +33,9 @@ struct Mesh {
 
     Vec2f Uv(uint32_t triangle, float b1, float b2) const;
     float Area(uint32_t triangle) const;
-    // Samples the triangle uniformly by area. Returns nothing for a degenerate configuration.
-    std::optional<ShapeSample> Sample(uint32_t triangle, const Vec3f& from, const Vec2f& u) const;
+    // The side that emits is pbrt-v3's: vertex normals decide, without regard to
+    // ReverseOrientation; those of a light are taken together.
+    TriangleSampler Sampler(uint32_t triangle) const;
 };
 
 }  // namespace lull
