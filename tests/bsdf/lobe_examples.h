@@ -21,12 +21,12 @@ struct NamedLobe {
 // Returns lobes of every kind that spreads light: smallest to largest alpha, anisotropic both
 // ways, both sides of the interface dense.
 inline std::vector<NamedLobe> SpreadLobes() {
-    const Rgb colour(0.9f, 0.5f, 0.2f);
+    const Rgb color(0.9f, 0.5f, 0.2f);
     std::vector<NamedLobe> lobes = {
-        {"Lambertian reflection", LambertianReflection{colour}},
-        {"Lambertian transmission", LambertianTransmission{colour}},
-        {"Oren-Nayar 20", OrenNayar(colour, 20)},
-        {"Oren-Nayar 90", OrenNayar(colour, 90)},
+        {"Lambertian reflection", LambertianReflection{color}},
+        {"Lambertian transmission", LambertianTransmission{color}},
+        {"Oren-Nayar 20", OrenNayar(color, 20)},
+        {"Oren-Nayar 90", OrenNayar(color, 90)},
     };
     const Vec2f alphas[] = {{1e-4f, 1e-4f}, {0.01f, 0.01f}, {0.1f, 0.1f}, {0.5f, 0.5f},
                             {1.62f, 1.62f}, {0.05f, 0.4f},  {1, 0.2f}};
@@ -36,12 +36,12 @@ inline std::vector<NamedLobe> SpreadLobes() {
         for (float eta : {1.5f, 1 / 1.5f}) {
             const std::string index = fmt::format("{} index {}", suffix, eta);
             lobes.push_back({"dielectric reflection" + index,
-                             DielectricReflection{colour, d, DielectricInterface{eta}}});
-            lobes.push_back({"transmission" + index, MicrofacetTransmission{colour, d, eta}});
+                             DielectricReflection{color, d, DielectricInterface{eta}}});
+            lobes.push_back({"transmission" + index, MicrofacetTransmission{color, d, eta}});
         }
         const ConductorInterface copper{Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f)};
-        lobes.push_back({"conductor reflection" + suffix, ConductorReflection{colour, d, copper}});
-        lobes.push_back({"Fresnel blend" + suffix, FresnelBlend{colour, Rgb(0.04f, 0.3f, 1), d}});
+        lobes.push_back({"conductor reflection" + suffix, ConductorReflection{color, d, copper}});
+        lobes.push_back({"Fresnel blend" + suffix, FresnelBlend{color, Rgb(0.04f, 0.3f, 1), d}});
     }
     return lobes;
 }

@@ -30,6 +30,17 @@ TEST(BumpMap, TiltsTheNormalByTheSlope) {
     EXPECT_TRUE(hit.ns.isApprox(Vec3f::UnitZ()));
 }
 
+TEST(BumpMap, StepsByTheDistanceOfSamplesWhereItIsKnown) {
+    MaterialScene b;
+    b.AddChecks(false, 3, 1e-3f);
+    AddTexture(&b.AddMaterial("matte"), "bumpmap", 0, false);
+    const MaterialTable table = b.Make();
+    SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.985f, 0.5f));
+    hit.uvStep = {0.01f, 0.01f};
+    table.MakeBsdf(b.textures, &hit);
+    EXPECT_TRUE(hit.dpdu.isApprox(Vec3f(0, 2, -0.1f), 1e-3f)) << hit.dpdu.transpose();
+}
+
 TEST(BumpMap, OfAConstantUsesTheCurvature) {
     MaterialScene b;
     AddFloat(&b.AddMaterial("matte"), "bumpmap", 0.5f);

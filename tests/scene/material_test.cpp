@@ -136,7 +136,7 @@ TEST(Materials, AskOnlyForWhatTheyNeed) {
     b.AddMaterial("mix").operands = {1, 6};
     AddFloat(&b.AddMaterial("matte"), "bumpmap", 0);
     const MaterialTable table = b.Make();
-    const int bump = kNeedsTangents | kNeedsNormalDerivatives;
+    const int bump = kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint;
     const int expected[] = {kNeedsNothing, kNeedsUv,        kNeedsNothing, kNeedsTangents,
                             kNeedsUv,      bump | kNeedsUv, bump,          bump | kNeedsUv,
                             kNeedsUv,      kNeedsNothing};
