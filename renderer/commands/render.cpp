@@ -21,6 +21,7 @@ struct Options {
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
+    std::optional<int> cap;
     ScheduleOptions schedule;
     std::optional<SamplerKind> sampler;
     Estimator estimator = Estimator::Combined;
@@ -66,10 +67,9 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N")
         ->excludes(stop);
-    app.add_option("--cap", o->schedule.cap, "Samples per pixel that no block exceeds")
+    app.add_option("--cap", o->cap, "Samples per pixel that no block exceeds [10000]")
         ->check(CLI::Range(1, 1 << 24))
-        ->type_name("N")
-        ->capture_default_str();
+        ->type_name("N");
     app.add_option("--pass", o->schedule.passLength, "Samples per pixel between two decisions")
         ->check(CLI::Range(1, 1 << 20))
         ->type_name("N")
@@ -116,16 +116,29 @@ int FixedSpp(const std::string& rule) {
 // Makes the rule's factory and lets the schedule suit it.
 CriterionFactory MakeFactory(const Options& options, const PixelRect& region,
                              ScheduleOptions* schedule) try {
+    // A fixed number of samples is its own cap; with --cap the smaller of both holds.
+    if (options.cap) schedule->cap = *options.cap;
+    if (const int spp = FixedSpp(options.rule))
+        schedule->cap = options.cap ? std::min(*options.cap, spp) : spp;
+
     const RuleContext context{.passSpp = std::min(schedule->passLength, schedule->cap),
                               .blockCount = int(MakeBlocks(region, *schedule).size()),
                               .sceneName = SceneName(options.scene.file),
                               .defaultModel = ""};
     const CriterionFactory factory = MakeCriterionFactory(options.rule, context);
     schedule->smallestSide = factory.smallestSide;
-    if (const int spp = FixedSpp(options.rule)) schedule->cap = std::min(schedule->cap, spp);
     return factory;
 } catch (const std::logic_error& e) {
     throw Error(std::string("--stop: ") + e.what());
+}
+
+// Warns of blocks that no criterion will ever stop.
+void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warnings& warnings) {
+    for (const Block& block : MakeBlocks(region, schedule))
+        if (!block.votes && block.leader < 0)
+            warnings.Add({}, fmt::format("block of less than {} pixels a side goes on to the cap, "
+                                         "as it is too small to be judged",
+                                         schedule.smallestSide));
 }
 
 ProgressPrinter MakePrinter(const Options& options) {
@@ -170,9 +183,10 @@ ExitCode RunRender(Options options) {
         MakeFilmSettings(description, options.scene.compile.film, unheard);
     const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
     const CriterionFactory factory = MakeFactory(options, region, &options.schedule);
+    CheckBlocks(region, options.schedule, warnings);
     const RenderFiles files =
         NameFiles(options.output.empty() ? filmSettings.filename : options.output, options.report);
-    CheckWritable(files);
+    CheckWritable(files, options.scene.file);
 
     const std::unique_ptr<const Scene> scene =
         Compile(description, options.scene.compile, warnings);

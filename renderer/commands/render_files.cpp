@@ -76,6 +76,8 @@ void WriteThresholdsRow(const std::string& file, const Provenance& provenance,
     WriteFileAtomically(file, text.str());
 }
 
+path Normal(const std::string& file) { return std::filesystem::absolute(file).lexically_normal(); }
+
 }  // namespace
 
 bool HasImageExtension(const std::string& output) {
@@ -90,14 +92,17 @@ RenderFiles NameFiles(const std::string& output, const std::string& report) {
     return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
 }
 
-void CheckWritable(const RenderFiles& files) {
+void CheckWritable(const RenderFiles& files, const std::string& scene) {
+    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds, scene})
+        if (!files.report.empty() && Normal(file) == Normal(files.report))
+            throw Error("--report " + files.report + ": would replace " + file);
     for (const std::string& file :
          {files.exr, files.png, files.sppMap, files.thresholds, files.report})
         if (!file.empty()) CheckWritable(file);
 }
 
 std::string SceneName(const std::string& file) {
-    const path absolute = std::filesystem::absolute(file).lexically_normal();
+    const path absolute = Normal(file);
     std::string name = absolute.stem().string();
     if (name == "scene" && absolute.has_parent_path() && absolute.parent_path().has_filename())
         name = absolute.parent_path().filename().string();

@@ -16,8 +16,9 @@ RenderFiles NameFiles(const std::string& output, const std::string& report);
 // Says whether `output` ends as an image that can be written.
 bool HasImageExtension(const std::string& output);
 
-// Throws Error if one of the files could not be written now.
-void CheckWritable(const RenderFiles&);
+// Throws Error if one of the files could not be written now, or if the report would replace an
+// image or the scene.
+void CheckWritable(const RenderFiles&, const std::string& scene);
 
 // Names a scene in thresholds files: the file without folder and extension, or the folder where
 // the file is called scene.pbrt. Not empty, without what the format has no room for.

@@ -134,6 +134,15 @@ TEST(BadInput, DirectoryAsOutput) {
                   {"nowhere"});
 }
 
+TEST(BadInput, ReportInThePlaceOfAnotherFile) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    for (const char* report : {"out.exr", "./out.png", "scene.pbrt"})
+        ExpectFailure(directory,
+                      std::string("render scene.pbrt -o out.exr --spp 2 --report ") + report,
+                      {"--report"});
+}
+
 TEST(BadInput, BadRules) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));

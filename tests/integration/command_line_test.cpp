@@ -130,6 +130,18 @@ TEST(CommandLine, StopsBlocksAsARuleSays) {
     EXPECT_EQ(exr.Find("spp")->values.back(), 60);
 }
 
+// The cap of 10,000 is for rules that may never stop.
+TEST(CommandLine, TakesAsManySamplesAsAskedFor) {
+    const SceneDirectory directory;
+    const std::string one = "render scene.pbrt --resolution 1x1 --quiet -o i.exr ";
+    RunLull(directory, one + "--spp 10001");
+    EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 10001);
+    RunLull(directory, one + "--spp 30 --cap 25");
+    EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 25);
+    RunLull(directory, one + "--cap 45");  // too small to be judged
+    EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 45);
+}
+
 TEST(CommandLine, PrintsProgressAsJson) {
     const SceneDirectory directory;
     const Outcome outcome = RunLull(directory,
