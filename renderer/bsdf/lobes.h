@@ -1,7 +1,7 @@
 // Holds the lobes that Bsdfs are made of: plain structs in the local frame, the shading normal
 // along +z. All directions are unit and point away from the surface.
 //
-// A lobe that spreads light has
+// A lobe that spreads light has (pbrt-v3's values and densities throughout)
 //     BsdfValue Evaluate(wo, wi)       f, and the density with which Sample finds wi;
 //     bool Sample(wo, u, &wi)          chooses wi; false where nothing can be scattered,
 // a perfectly specular one has
@@ -126,7 +126,9 @@ struct MicrofacetReflection {
     }
 };
 
-// Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side.
+// Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side. As in
+// pbrt-v3, f and the density do not vanish for microfacets that wo sees from behind, though these
+// are never sampled: light sampling finds them, and the density integrates to more than 1.
 struct MicrofacetTransmission {
     static constexpr bool kIsSpecular = false, kTransmits = true;
     StoredRgb t;
