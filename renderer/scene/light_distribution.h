@@ -65,6 +65,11 @@ class LightDistribution {
         return LightChoice(sums);
     }
 
+    // Starts to load the table of p, which is usually far away in memory.
+    void Prefetch(const Vec3f& p) const {
+        __builtin_prefetch(tables.get() + VoxelOf(p) * lightCount);
+    }
+
   private:
     static constexpr int kMaxVoxels = 64;  // along the longest axis
     static constexpr int kSamples = 128;   // a voxel

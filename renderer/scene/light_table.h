@@ -42,6 +42,11 @@ class LightTable {
         });
     }
 
+    // Starts to load what Choice(p) reads, so that the wait overlaps with other work.
+    void Prefetch(const Vec3f& p) const {
+        if (distribution) distribution->Prefetch(p);
+    }
+
   private:
     std::vector<Light> lights;
     std::vector<int> infinite;

@@ -172,6 +172,7 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         SurfaceInteraction hit;
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         scene.shapes.Interact(path.ray, found, needs, &hit);
+        scene.lights.Prefetch(hit.p);
         if (bounces == 0 && (needs & kNeedsFootprint))
             ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
