@@ -16,7 +16,7 @@ struct Path {
     // Of the BSDF sample that made `ray`, for Estimator::Combined:
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
-    LightChoice choice;            // of lights there
+    LightChoice choice{};          // of lights there
 };
 
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
