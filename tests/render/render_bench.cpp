@@ -1,6 +1,7 @@
-// Measures whole renders: samples a second, and how many cores they keep busy. The scenes are
-// those of LULL_BENCH_SCENES (files, separated by colons), or our own. LULL_BENCH_SPP sets the
-// samples per pixel of the whole images.
+// Measures whole renders: samples a second, how many cores they had (process time / elapsed time,
+// less where others use the machine) and which share of their threads' time went into samples and
+// criteria rather than waiting. The scenes are those of LULL_BENCH_SCENES (files, separated by
+// colons), or our own. LULL_BENCH_SPP sets the samples per pixel of the whole images.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -8,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <thread>
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/render.h"
@@ -34,20 +36,25 @@ std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& res
 // Renders `region` of the scene again and again.
 void RenderRegion(benchmark::State& state, const Scene& scene, Estimator estimator,
                   const PixelRect& region, const ScheduleOptions& schedule) {
+    const CriterionFactory factory = MakeCriterionFactory("dammertz:1e-9");
     RenderOptions options;
     options.schedule = schedule;
     options.sampler = SamplerKind::Random;
+    options.makeCriterion = factory.make;
     int64_t samples = 0;
-    double wall = 0;
+    double wall = 0, busy = 0;
     const double cpuBefore = ProcessSeconds();
     for (auto _ : state) {
         Film film(region);
         const RenderResult result = Render(SamplesOf(scene, estimator), options, &film);
         samples += result.progress.samples;
         wall += result.progress.seconds;
+        for (const BlockResult& block : result.blocks)
+            busy += block.seconds + block.criterionSeconds;
     }
     state.counters["samples/s"] = benchmark::Counter(double(samples), benchmark::Counter::kIsRate);
     state.counters["cores"] = (ProcessSeconds() - cpuBefore) / wall;
+    state.counters["busy"] = busy / (wall * std::thread::hardware_concurrency());
 }
 
 void BenchWhole(benchmark::State& state, const std::string& file, Estimator estimator) {
@@ -57,8 +64,8 @@ void BenchWhole(benchmark::State& state, const std::string& file, Estimator esti
                  {.cap = spp ? std::max(1, std::atoi(spp)) : 4});
 }
 
-// Renders one block, as when all others have stopped: passes of 20 spp, one after another. The
-// argument is the side of the tiles.
+// Renders one block, as when all others have stopped: passes of 20 spp, one after another, each
+// looked at by a criterion. The argument is the side of the tiles.
 void BenchLastBlock(benchmark::State& state, const std::string& file) {
     const auto scene = LoadScene(file, {800, 800});
     RenderRegion(state, *scene, Estimator::Combined, {{200, 400}, {400, 600}},

@@ -85,7 +85,7 @@ TEST(Schedule, TakesACapBelowOnePass) {
 }
 
 TEST(Schedule, StopsBlocksIndependently) {
-    Schedule schedule({{0, 0}, {40, 10}}, {.blockSize = 10, .passLength = 20, .cap = 200});
+    Schedule schedule({{0, 0}, {32, 8}}, {.blockSize = 8, .passLength = 20, .cap = 200});
     auto stop = [](int block, int spp) { return spp >= 40 * (block + 1); };
     const std::vector<Tile> tiles = RunAll(schedule, stop);
     for (int i = 0; i < 4; ++i) {
@@ -100,7 +100,7 @@ TEST(Schedule, StopsBlocksIndependently) {
 
 // No barrier: a block whose pass is done goes on though another's first tile is still out.
 TEST(Schedule, LetsNoBlockWaitForAnother) {
-    Schedule schedule({{0, 0}, {20, 10}}, {.blockSize = 10, .cap = 100});
+    Schedule schedule({{0, 0}, {16, 8}}, {.blockSize = 8, .cap = 100});
     const Tile slow = *schedule.Next();
     int others = 0;
     while (const auto tile = schedule.Next()) {
@@ -117,7 +117,7 @@ TEST(Schedule, LetsNoBlockWaitForAnother) {
 }
 
 TEST(Schedule, PrefersTheBlockWithTheFewestSamples) {
-    Schedule schedule({{0, 0}, {30, 10}}, {.blockSize = 10, .cap = 60});
+    Schedule schedule({{0, 0}, {24, 8}}, {.blockSize = 8, .cap = 60});
     std::vector<int> spp;
     for (const Tile& tile : RunAll(schedule, Never)) spp.push_back(tile.first);
     EXPECT_TRUE(std::is_sorted(spp.begin(), spp.end()));
