@@ -19,6 +19,60 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
+#ifdef LULL_RECORD_RAYS
+// For tests/transport/traversal_bench.cpp alone, which includes this file: keeps the rays that a
+// thread traces, and lets Embree's callbacks see packets. Programs are built without.
+struct RayLog {
+    struct Entry {
+        Ray ray;
+        int bounce;
+    };
+    std::vector<Entry> nearest, occlusion;
+    RTCScene world = nullptr;
+    int bounce = -1;  // the caller sets it back at the start of each path
+};
+thread_local RayLog* rayLog = nullptr;
+
+// Calls a callback that handles single rays for each ray of a packet.
+void ForEachLane(const RTCFilterFunctionNArguments* args, RTCFilterFunctionN callback) {
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (!args->valid[i]) continue;
+        RTCRay ray = rtcGetRayFromRayN(args->ray, args->N, i);
+        RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
+        RTCFilterFunctionNArguments one = *args;
+        one.N = 1, one.valid += i;
+        one.ray = reinterpret_cast<RTCRayN*>(&ray), one.hit = reinterpret_cast<RTCHitN*>(&hit);
+        callback(&one);
+    }
+}
+
+void ForEachLane(const RTCIntersectFunctionNArguments* args, RTCIntersectFunctionN callback) {
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (!args->valid[i]) continue;
+        RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+        RTCRayHit lane = {rtcGetRayFromRayN(rays, args->N, i), {}};
+        lane.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectFunctionNArguments one = *args;
+        one.N = 1, one.valid += i, one.rayhit = reinterpret_cast<RTCRayHitN*>(&lane);
+        callback(&one);
+        if (lane.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+        RTCRayN_tfar(rays, args->N, i) = lane.ray.tfar;
+        rtcCopyHitToHitN(RTCRayHitN_HitN(args->rayhit, args->N), &lane.hit, args->N, i);
+    }
+}
+
+void ForEachLane(const RTCOccludedFunctionNArguments* args, RTCOccludedFunctionN callback) {
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (!args->valid[i]) continue;
+        RTCRay ray = rtcGetRayFromRayN(args->ray, args->N, i);
+        RTCOccludedFunctionNArguments one = *args;
+        one.N = 1, one.valid += i, one.ray = reinterpret_cast<RTCRayN*>(&ray);
+        callback(&one);
+        RTCRayN_tfar(args->ray, args->N, i) = ray.tfar;
+    }
+}
+#endif
+
 // Holds what Embree's callbacks get to see of a shape.
 struct ShapeUser {
     const ShapeTable* shapes;
@@ -51,6 +105,9 @@ bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool 
 // Rays are traced one at a time, so that the callbacks always see a single one.
 template <bool isShadow>
 void FilterByAlpha(const RTCFilterFunctionNArguments* args) {
+#ifdef LULL_RECORD_RAYS
+    if (args->N > 1) return ForEachLane(args, FilterByAlpha<isShadow>);
+#endif
     if (IsCutOut(*static_cast<const ShapeUser*>(args->geometryUserPtr),
                  *reinterpret_cast<const RTCRay*>(args->ray),
                  *reinterpret_cast<const RTCHit*>(args->hit), isShadow))
@@ -75,6 +132,9 @@ void QuadricBounds(const RTCBoundsFunctionArguments* args) {
 }
 
 void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args) {
+#ifdef LULL_RECORD_RAYS
+    if (args->N > 1) return ForEachLane(args, IntersectQuadricCallback);
+#endif
     if (!args->valid[0]) return;
     auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
@@ -88,6 +148,9 @@ void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args) {
 }
 
 void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args) {
+#ifdef LULL_RECORD_RAYS
+    if (args->N > 1) return ForEachLane(args, OccludedQuadricCallback);
+#endif
     if (!args->valid[0]) return;
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
@@ -197,6 +260,12 @@ Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures,
 }
 
 bool Accelerator::Intersect(const Ray& ray, Hit* hit) const {
+#ifdef LULL_RECORD_RAYS
+    if (rayLog) {
+        rayLog->world = implementation->world.get();
+        rayLog->nearest.push_back({ray, ++rayLog->bounce});
+    }
+#endif
     RTCRayHit r;
     r.ray = MakeRay(ray);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -221,6 +290,9 @@ bool Accelerator::Intersect(const Ray& ray, Hit* hit) const {
 }
 
 bool Accelerator::Occluded(const Ray& ray) const {
+#ifdef LULL_RECORD_RAYS
+    if (rayLog) rayLog->occlusion.push_back({ray, rayLog->bounce});
+#endif
     RTCRay r = MakeRay(ray);
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(implementation->world.get(), &r);
@@ -231,5 +303,62 @@ bool Accelerator::Occluded(const Ray& ray) const {
 #endif
     return r.tfar < 0;
 }
+
+#ifdef LULL_RECORD_RAYS
+namespace {
+
+template <int width>
+struct Packet;
+template <>
+struct Packet<8> {
+    using RayHit = RTCRayHit8;
+    static constexpr auto intersect = rtcIntersect8;
+    static constexpr auto occluded = rtcOccluded8;
+};
+template <>
+struct Packet<16> {
+    using RayHit = RTCRayHit16;
+    static constexpr auto intersect = rtcIntersect16;
+    static constexpr auto occluded = rtcOccluded16;
+};
+
+// Traces the rays in packets of 8 or 16, gathering each packet first. Returns how many hit.
+template <int width>
+size_t TracePackets(RTCScene world, std::span<const RayLog::Entry> rays, bool isOcclusion) {
+    const auto trace = [&](auto function, const int* valid, auto* packet) {
+#if RTC_VERSION_MAJOR >= 4
+        function(valid, world, packet, nullptr);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        function(valid, world, &context, packet);
+#endif
+    };
+    alignas(64) int valid[width];
+    typename Packet<width>::RayHit p;
+    size_t hits = 0;
+    for (size_t first = 0; first < rays.size(); first += width) {
+        const int count = int(std::min<size_t>(width, rays.size() - first));
+        for (int i = 0; i < width; ++i) {
+            valid[i] = i < count ? -1 : 0;
+            const RTCRay r = MakeRay(rays[first + std::min(i, count - 1)].ray);
+            p.ray.org_x[i] = r.org_x, p.ray.org_y[i] = r.org_y, p.ray.org_z[i] = r.org_z;
+            p.ray.dir_x[i] = r.dir_x, p.ray.dir_y[i] = r.dir_y, p.ray.dir_z[i] = r.dir_z;
+            p.ray.tnear[i] = r.tnear, p.ray.tfar[i] = r.tfar, p.ray.time[i] = r.time;
+            p.ray.mask[i] = r.mask, p.ray.id[i] = r.id, p.ray.flags[i] = r.flags;
+            p.hit.geomID[i] = p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        if (isOcclusion)
+            trace(Packet<width>::occluded, valid, &p.ray);
+        else
+            trace(Packet<width>::intersect, valid, &p);
+        for (int i = 0; i < count; ++i)
+            hits += isOcclusion ? p.ray.tfar[i] < 0 : p.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    }
+    return hits;
+}
+
+}  // namespace
+#endif
 
 }  // namespace lull
