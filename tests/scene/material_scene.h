@@ -83,7 +83,7 @@ inline void AddTexture(MaterialEntity* m, const std::string& name, int texture, 
 }
 
 template <typename L>
-const L& LobeAt(const Bsdf& bsdf, int i) {
+L LobeAt(const Bsdf& bsdf, int i) {
     EXPECT_TRUE(std::holds_alternative<L>(bsdf.At(i))) << "lobe " << i;
     return std::get<L>(bsdf.At(i));
 }
