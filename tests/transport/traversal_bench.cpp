@@ -6,9 +6,11 @@
 //           sorted   within each bounce by the octant of the direction, then along a Morton curve
 //   width   1        through the accelerator, one at a time, as in a render
 //           8, 16    in Embree's packets; gathering them counts, but no hit is handed on
+// The packets of path/8 and path/16 hold rays that follow from each other, so no render could have
+// them: they show what packets save apart from coherence.
 // Times are the thread's own processor time, the least of several rounds that each measure all
 // variants, so that other work on the machine disturbs them little. The share of traversal is that
-// of path/1; it is a lower bound, since shading does not displace the scene from the caches there.
+// of path/1; rather too low, since shading does not displace the scene from the caches there.
 // The scenes are those of LULL_BENCH_SCENES (files, separated by colons), or our own.
 // LULL_BENCH_SPP sets the samples per pixel.
 #include <benchmark/benchmark.h>
