@@ -14,8 +14,13 @@ Vec3f Center(const Sphere& sphere) {
     return sphere.place.worldFromShape.topRightCorner<3, 1>().cast<float>();
 }
 
+// Takes points of the sphere itself as inside, whatever side rounding has put them on: the cone
+// that the sphere subtends is a whole hemisphere there, and would hold nothing but the point.
 bool IsInside(const Sphere& sphere, const Vec3f& p) {
-    return (p - Center(sphere)).squaredNorm() <= Sqr(sphere.radius);
+    const Vec3f center = Center(sphere);
+    const float rounding =
+        Gamma(16) * (p.lpNorm<Eigen::Infinity>() + center.lpNorm<Eigen::Infinity>());
+    return (p - center).squaredNorm() <= Sqr(sphere.radius + rounding);
 }
 
 // Returns 1 - cos of the half angle that the sphere subtends, without cancellation.
