@@ -30,47 +30,39 @@ float RadicalInverse(int base, uint64_t index) {
     return std::min(float(result), kOneMinusEpsilon);
 }
 
-Distribution1D::Distribution1D(std::span<const float> given)
-    : values(given.begin(), given.end()), cdf(given.size() + 1) {
-    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-    if (!(sum > 0) || !std::isfinite(sum)) {
-        std::fill(values.begin(), values.end(), 1.f);
-        pmfScale = 1.f / values.size();
-    } else {
-        integral = float(sum / values.size());
-        pmfScale = float(1 / sum);
-    }
+Distribution1D::Distribution1D(std::span<const float> values) : cdf(values.size() + 1) {
     // Sum in double, so that long tables keep their small entries.
+    const int n = int(values.size());
+    double total = std::accumulate(values.begin(), values.end(), 0.0);
+    const bool isUniform = !(total > 0) || !std::isfinite(total);
+    if (isUniform)
+        total = n;
+    else
+        integral = float(total / n);
     double running = 0;
-    const double total = std::accumulate(values.begin(), values.end(), 0.0);
-    for (size_t i = 0; i < values.size(); ++i) {
+    int last = n - 1;  // the last element that has a probability
+    for (int i = 0; i < n; ++i) {
         cdf[i] = float(running / total);
-        running += values[i];
+        running += isUniform ? 1 : values[i];
+        if (isUniform || values[i] > 0) last = i;
     }
-    cdf.back() = 1;
-}
+    // What lies behind it must not be chosen for what rounding has left of 1.
+    for (int i = last + 1; i <= n; ++i) cdf[i] = 1;
 
-// Returns the last i with cdf[i] <= u and a positive value.
-int Distribution1D::Find(float u) const {
-    const auto it = std::upper_bound(cdf.begin(), cdf.end(), u);
-    int i = std::clamp(int(it - cdf.begin()) - 1, 0, Count() - 1);
-    // Rounding can make a tiny value's interval empty; step to a neighbour that can be chosen.
-    while (values[i] == 0 && i > 0) --i;
-    while (values[i] == 0 && i < Count() - 1) ++i;
-    return i;
-}
-
-int Distribution1D::SampleDiscrete(float u, float* pmf) const {
-    const int i = Find(u);
-    *pmf = Pmf(i);
-    return i;
+    const int entries = (n + kGuideStep - 1) / kGuideStep;
+    int i = 0;
+    for (int k = 0; k < entries; ++k) {
+        // One place early, as k / entries and u * entries round differently.
+        while (i < n - 1 && double(cdf[i + 1]) * entries <= k - 0.001) ++i;
+        guide.push_back(i);
+    }
 }
 
 float Distribution1D::SampleContinuous(float u, float* pdf, int* offset) const {
     const int i = Find(u);
     *offset = i;
     *pdf = Pmf(i) * Count();
-    const float width = cdf[i + 1] - cdf[i];
+    const float width = Pmf(i);
     const float t = width > 0 ? std::clamp((u - cdf[i]) / width, 0.f, kOneMinusEpsilon) : 0.5f;
     return std::min((i + t) / Count(), kOneMinusEpsilon);
 }

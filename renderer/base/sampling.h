@@ -38,31 +38,45 @@ inline float PowerHeuristic(float f, float g) {
 float RadicalInverse(int base, uint64_t index);
 
 // Represents a piecewise-constant density over [0, 1), proportional to nonnegative values.
-// All-zero (or non-finite) values give the uniform density.
+// All-zero (or non-finite) values give the uniform density. Only running sums are kept, and all
+// probabilities are their differences: exactly what sampling with them does.
 class Distribution1D {
   public:
     Distribution1D() = default;
     explicit Distribution1D(std::span<const float> values);
 
-    int Count() const { return int(values.size()); }
+    int Count() const { return int(cdf.size()) - 1; }
     // Returns the mean of the values.
     float Integral() const { return integral; }
     // Returns the probability of choosing element i.
-    float Pmf(int i) const { return values[i] * pmfScale; }
+    float Pmf(int i) const { return cdf[i + 1] - cdf[i]; }
     // Returns the density at x in [0, 1).
     float Pdf(float x) const { return Pmf(std::clamp(int(x * Count()), 0, Count() - 1)) * Count(); }
     // Chooses an element; `pmf` receives its probability, > 0 for every choice that can occur.
-    int SampleDiscrete(float u, float* pmf) const;
+    int SampleDiscrete(float u, float* pmf) const {
+        const int i = Find(u);
+        *pmf = Pmf(i);
+        return i;
+    }
     // Chooses a place in [0, 1); `pdf` receives the density, `offset` the element it lies in.
     float SampleContinuous(float u, float* pdf, int* offset) const;
 
   private:
-    int Find(float u) const;
+    // A guide entry stands for so many elements: a scan stays within a cache line or two.
+    static constexpr int kGuideStep = 4;
 
-    std::vector<float> values;  // as given; 1 each where all were 0
-    std::vector<float> cdf;     // Count() + 1 of them, from 0 to 1
+    // Returns the i with cdf[i] <= u < cdf[i + 1], from the guide's entry for u onwards (cutpoint
+    // method, Chen and Asau 1974).
+    int Find(float u) const {
+        const int entries = int(guide.size());
+        int i = guide[std::min(int(u * float(entries)), entries - 1)];
+        while (cdf[i + 1] <= u && i < Count() - 1) ++i;
+        return i;
+    }
+
+    std::vector<float> cdf;  // from 0 to 1
+    std::vector<int> guide;  // where to begin for u = k / entries
     float integral = 0;
-    float pmfScale = 0;
 };
 
 // Represents a piecewise-constant density over the unit square, row-major in v.
