@@ -1,0 +1,42 @@
+// Estimates the noise that an observer can see in a block: in lightness, and masked by texture.
+#pragma once
+
+#include <vector>
+
+#include "stopping/criterion.h"
+
+namespace lull {
+
+// Holds estimates for every pixel of a block, row-major.
+//
+// With A the mean of one half of the samples, B that of the other and M of all, (A - B) / 2 has the
+// standard deviation of the error of M. Lightness L is that of the displayed colour: components
+// are clamped to [0, 1], but not rounded to 8 bits, which would add noise of its own.
+struct LightnessNoise {
+    std::vector<float> lightness;  // L of M, in [0, 100]
+    // (A - B) / 2 taken to lightness by its derivative at M, zero in components that the display
+    // saturates. One draw from the noise of that pixel, with its sign: only its squares averaged
+    // over many pixels say how large the noise is.
+    std::vector<float> noise;
+    std::vector<float> halfNoise;  // (L(A) - L(B)) / 2, bounded
+    // Standard deviation of L in the 13 x 13 pixels around (those within the block), after L has
+    // been smoothed by averaging 5 x 5: what masks noise. Written t.
+    std::vector<float> texture;
+};
+
+// Reads both means of the view. Throws as CheckView() does.
+LightnessNoise ComputeLightnessNoise(const BlockView& view);
+
+// Returns noise / (1 + t / 4): what remains visible of noise on texture.
+inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
+
+// Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
+// maskedNoise and halfNoise are root mean squares; noiseMean is the mean of |noise| sqrt(pi / 2),
+// which estimates the mean standard deviation.
+struct LightnessNoiseStatistics {
+    std::vector<float> lightness, deviation, texture, noise, noiseMean, maskedNoise, halfNoise;
+};
+LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
+                                            int subBlocks);
+
+}  // namespace lull
