@@ -4,12 +4,12 @@
 
 #include <cstring>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 #include "renderer/base/color.h"
 #include "tests/output/test_files.h"
-
-// OpenImageIO leaks its message when libpng jumps out of a truncated file; leak checkers ask here.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:ImageInput::geterror"; }
 
 namespace lull {
 namespace {
@@ -138,6 +138,14 @@ TEST(ReadImage, ReadsPfmTopDown) {
               (std::vector<float>{-4, 5e6f, 6, 1, 2, 3}));
 }
 
+// Hides what is allocated from leak checkers: OpenImageIO loses its message when libpng jumps out
+// of a truncated file. (A suppression by name does not reach it through code without frames.)
+struct HideLeaks {
+#ifdef __SANITIZE_ADDRESS__
+    __lsan::ScopedDisabler disabler;
+#endif
+};
+
 TEST(ReadImage, SaysWhatIsWrong) {
     const TemporaryDirectory directory;
     const auto read = [](const std::string& path) { return ErrorOf([&] { ReadImage(path); }); };
@@ -148,7 +156,10 @@ TEST(ReadImage, SaysWhatIsWrong) {
     EXPECT_TRUE(Contains(read(directory.Write("a.unknown", "hello")), "a.unknown"));
     EXPECT_TRUE(Contains(read(directory.Write("empty.exr", "")), "empty.exr"));
     const std::string cut = FromHex(kRgbPng).substr(0, 50);
-    EXPECT_TRUE(Contains(read(directory.Write("cut.png", cut)), "cut.png"));
+    {
+        [[maybe_unused]] const HideLeaks hide;
+        EXPECT_TRUE(Contains(read(directory.Write("cut.png", cut)), "cut.png"));
+    }
     EXPECT_TRUE(Contains(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3"));
 }
 
