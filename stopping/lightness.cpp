@@ -45,14 +45,14 @@ struct EncodeTable {
     }
 };
 
-// Holds the share of each 8-bit component in the luminance Y (Rec. 709 primaries, white at 1).
+// Holds the share of each 8-bit component in the luminance Y.
 struct LuminanceTable {
     std::array<std::array<double, 256>, 3> share;
 
     LuminanceTable() {
-        const double weights[3] = {0.212671, 0.715160, 0.072169};
         for (int i = 0; i < 3; ++i)
-            for (int c = 0; c < 256; ++c) share[i][c] = weights[i] * LinearFromSrgb(c / 255.0);
+            for (int c = 0; c < 256; ++c)
+                share[i][c] = luminanceWeights[i] * LinearFromSrgb(c / 255.0);
     }
 };
 

@@ -6,6 +6,9 @@
 
 namespace lull {
 
+// The shares of linear R, G and B (Rec. 709 primaries) in the luminance Y, which is 1 at white.
+inline constexpr double luminanceWeights[3] = {0.212671, 0.715160, 0.072169};
+
 // Applies the sRGB transfer curve (IEC 61966-2-1) to linear values, clamps to [0, 1] and rounds
 // to 8 bits. NaN becomes 0. Throws std::invalid_argument if the lengths differ.
 void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);

@@ -24,7 +24,7 @@ struct LightnessNoise {
     std::vector<float> texture;
 };
 
-// Reads both means of the view. Throws as CheckView() does.
+// Reads both means of the view; values that are not finite count as 0. Throws as CheckView() does.
 LightnessNoise ComputeLightnessNoise(const BlockView& view);
 
 // Returns noise / (1 + t / 4): what remains visible of noise on texture.
@@ -32,7 +32,8 @@ inline float MaskedNoise(float noise, float texture) { return noise / (1 + textu
 
 // Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
 // maskedNoise and halfNoise are root mean squares; noiseMean is the mean of |noise| sqrt(pi / 2),
-// which estimates the mean standard deviation.
+// which estimates the mean standard deviation. Throws std::invalid_argument if the estimates do not
+// have the size or there are fewer pixels a side than sub-blocks.
 struct LightnessNoiseStatistics {
     std::vector<float> lightness, deviation, texture, noise, noiseMean, maskedNoise, halfNoise;
 };

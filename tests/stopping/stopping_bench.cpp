@@ -8,6 +8,7 @@
 #include "stopping/baselines.h"
 #include "stopping/learned.h"
 #include "stopping/lightness.h"
+#include "stopping/lightness_noise.h"
 #include "tests/stopping/block_images.h"
 #include "tests/stopping/random_network.h"
 
@@ -36,6 +37,13 @@ void EntropyFeature(benchmark::State& state) {
             ComputeFeature(TestBlock().mean, 200, 200, int(state.range(0)), Feature::H));
 }
 BENCHMARK(EntropyFeature)->Arg(4)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
+
+void NoiseInLightness(benchmark::State& state) {
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            SubBlockStatistics(ComputeLightnessNoise(TestBlock().At(20)), 200, 200, 100));
+}
+BENCHMARK(NoiseInLightness)->Unit(benchmark::kMillisecond);
 
 void PaperNetwork(benchmark::State& state) {
     const Network network = RandomNetwork(100, {512, 128, 32}, 0.1f);
