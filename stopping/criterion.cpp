@@ -9,6 +9,7 @@
 #include "stopping/baselines.h"
 #include "stopping/checksum.h"
 #include "stopping/learned.h"
+#include "stopping/lnoise.h"
 #include "stopping/model_file.h"
 #include "stopping/small_blocks.h"
 #include "stopping/thresholds.h"
@@ -18,7 +19,7 @@ namespace lull {
 namespace {
 
 constexpr const char* ruleForms =
-    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, thresholds:FILE[:NAME] and "
+    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise:T, thresholds:FILE[:NAME] and "
     "learned[:MODEL.h5]";
 
 // Parses all of `text` as a number > 0, finite.
@@ -61,6 +62,12 @@ CriterionFactory LuxTile(const std::string& argument) {
     const double threshold = ParseThreshold(argument);
     return {.smallestSide = smallestVotingSide,
             .make = [threshold](const BlockInfo&) { return MakeLuxTile(threshold); }};
+}
+
+CriterionFactory LNoise(const std::string& argument) {
+    const double threshold = ParseThreshold(argument);
+    return {.smallestSide = smallestVotingSide,
+            .make = [threshold](const BlockInfo&) { return MakeLightnessNoise(threshold); }};
 }
 
 // Chooses the row of a thresholds file: the one asked for, else the scene's, else the only one.
@@ -126,6 +133,7 @@ CriterionFactory MakeFactory(const std::string& kind, const std::string& argumen
     if (kind == "dammertz") return Dammertz(argument);
     if (kind == "cycles") return Cycles(argument);
     if (kind == "luxtile") return LuxTile(argument);
+    if (kind == "lnoise") return LNoise(argument);
     if (kind == "thresholds") return Thresholds(argument, context);
     if (kind == "learned") return Learned(argument, context);
     throw std::invalid_argument("there is no such rule; there are " + std::string(ruleForms));

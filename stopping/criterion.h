@@ -34,7 +34,7 @@ struct Decision {
     bool judged = false;
     double value = 0;      // what was compared: an error estimate, P(noisy) or the spp
     double threshold = 0;  // what it was compared with
-    int votes = 0;         // noiseless votes in a row (learned rules only)
+    int votes = 0;         // noiseless votes in a row (rules that vote only)
 };
 
 // Judges one block over all its passes and holds what that needs to remember. Different criteria
@@ -94,6 +94,7 @@ inline constexpr const char* defaultRule = "dammertz:0.02";
 //     dammertz[:T[:area]]     stop when the block's mean error is < T; without T: defaultRule
 //     cycles:T                stop when no pixel's error is >= T
 //     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
+//     lnoise:T                stop when the visible noise in lightness is < T three times in a row
 //     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
 //     learned[:MODEL.h5]      stop after noiseless votes of a recurrent network in a row
 // Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message

@@ -34,6 +34,7 @@ constexpr const char* kFooter =
   dammertz[:T]            until a block's mean error in square-root brightness is below T
   cycles:T                until every pixel of the block has an error below T
   luxtile:T               until the largest display error of the block is below T
+  lnoise:T                until the visible noise in lightness (of 0 to 100) is below T
   learned[:MODEL.h5]      until a network that was trained on human judgements says so
   thresholds:FILE[:NAME]  until the spp that a thresholds file has for the block
   fixed:N                 until N samples per pixel

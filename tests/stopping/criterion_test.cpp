@@ -42,7 +42,7 @@ TEST(Rule, MakesItsCriterion) {
     EXPECT_EQ(fixed.smallestSide, 0);
     EXPECT_EQ(StopSpp(fixed.make({}).get()), 100);
 
-    for (const char* rule : {"dammertz:0.05", "cycles:0.05", "luxtile:0.1"}) {
+    for (const char* rule : {"dammertz:0.05", "cycles:0.05", "luxtile:0.1", "lnoise:1"}) {
         const CriterionFactory factory = MakeCriterionFactory(rule);
         EXPECT_EQ(factory.smallestSide, smallestVotingSide);
         EXPECT_GT(StopSpp(factory.make({}).get()), 20) << rule;
@@ -79,6 +79,8 @@ TEST(Rule, SaysWhatIsWrongWithIt) {
                              "cycles:0x1",
                              "luxtile:6/256",
                              "luxtile",
+                             "lnoise",
+                             "lnoise:0",
                              "thresholds",
                              "thresholds:",
                              "learned",
@@ -143,7 +145,7 @@ TEST(Rule, GoesOnFromSavedState) {
     const ScratchFile thresholds(".csv", "kitchen;500;\n");
     for (const std::string& rule :
          {std::string("fixed:500"), std::string("dammertz:0.02"), std::string("cycles:0.02"),
-          std::string("luxtile:0.1"), "thresholds:" + thresholds.path}) {
+          std::string("luxtile:0.1"), std::string("lnoise:2"), "thresholds:" + thresholds.path}) {
         const CriterionFactory factory = MakeCriterionFactory(rule);
         auto criterion = factory.make({});
         for (int spp = 20; spp <= 400; spp += 20) {
