@@ -35,6 +35,7 @@ ExitCode Main(int argc, char** argv) {
     Command command;
     AddRenderCommand(app, &command);
     AddInfoCommand(app, &command);
+    AddDatasetCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

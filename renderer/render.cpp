@@ -6,7 +6,10 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <atomic>
 #include <chrono>
+#include <mutex>
+#include <stdexcept>
 
 namespace lull {
 
@@ -19,18 +22,31 @@ double SecondsSince(Clock::time_point start) {
 }
 
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same
-// part of the scene in the caches, and the pixel's sums stay in registers.
-void RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler, Film* film) {
+// part of the scene in the caches, and the pixel's sums stay in registers. Pixels that an
+// interrupted render has taken further already keep what they have. Returns how many were taken.
+int64_t RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler, Film* film) {
+    int64_t samples = 0;
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
         for (int x = tile.pixels.min.x(); x < tile.pixels.max.x(); ++x) {
             const Vec2i pixel(x, y);
             FilmPixel sums = film->At(pixel);
-            for (int k = tile.first; k < tile.first + tile.count; ++k) {
-                const PathSample sample = source(sampler, pixel, uint32_t(k));
+            const uint32_t end = uint32_t(tile.first + tile.count);
+            for (uint32_t k = sums.count; k < end; ++k) {
+                const PathSample sample = source(sampler, pixel, k);
                 sums.Add(sample.radiance, sample.rejected);
+                ++samples;
             }
             film->At(pixel) = sums;
         }
+    return samples;
+}
+
+std::vector<BlockStart> StartsOf(const RenderState* interrupted) {
+    std::vector<BlockStart> starts;
+    if (interrupted)
+        for (const BlockResult& b : interrupted->blocks)
+            starts.push_back({b.block.spp, b.block.stopped, b.block.stoppedByVote});
+    return starts;
 }
 
 // Carries out a schedule: one task for each tile that is ready, each of which takes whatever tile
@@ -38,20 +54,35 @@ void RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler, F
 // pass, so no block ever waits for another, and a single block still fills every core.
 class Executor {
   public:
-    Executor(const SampleSource& source, const RenderOptions& options, Film* film)
+    Executor(const SampleSource& source, const RenderOptions& options, Film* film,
+             const RenderState* interrupted)
         : source(source),
           options(options),
           film(film),
-          schedule(film->Region(), options.schedule),
-          results(schedule.Blocks().size()),
-          criteria(MakeCriteria()) {}
+          secondsBefore(interrupted ? interrupted->seconds : 0),
+          schedule(film->Region(), options.schedule, StartsOf(interrupted)),
+          results(interrupted ? interrupted->blocks
+                              : std::vector<BlockResult>(schedule.Blocks().size())),
+          criteria(MakeCriteria(interrupted)),
+          samples(film->SampleCount()) {}
+
+    // Says whether the state has the blocks that the schedule will make of the film.
+    static bool Fits(const RenderState& state, const PixelRect& region,
+                     const ScheduleOptions& options) {
+        const size_t count = MakeBlocks(region, options).size();
+        return state.blocks.size() == count && state.criteria.size() == count;
+    }
 
     RenderResult Run() {
-        Spawn(schedule.ReadyTiles());
-        group.wait();
+        do {
+            pausing = false;
+            nextCheckpoint = Seconds() + options.checkpointInterval;
+            Spawn(schedule.ReadyTiles());
+            group.wait();
+            if (options.onCheckpoint && !schedule.Done()) options.onCheckpoint(State());
+        } while (pausing && !IsCancelled());
 
-        const std::span<const Block> blocks = schedule.Blocks();
-        for (size_t i = 0; i < blocks.size(); ++i) results[i].block = blocks[i];
+        NoteBlocks();
         const RenderProgress progress = CurrentProgress();
         if (options.onProgress) options.onProgress(progress);
         return {std::move(results), progress, !schedule.Done()};
@@ -63,12 +94,31 @@ class Executor {
     }
 
     void RunTile() {
-        if (options.isCancelled && options.isCancelled()) return;
+        if (pausing || IsCancelled()) return;
         const Tile tile = TakeTile();
         const Clock::time_point tileStart = Clock::now();
-        RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
-        if (FinishTile(tile, SecondsSince(tileStart))) Spawn(DecideBlock(tile.block));
+        const int64_t taken =
+            RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
+        if (FinishTile(tile, taken, SecondsSince(tileStart))) Spawn(DecideBlock(tile.block));
         ReportProgress();
+        if (options.onCheckpoint && Seconds() >= nextCheckpoint) pausing = true;
+    }
+
+    bool IsCancelled() const { return options.isCancelled && options.isCancelled(); }
+
+    double Seconds() const { return secondsBefore + SecondsSince(start); }
+
+    void NoteBlocks() {
+        const std::span<const Block> blocks = schedule.Blocks();
+        for (size_t i = 0; i < blocks.size(); ++i) results[i].block = blocks[i];
+    }
+
+    RenderState State() {
+        NoteBlocks();
+        RenderState state{results, {}, Seconds()};
+        for (const std::unique_ptr<Criterion>& criterion : criteria)
+            state.criteria.push_back(criterion ? criterion->Save() : std::vector<std::byte>());
+        return state;
     }
 
     Tile TakeTile() {
@@ -77,10 +127,10 @@ class Executor {
     }
 
     // Returns true if the tile was the last of its pass.
-    bool FinishTile(const Tile& tile, double seconds) {
+    bool FinishTile(const Tile& tile, int64_t taken, double seconds) {
         std::lock_guard lock(mutex);
         results[tile.block].seconds += seconds;
-        samples += tile.pixels.Area() * tile.count;
+        samples += taken;
         return schedule.Finish(tile);
     }
 
@@ -93,15 +143,17 @@ class Executor {
         return schedule.ReadyTiles() - readyBefore;
     }
 
-    std::vector<std::unique_ptr<Criterion>> MakeCriteria() const {
+    std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderState* interrupted) const {
         const std::span<const Block> blocks = schedule.Blocks();
         std::vector<std::unique_ptr<Criterion>> made(blocks.size());
         if (!options.makeCriterion) return made;
         const double imageArea = double(film->Region().Area());
-        for (size_t i = 0; i < blocks.size(); ++i)
-            if (blocks[i].votes)
-                made[i] = options.makeCriterion(
-                    {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            if (!blocks[i].votes) continue;
+            made[i] = options.makeCriterion(
+                {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
+            if (interrupted && blocks[i].spp > 0) made[i]->Restore(interrupted->criteria[i]);
+        }
         return made;
     }
 
@@ -137,8 +189,8 @@ class Executor {
     void ReportProgress() {
         if (!options.onProgress) return;
         std::unique_lock reporting(progressMutex, std::try_to_lock);
-        if (!reporting || SecondsSince(start) < nextProgress) return;
-        nextProgress = SecondsSince(start) + options.progressInterval;
+        if (!reporting || Seconds() < nextProgress) return;
+        nextProgress = Seconds() + options.progressInterval;
         RenderProgress progress;
         {
             std::lock_guard lock(mutex);
@@ -150,19 +202,22 @@ class Executor {
     RenderProgress CurrentProgress() const {
         return {int(schedule.Blocks().size()), schedule.StoppedBlocks(),
                 schedule.MedianSpp(),          samples,
-                schedule.SamplesToCap(),       SecondsSince(start)};
+                schedule.SamplesToCap(),       Seconds()};
     }
 
     const SampleSource& source;
     const RenderOptions& options;
     Film* film;
     const Clock::time_point start = Clock::now();
+    const double secondsBefore;         // of the runs before this one
+    std::atomic<bool> pausing = false;  // takes no more tiles, for a checkpoint
+    double nextCheckpoint = 0;
 
     std::mutex mutex;  // guards the schedule, `samples` and the tiles' seconds in `results`
     Schedule schedule;
     std::vector<BlockResult> results;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
-    int64_t samples = 0;
+    int64_t samples;
 
     std::mutex progressMutex;  // guards `nextProgress`, and lets one thread report at a time
     double nextProgress = 0;
@@ -173,11 +228,14 @@ class Executor {
 
 }  // namespace
 
-RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film) {
+RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
+                    const RenderState* interrupted) {
+    if (interrupted && !Executor::Fits(*interrupted, film->Region(), options.schedule))
+        throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
-    return arena.execute([&] { return Executor(source, options, film).Run(); });
+    return arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
 }
 
 SampleSource SamplesOf(const Scene& scene, Estimator estimator) {

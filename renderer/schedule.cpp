@@ -31,13 +31,25 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
     return blocks;
 }
 
-Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options)
+Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
+                   std::span<const BlockStart> starts)
     : options(options), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
+    for (size_t i = 0; i < starts.size(); ++i) {
+        blocks[i].spp = starts[i].spp;
+        if (starts[i].stopped) Stop(int(i), starts[i].stoppedByVote);
+    }
     for (int i = 0; i < int(blocks.size()); ++i)
         if (blocks[i].leader >= 0)
             progress[blocks[i].leader].followers.push_back(i);
-        else
-            StartPass(i, std::min(options.passLength, options.cap));
+        else if (!blocks[i].stopped)
+            GoOn(i);
+    for (int i = 0; i < int(blocks.size()); ++i)
+        if (blocks[i].leader >= 0) CatchUp(i);
+}
+
+// Starts the next pass of a block that nobody leads.
+void Schedule::GoOn(int i) {
+    StartPass(i, std::min(blocks[i].spp + options.passLength, options.cap));
 }
 
 int Schedule::TileCount(int block) const {
@@ -86,7 +98,7 @@ void Schedule::Decide(int i, bool stop) {
     if (stop || block.spp >= options.cap)
         Stop(i, stop);
     else
-        StartPass(i, std::min(block.spp + options.passLength, options.cap));
+        GoOn(i);
     for (const int follower : progress[i].followers) CatchUp(follower);
 }
 

@@ -30,6 +30,13 @@ struct Block {
     bool stoppedByVote = false;  // stopped by its own vote or its leader's, not by the cap
 };
 
+// Says where a block is when a schedule begins.
+struct BlockStart {
+    int spp = 0;  // samples per pixel of all finished passes
+    bool stopped = false;
+    bool stoppedByVote = false;
+};
+
 // Holds a piece of a block's pass: `count` samples from `first` on for each of the pixels.
 struct Tile {
     int block;
@@ -48,7 +55,10 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 // samples per pixel; so that depends on no order of execution either.
 class Schedule {
   public:
-    Schedule(const PixelRect& region, const ScheduleOptions&);
+    // `starts` is empty, or has as many as there are blocks: to go on where an earlier schedule
+    // was, or to leave blocks out.
+    Schedule(const PixelRect& region, const ScheduleOptions&,
+             std::span<const BlockStart> starts = {});
 
     std::span<const Block> Blocks() const { return blocks; }
     const ScheduleOptions& Options() const { return options; }
@@ -81,6 +91,7 @@ class Schedule {
 
     int TileCount(int block) const;
     void StartPass(int block, int target);
+    void GoOn(int block);
     void Stop(int block, bool byVote);
     void CatchUp(int follower);
 

@@ -58,6 +58,38 @@ size_t Count(hid_t space) {
     return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
 }
 
+// Says how the library names what C++ calls T. (Its names are variables, set when it starts.)
+template <typename T>
+struct ElementType;
+template <>
+struct ElementType<float> {
+    static constexpr H5T_class_t kClass = H5T_FLOAT;
+    static constexpr const char* kName = "floating-point numbers";
+    static hid_t File() { return H5T_IEEE_F32LE; }
+    static hid_t Memory() { return H5T_NATIVE_FLOAT; }
+};
+template <>
+struct ElementType<double> {
+    static constexpr H5T_class_t kClass = H5T_FLOAT;
+    static constexpr const char* kName = "floating-point numbers";
+    static hid_t File() { return H5T_IEEE_F64LE; }
+    static hid_t Memory() { return H5T_NATIVE_DOUBLE; }
+};
+template <>
+struct ElementType<int32_t> {
+    static constexpr H5T_class_t kClass = H5T_INTEGER;
+    static constexpr const char* kName = "integers";
+    static hid_t File() { return H5T_STD_I32LE; }
+    static hid_t Memory() { return H5T_NATIVE_INT32; }
+};
+template <>
+struct ElementType<std::byte> {
+    static constexpr H5T_class_t kClass = H5T_INTEGER;
+    static constexpr const char* kName = "integers";
+    static hid_t File() { return H5T_STD_U8LE; }
+    static hid_t Memory() { return H5T_NATIVE_UINT8; }
+};
+
 void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t space,
                     const void* data) {
     const std::string what = "write attribute '" + name + "'";
@@ -80,6 +112,24 @@ Hdf5Group Hdf5Group::Create(const std::string& path) {
                            H5Fclose, "create it"));
 }
 
+Hdf5Group Hdf5Group::CreateInMemory() {
+    BeQuiet();
+    const std::string what = "make a file in memory";
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
+    Check(H5Pset_fapl_core(access, size_t(1) << 20, false), what);
+    return Hdf5Group(
+        Share(H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what));
+}
+
+std::vector<std::byte> Hdf5Group::Image() {
+    Flush();
+    const ssize_t size = H5Fget_file_image(*id, nullptr, 0);
+    if (size < 0) Fail("copy a file in memory");
+    std::vector<std::byte> bytes(static_cast<size_t>(size));
+    if (H5Fget_file_image(*id, bytes.data(), bytes.size()) < 0) Fail("copy a file in memory");
+    return bytes;
+}
+
 void Hdf5Group::Flush() { Check(H5Fflush(*id, H5F_SCOPE_GLOBAL), "write it to the end"); }
 
 bool Hdf5Group::HasGroup(const std::string& name) const {
@@ -94,6 +144,21 @@ Hdf5Group Hdf5Group::Group(const std::string& name) const {
 Hdf5Group Hdf5Group::MakeGroup(const std::string& name) {
     return Hdf5Group(Share(H5Gcreate2(*id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                            H5Gclose, "make the group '" + name + "'"));
+}
+
+std::vector<std::string> Hdf5Group::Groups() const {
+    std::vector<std::string> names;
+    const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
+        static_cast<std::vector<std::string>*>(data)->push_back(name);
+        return 0;
+    };
+    Check(H5Literate(*id, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names), "list the groups");
+    std::erase_if(names, [&](const std::string& name) {
+        const hid_t group = H5Gopen2(*id, name.c_str(), H5P_DEFAULT);
+        if (group >= 0) H5Gclose(group);
+        return group < 0;
+    });
+    return names;
 }
 
 bool Hdf5Group::HasAttribute(const std::string& name) const {
@@ -177,8 +242,8 @@ std::vector<int64_t> Hdf5Group::Shape(const std::string& path) const {
     return ShapeOf(space);
 }
 
-std::vector<float> Hdf5Group::Floats(const std::string& path,
-                                     std::span<const int64_t> shape) const {
+template <typename T>
+std::vector<T> Hdf5Group::Array(const std::string& path, std::span<const int64_t> shape) const {
     const std::string what = "read the array '" + path + "'";
     const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);
     const Handle space(H5Dget_space(data), H5Sclose, what);
@@ -188,22 +253,46 @@ std::vector<float> Hdf5Group::Floats(const std::string& path,
         for (int64_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
         Fail(what + ": it does not have the shape " + text);
     }
-    if (H5Tget_class(type) != H5T_FLOAT) Fail(what + ": it holds no floating-point numbers");
-    std::vector<float> values(Count(space));
-    Check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+    if (H5Tget_class(type) != ElementType<T>::kClass)
+        Fail(what + ": it holds no " + ElementType<T>::kName);
+    std::vector<T> values(Count(space));
+    Check(H5Dread(data, ElementType<T>::Memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          what);
     return values;
 }
 
-void Hdf5Group::AddFloats(const std::string& path, std::span<const int64_t> shape,
-                          std::span<const float> values) {
+template <typename T>
+void Hdf5Group::AddArray(const std::string& path, std::span<const int64_t> shape,
+                         std::span<const T> values, Hdf5Storage storage) {
     const std::string what = "write the array '" + path + "'";
     const std::vector<hsize_t> size(shape.begin(), shape.end());
     const Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, what);
     if (Count(space) != values.size()) Fail(what + ": its values do not fill its shape");
-    const Handle data(
-        H5Dcreate2(*id, path.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-        H5Dclose, what);
-    Check(H5Dwrite(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+    const Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+    if (storage == Hdf5Storage::Compressed && !values.empty()) {
+        Check(H5Pset_chunk(options, int(size.size()), size.data()), what);
+        Check(H5Pset_shuffle(options), what);
+        Check(H5Pset_deflate(options, 9), what);
+    }
+    const Handle data(H5Dcreate2(*id, path.c_str(), ElementType<T>::File(), space, H5P_DEFAULT,
+                                 options, H5P_DEFAULT),
+                      H5Dclose, what);
+    Check(H5Dwrite(data, ElementType<T>::Memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          what);
 }
+
+template std::vector<float> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<double> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<int32_t> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<std::byte> Hdf5Group::Array(const std::string&,
+                                                 std::span<const int64_t>) const;
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const float>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const double>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const int32_t>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const std::byte>, Hdf5Storage);
 
 }  // namespace lull

@@ -2,6 +2,7 @@
 // the library. One thread at a time, as the library has it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,6 +10,8 @@
 #include <vector>
 
 namespace lull {
+
+enum class Hdf5Storage { Plain, Compressed };
 
 // Stands for a group of an open file; the first one for its root. Copies stand for the same group,
 // and the file is closed with the last of them. All functions throw std::runtime_error saying what
@@ -18,12 +21,17 @@ class Hdf5Group {
     // Opens a file for reading, or begins a new one (in place of an old one) for writing.
     static Hdf5Group Open(const std::string& path);
     static Hdf5Group Create(const std::string& path);
+    // Begins a file in memory; Image() returns its bytes.
+    static Hdf5Group CreateInMemory();
+    std::vector<std::byte> Image();
     // Writes to disk all there is so far.
     void Flush();
 
     bool HasGroup(const std::string& name) const;
     Hdf5Group Group(const std::string& name) const;
     Hdf5Group MakeGroup(const std::string& name);
+    // Returns the names of the groups in this one, in alphabetical order.
+    std::vector<std::string> Groups() const;
 
     // Read and write attributes. Strings may be of fixed or variable length and text encoding.
     bool HasAttribute(const std::string& name) const;
@@ -34,12 +42,14 @@ class Hdf5Group {
     void SetString(const std::string& name, const std::string& text);
     void SetStrings(const std::string& name, std::span<const std::string> texts);
 
-    // Read and write arrays of floating-point numbers, row-major. Floats() checks the shape before
-    // it takes memory for the array.
+    // Read and write arrays of T, one of float, double, int32_t and std::byte, row-major. Array()
+    // checks the shape before it takes memory for the array.
     std::vector<int64_t> Shape(const std::string& path) const;
-    std::vector<float> Floats(const std::string& path, std::span<const int64_t> shape) const;
-    void AddFloats(const std::string& path, std::span<const int64_t> shape,
-                   std::span<const float> values);
+    template <typename T>
+    std::vector<T> Array(const std::string& path, std::span<const int64_t> shape) const;
+    template <typename T>
+    void AddArray(const std::string& path, std::span<const int64_t> shape,
+                  std::span<const T> values, Hdf5Storage storage = Hdf5Storage::Plain);
 
   private:
     using Id = std::shared_ptr<const int64_t>;

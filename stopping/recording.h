@@ -72,10 +72,10 @@ struct BlockRecording {
 bool IsRecorded(int spp, int passSpp, int cap);
 
 // Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks
-// must have at least 20 x 20 pixels.
+// must have at least 20 x 20 pixels. What is recorded goes to `recording`, which must outlive it.
 class Recorder final : public Criterion {
   public:
-    Recorder(int passSpp, int cap, int limit);
+    Recorder(int passSpp, int cap, int limit, BlockRecording* recording);
     ~Recorder() override;
 
     ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
@@ -83,13 +83,11 @@ class Recorder final : public Criterion {
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 
-    const BlockRecording& Recording() const { return recording; }
-
   private:
     void StartCycles();
 
     int passSpp, cap, limit;
-    BlockRecording recording;
+    BlockRecording* recording;
     std::vector<std::unique_ptr<Criterion>> cycles;  // null where it has stopped
 };
 

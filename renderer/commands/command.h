@@ -14,5 +14,6 @@ using Command = std::function<ExitCode()>;
 
 void AddRenderCommand(CLI::App& app, Command* command);
 void AddInfoCommand(CLI::App& app, Command* command);
+void AddDatasetCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

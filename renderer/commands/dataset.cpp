@@ -1,0 +1,262 @@
+// `lull dataset`: records what stopping rules can learn from.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "renderer/checkpoint.h"
+#include "renderer/commands/command.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/scene_options.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/output/file_io.h"
+#include "stopping/dataset.h"
+#include "stopping/small_blocks.h"
+#include "stopping/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::string name, output, human;
+    std::vector<int> blocks;  // empty: all
+    double past = 0;          // 0: every block goes on to the cap
+    ScheduleOptions schedule;
+    SamplerKind sampler = SamplerKind::Random;
+    Estimator estimator = Estimator::PbrtV3;
+    uint64_t seed = 0;
+    double checkpointInterval = 60;
+    bool quiet = false, jsonProgress = false;
+};
+
+constexpr const char* kFooter =
+    R"(Renders as the human thresholds were measured, with pbrt-v3's noise per sample (--estimator
+pbrt-v3, --sampler random), and records SVD-entropies, lightness and noise of every block at all
+passes up to 400 spp and at every second one after. Thresholds are no part of the file: `lull train`
+and `lull evaluate` join them by the viewpoint's name.
+
+Blocks that the file has already are left out, so the same command can be given again. Interrupted,
+it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
+
+Examples:
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+void AddOptions(CLI::App& app, Options* o) {
+    AddSceneOptions(app, &o->scene);
+    app.add_option("--name", o->name, "Name of the viewpoint, as in thresholds files")
+        ->required()
+        ->check([](const std::string& name) {
+            return !name.empty() && name.find_first_of("/;\n") == std::string::npos
+                       ? ""
+                       : "a name has at least one character, and none of / and ;";
+        });
+    app.add_option("-o,--output", o->output, "Data set to make or add to")
+        ->required()
+        ->type_name("OUT.h5");
+    app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
+        ->delimiter(',')
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N,N,...");
+    auto* human = app.add_option("--human", o->human, "Thresholds of people, for --past")
+                      ->check(CLI::ExistingFile)
+                      ->type_name("H.csv");
+    app.add_option("--past", o->past, "End each block at this times its human threshold")
+        ->check(CLI::Range(0.1, 100.0))
+        ->type_name("X")
+        ->needs(human);
+    app.add_option("--cap", o->schedule.cap, "Samples per pixel at which all recordings end")
+        ->check(CLI::Range(1, 1 << 24))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--seed", o->seed, "Another seed gives other, equally good, samples")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
+        ->check(CLI::Range(1.0, 1e6))
+        ->capture_default_str();
+    app.add_flag("--quiet", o->quiet, "Print only warnings and errors");
+    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    app.footer(kFooter);
+}
+
+// Returns the spp at which each block's recording ends; 0 for blocks that are not to be recorded.
+std::vector<int> MakeLimits(const Options& options, size_t blockCount) {
+    std::vector<int> limits(blockCount, options.blocks.empty() ? options.schedule.cap : 0);
+    for (const int block : options.blocks) {
+        if (size_t(block) >= blockCount)
+            throw Error(fmt::format("--blocks: there is no block {}, the last of the image is {}",
+                                    block, blockCount - 1));
+        limits[size_t(block)] = options.schedule.cap;
+    }
+    if (options.past == 0) return limits;
+
+    const std::vector<ThresholdsRow> rows = ReadThresholds(options.human);
+    const auto row = std::ranges::find(rows, options.name, &ThresholdsRow::name);
+    if (row == rows.end())
+        throw Error(fmt::format("{}: has no row '{}'", options.human, options.name));
+    if (row->spp.size() != blockCount)
+        throw Error(fmt::format("{}: '{}' has {} blocks, the image {}", options.human, options.name,
+                                row->spp.size(), blockCount));
+    for (size_t i = 0; i < blockCount; ++i)
+        limits[i] = std::min(limits[i], int(std::ceil(options.past * row->spp[i])));
+    return limits;
+}
+
+std::vector<ViewpointRecording> ReadIfThere(const std::string& path) {
+    if (!std::filesystem::exists(path)) return {};
+    return ReadDataset(path);
+}
+
+ProgressPrinter MakePrinter(const Options& options) {
+    const ProgressStyle style = options.jsonProgress    ? ProgressStyle::Json
+                                : options.quiet         ? ProgressStyle::Silent
+                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
+                                                        : ProgressStyle::Plain;
+    return ProgressPrinter(style, false, stderr);
+}
+
+// Describes the whole recording but for the blocks themselves.
+ViewpointRecording MakeViewpoint(const Options& options, const RenderIdentity& identity,
+                                 size_t blockCount) {
+    ViewpointRecording viewpoint;
+    viewpoint.name = options.name;
+    viewpoint.blockCount = int(blockCount);
+    viewpoint.cap = options.schedule.cap;
+    viewpoint.passSpp = options.schedule.passLength;
+    for (const auto& [key, value] : identity)
+        if (key != "stop" && key != "model" && key != "cap" && key != "pass" && key != "version")
+            viewpoint.provenance[key] = value;
+    return viewpoint;
+}
+
+// Returns the state of a render that has not begun, with the blocks left out that have no limit.
+RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& limits) {
+    RenderState state;
+    state.criteria.resize(blocks.size());
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        BlockResult& result = state.blocks.emplace_back();
+        result.block = blocks[i];
+        result.block.stopped = limits[i] == 0;
+    }
+    return state;
+}
+
+ExitCode RunDataset(const Options& options) {
+    Warnings warnings = MakePrintedWarnings();
+    const Description description = LoadDescription(options.scene, warnings);
+    Warnings unheard;  // Compile() will give them again
+    const FilmSettings film = MakeFilmSettings(description, options.scene.compile.film, unheard);
+    const PixelRect region{film.cropMin, film.cropMax};
+    const std::vector<Block> blocks = MakeBlocks(region, options.schedule);
+    for (const Block& block : blocks)
+        if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
+            throw Error(
+                fmt::format("blocks of less than {} pixels a side cannot be recorded; "
+                            "choose a --resolution that is a multiple of {}",
+                            smallestVotingSide, options.schedule.blockSize));
+
+    // Leave out what is there already.
+    std::vector<int> limits = MakeLimits(options, blocks.size());
+    std::vector<ViewpointRecording> dataset = ReadIfThere(options.output);
+    CheckWritable(options.output);
+    const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
+    if (old != dataset.end())
+        for (const auto& [number, block] : old->blocks) limits.at(size_t(number)) = 0;
+    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
+        fmt::print(stderr, "lull: {} has all blocks of '{}' already\n", options.output,
+                   options.name);
+        return kDone;
+    }
+
+    const std::unique_ptr<const Scene> scene =
+        Compile(description, options.scene.compile, warnings);
+    warnings.Summarize();
+    const Provenance provenance{.version = LULL_VERSION,
+                                .scene = options.scene.file,
+                                .seed = options.seed,
+                                .sampler = options.sampler,
+                                .estimator = options.estimator,
+                                .criterion = fmt::format("record:{}", fmt::join(limits, ",")),
+                                .checksum = "",
+                                .schedule = options.schedule,
+                                .maxDepth = scene->maxDepth,
+                                .threads = options.scene.compile.threads,
+                                .substitute = options.scene.compile.substitute,
+                                .resolution = film.resolution,
+                                .crop = region};
+    const RenderIdentity identity = IdentityOf(provenance, SceneHash(description));
+    ViewpointRecording viewpoint = MakeViewpoint(options, identity, blocks.size());
+    AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
+
+    // Go on where an earlier run was interrupted.
+    const std::string checkpoint = fmt::format("{}.{}.checkpoint", options.output, options.name);
+    Film pixels(region);
+    RenderState state = Beginning(blocks, limits);
+    if (std::filesystem::exists(checkpoint)) {
+        state = ReadCheckpoint(checkpoint, identity, &pixels);
+        fmt::print(stderr, "lull: going on from {}\n", checkpoint);
+    }
+
+    std::vector<BlockRecording> recordings(blocks.size());
+    ProgressPrinter printer = MakePrinter(options);
+    CatchInterrupts();
+    RenderOptions render;
+    render.schedule = options.schedule;
+    render.sampler = options.sampler;
+    render.seed = options.seed;
+    render.threads = options.scene.compile.threads;
+    render.makeCriterion = [&](const BlockInfo& info) {
+        return std::make_unique<Recorder>(options.schedule.passLength, options.schedule.cap,
+                                          limits[size_t(info.index)],
+                                          &recordings[size_t(info.index)]);
+    };
+    render.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
+    render.onCheckpoint = [&](const RenderState& s) {
+        WriteCheckpoint(checkpoint, identity, s, pixels);
+    };
+    render.checkpointInterval = options.checkpointInterval;
+    render.isCancelled = Interrupted;
+    const RenderResult result =
+        Render(SamplesOf(*scene, options.estimator), render, &pixels, &state);
+    printer.Finish(result.progress);
+    if (result.cancelled) {
+        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n", checkpoint);
+        return kInterrupted;
+    }
+
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        if (limits[i] == 0) continue;
+        viewpoint.blocks[int(i)] = std::move(recordings[i]);
+        viewpoint.blockNotes[int(i)] = fmt::format(
+            "{:.0f} s of threads for {} spp, {:.0f} s for the recording", result.blocks[i].seconds,
+            result.blocks[i].block.spp, result.blocks[i].criterionSeconds);
+    }
+    AddToDataset(viewpoint, &dataset);
+    WriteFileAtomically(options.output, EncodeDataset(dataset));
+    std::filesystem::remove(checkpoint);
+    fmt::print("{}\n", options.output);
+    return kDone;
+}
+
+}  // namespace
+
+void AddDatasetCommand(CLI::App& app, Command* command) {
+    CLI::App* dataset = app.add_subcommand(
+        "dataset", "Records what stopping rules can learn from, viewpoint by viewpoint.");
+    auto options = std::make_shared<Options>();
+    AddOptions(*dataset, options.get());
+    dataset->callback([=] { *command = [=] { return RunDataset(*options); }; });
+}
+
+}  // namespace lull
