@@ -7,9 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "stopping/lightness.h"
 #include "stopping/state.h"
-#include "stopping/svd_entropy.h"
 #include "stopping/votes.h"
 
 namespace lull {
@@ -33,17 +31,15 @@ class LearnedCriterion final : public Criterion {
           votes{.needed = this->model->settings.votes} {}
 
     ViewNeed Need(int spp) const override {
-        return schedule.Records(spp) ? ViewNeed::Mean : ViewNeed::Nothing;
+        return schedule.Records(spp) ? NeedOf(model->settings) : ViewNeed::Nothing;
     }
 
     Decision Observe(const BlockView& view) override {
-        const ViewNeed need = Need(view.spp);
-        CheckView(view, need);
+        CheckView(view, Need(view.spp));
         bool judged = false;
-        if (need == ViewNeed::Mean) {
+        if (schedule.Records(view.spp)) {
             const ModelSettings& settings = model->settings;
-            history.Add(view.spp, ComputeFeature(view.mean, view.width, view.height, settings.m,
-                                                 settings.feature));
+            history.Add(view.spp, InputVector(MeasureBlock(view, settings), settings));
             judged = Vote(view.spp);
         }
         return {.stop = judged && votes.Stops(),
@@ -58,7 +54,7 @@ class LearnedCriterion final : public Criterion {
         writer.Put(learnedTag);
         writer.Put(int32_t(votes.inRow));
         writer.Put(probability);
-        writer.Put(uint32_t(model->settings.m));
+        writer.Put(uint32_t(InputCount(model->settings)));
         writer.Put(uint32_t(history.Entries().size()));
         for (const FeatureHistory::Entry& entry : history.Entries()) {
             writer.Put(int32_t(entry.spp));
@@ -72,12 +68,13 @@ class LearnedCriterion final : public Criterion {
         reader.Expect(learnedTag);
         votes.inRow = reader.Get<int32_t>();
         probability = reader.Get<double>();
-        if (reader.Get<uint32_t>() != uint32_t(model->settings.m))
-            throw std::runtime_error("the saved state belongs to a model with another m");
+        const uint32_t inputs = uint32_t(InputCount(model->settings));
+        if (reader.Get<uint32_t>() != inputs)
+            throw std::runtime_error("the saved state belongs to a model with other inputs");
         if (votes.inRow < 0 || !(probability >= 0 && probability <= 1))
             throw std::runtime_error("the saved state of a learned rule is damaged");
         history.Clear();
-        std::vector<double> feature(size_t(model->settings.m));
+        std::vector<double> feature(inputs);
         for (uint32_t count = reader.Get<uint32_t>(); count > 0; --count) {
             const int spp = reader.Get<int32_t>();
             reader.GetAll(std::span(feature));
@@ -115,20 +112,6 @@ class LearnedCriterion final : public Criterion {
 
 }  // namespace
 
-std::vector<double> ComputeFeature(std::span<const float> mean, int width, int height, int m,
-                                   Feature feature) {
-    std::vector<uint8_t> srgb(mean.size());
-    EncodeSrgb8(mean, srgb);
-    std::vector<double> lightness(mean.size() / 3);
-    Lightness(srgb, lightness);
-
-    std::vector<double> values;
-    values.reserve(size_t(m));
-    for (const SvdEntropy& e : SubBlockEntropies(lightness, width, height, m))
-        values.push_back(feature == Feature::H ? e.h : feature == Feature::H1 ? e.h1 : e.h2);
-    return values;
-}
-
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
     const double p = RunNetwork(network, window)[0];
     return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
@@ -138,10 +121,10 @@ std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int p
     const ModelSettings& settings = model->settings;
     CheckSettings(settings);
     CheckNetwork(model->network);
-    if (model->network.lstm.front().Inputs() != settings.m)
-        throw std::invalid_argument("the network takes " +
-                                    std::to_string(model->network.lstm.front().Inputs()) +
-                                    " values, but m = " + std::to_string(settings.m));
+    if (!Takes(model->network, InputCount(settings), settings.k))
+        throw std::invalid_argument("the network does not take " + std::to_string(settings.k) +
+                                    " steps of " + std::to_string(InputCount(settings)) +
+                                    " values, as its settings have it");
     const auto& dense = model->network.dense;
     const Eigen::Index outputs =
         dense.empty() ? model->network.lstm.back().Units() : dense.back().bias.size();

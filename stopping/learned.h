@@ -1,9 +1,7 @@
-// Judges blocks by a recurrent network on the history of their SVD-entropies: lull's own rule.
+// Judges blocks by a network on the history of what an observer sees of them: lull's own rule.
 #pragma once
 
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "stopping/criterion.h"
 #include "stopping/model_file.h"
@@ -11,13 +9,7 @@
 
 namespace lull {
 
-// Computes the feature of a block as an observer sees it: of the lightness of its 8-bit sRGB, one
-// entropy in [0, 1] for each of m sub-blocks, row-major. `mean` is the linear radiance of
-// width * height pixels as in BlockView. Throws as SubBlockEntropies() does.
-std::vector<double> ComputeFeature(std::span<const float> mean, int width, int height, int m,
-                                   Feature feature);
-
-// Returns the probability that the block of a window (m x k, see FeatureHistory) is noisy, in
+// Returns the probability that the block of a window (see FeatureHistory) is noisy, in
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 

@@ -1,4 +1,4 @@
-// Runs a small recurrent network: LSTM layers, then dense layers, with the semantics of Keras 2.
+// Runs a small network: LSTM layers, then dense layers, with the semantics of Keras 2.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,19 +33,25 @@ struct DenseLayer {
 };
 
 // Holds LSTM layers, each of which hands its output at every time step to the next one, followed
-// by dense layers on the output of the last time step.
+// by dense layers on the output of the last time step. Without LSTM layers the dense layers are
+// given the values of all time steps, the first step first (Keras' Flatten): one of them is then a
+// logistic regression.
 struct Network {
-    std::vector<LstmLayer> lstm;    // at least one
-    std::vector<DenseLayer> dense;  // may be none
+    std::vector<LstmLayer> lstm;
+    std::vector<DenseLayer> dense;  // may be none if there are LSTM layers
 };
 
-// Checks that the shapes fit together and that all weights are finite. Throws
-// std::invalid_argument naming the layer.
+// Checks that there is a layer, that the shapes fit together and that all weights are finite.
+// Throws std::invalid_argument naming the layer.
 void CheckNetwork(const Network& network);
 
+// Returns whether the network, which has passed CheckNetwork(), can be run on sequences of
+// `inputs` values at each of `steps` time steps.
+bool Takes(const Network& network, Eigen::Index inputs, Eigen::Index steps);
+
 // Runs the network, which has passed CheckNetwork(), on a sequence: one column a time step, at
-// least one, each as long as the first layer's inputs. Finite inputs give finite outputs, unless
-// linear activations let the values overflow.
+// least one. Throws std::invalid_argument if the network does not take sequences of this size.
+// Finite inputs give finite outputs, unless linear activations let the values overflow.
 Eigen::VectorXf RunNetwork(const Network& network, const Eigen::MatrixXf& sequence);
 
 }  // namespace lull

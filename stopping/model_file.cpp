@@ -56,7 +56,7 @@ class LayerReader {
         return path->second;
     }
     std::vector<float> Read(const std::string& weights, const std::vector<int64_t>& shape) const {
-        std::vector<float> values = group.Floats(Path(weights), shape);
+        std::vector<float> values = group.Array<float>(Path(weights), shape);
         if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
             throw std::runtime_error("the weights '" + Path(weights) + "' hold NaN or infinity");
         return values;
@@ -89,8 +89,8 @@ Network ReadNetwork(const Hdf5Group& root, const KerasModel& model, int64_t inpu
 ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs) {
     ModelSettings s;
     if (inputs > 1000000) throw std::runtime_error("the network takes too many values");
-    s.m = int(inputs);
     if (timeSteps > 0) s.k = timeSteps;
+    bool saysM = false;
     if (file.HasGroup("lull")) {
         const Hdf5Group group = file.Group("lull");
         auto read = [&](const char* name, int standard) {
@@ -98,19 +98,22 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
         };
         s.k = read("k", s.k);
         s.n = read("n", s.n);
+        saysM = group.HasAttribute("m");
         s.m = read("m", s.m);
         s.snorm = read("snorm", s.snorm) != 0;
         s.bnorm = read("bnorm", s.bnorm) != 0;
         s.votes = read("votes", s.votes);
         s.voteSpacing = read("vote_spacing", s.voteSpacing);
-        if (group.HasAttribute("feature")) s.feature = ParseFeature(group.String("feature"));
+        if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
+        if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
     }
-    if (s.m != inputs || (timeSteps > 0 && s.k != timeSteps))
-        throw std::runtime_error("/lull says k = " + std::to_string(s.k) +
-                                 " and m = " + std::to_string(s.m) + ", but the network takes " +
+    if (!saysM) s.m = int(inputs);
+    CheckSettings(s);
+    if (InputCount(s) != inputs || (timeSteps > 0 && s.k != timeSteps))
+        throw std::runtime_error("/lull says " + std::to_string(s.k) + " steps of " +
+                                 std::to_string(InputCount(s)) + " values, but the network takes " +
                                  (timeSteps > 0 ? std::to_string(timeSteps) : "any number of") +
                                  " steps of " + std::to_string(inputs) + " values");
-    CheckSettings(s);
     return s;
 }
 
@@ -122,13 +125,14 @@ void WriteLayer(Hdf5Group root, const std::string& layer,
     for (const auto& [name, matrix] : weights) {
         std::vector<int64_t> shape = {matrix.rows()};
         if (name != "bias") shape.insert(shape.begin(), matrix.cols());
-        scope.AddFloats(name + ":0", shape, {matrix.data(), size_t(matrix.size())});
+        scope.AddArray<float>(name + ":0", shape, {matrix.data(), size_t(matrix.size())});
         names.push_back(layer + "/" + name + ":0");
     }
     group.SetStrings("weight_names", names);
 }
 
-void Write(Hdf5Group file, const Network& network, const ModelSettings& s) {
+void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
+           const std::map<std::string, std::string>& record) {
     file.SetString("model_config", WriteKerasConfig(network, s.k));
     Hdf5Group root = file.MakeGroup("model_weights");
     for (Hdf5Group* group : {&file, &root}) {
@@ -151,11 +155,15 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s) {
     group.SetInt("k", s.k);
     group.SetInt("n", s.n);
     group.SetInt("m", s.m);
-    group.SetString("feature", FeatureName(s.feature));
+    group.SetString("feature", FeatureNames(s.features));
+    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
     group.SetInt("snorm", s.snorm);
     group.SetInt("bnorm", s.bnorm);
     group.SetInt("votes", s.votes);
     group.SetInt("vote_spacing", s.voteSpacing);
+    if (record.empty()) return;
+    Hdf5Group training = group.MakeGroup("training");
+    for (const auto& [name, text] : record) training.SetString(name, text);
 }
 
 }  // namespace
@@ -169,11 +177,13 @@ Model ReadModel(const std::string& path) {
             file.HasAttribute("keras_version") ? file.String("keras_version") : "";
         const KerasModel config = ParseKerasConfig(file.String("model_config"), version);
         const Hdf5Group root = file.Group("model_weights");
-        const int64_t inputs = LayerReader(root, config.layers.front().name).Inputs();
-        if (config.inputs > 0 && config.inputs != inputs)
+        const int64_t values = LayerReader(root, config.layers.front().name).Inputs();
+        const int64_t inputs = config.isFlat ? values / config.timeSteps : values;
+        if ((config.inputs > 0 && config.inputs != inputs) ||
+            (config.isFlat && values != inputs * config.timeSteps))
             throw std::runtime_error("the first kernel does not have the shape of the input");
         model.settings = ReadSettings(file, config.timeSteps, inputs);
-        model.network = ReadNetwork(root, config, inputs);
+        model.network = ReadNetwork(root, config, values);
         CheckNetwork(model.network);
     } catch (const std::exception& error) {
         throw std::runtime_error(path + ": " + error.what());
@@ -181,13 +191,14 @@ Model ReadModel(const std::string& path) {
     return model;
 }
 
-void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings) {
+void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
+                const std::map<std::string, std::string>& record) {
     CheckNetwork(network);
     CheckSettings(settings);
     const std::string newPath = path + ".new";
     try {
         Hdf5Group file = Hdf5Group::Create(newPath);
-        Write(file, network, settings);
+        Write(file, network, settings, record);
         file.Flush();
     } catch (const std::exception& error) {
         throw std::runtime_error(newPath + ": " + error.what());

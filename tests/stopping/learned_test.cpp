@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stopping/lightness.h"
 #include "tests/stopping/block_images.h"
 #include "tests/stopping/random_network.h"
 
@@ -75,7 +74,7 @@ TEST(Learned, VotesOnTheWindowOfItsFeatures) {
     FeatureHistory history(settings);
     for (int spp = 20; spp <= 200; spp += 20) {
         const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
-        history.Add(spp, ComputeFeature(block.mean, 40, 40, 25, Feature::H));
+        history.Add(spp, InputVector(MeasureBlock(block.At(spp), settings), settings));
         const Decision& decision = decisions[size_t(spp / 20 - 1)];
         ASSERT_EQ(decision.judged, spp >= 100);
         if (decision.judged) {
@@ -165,18 +164,6 @@ TEST(Learned, WantsTheSppToIncrease) {
     BlockView empty = block.At(60);
     empty.mean = {};
     EXPECT_THROW(criterion->Observe(empty), std::invalid_argument);
-}
-
-TEST(ComputeFeature, ChoosesTheEntropy) {
-    const BlockImage block = NoisyBlock(53, 47, 0.5, 20, 1);
-    const auto h = ComputeFeature(block.mean, 53, 47, 25, Feature::H);
-    const auto h1 = ComputeFeature(block.mean, 53, 47, 25, Feature::H1);
-    const auto h2 = ComputeFeature(block.mean, 53, 47, 25, Feature::H2);
-    ASSERT_EQ(h.size(), 25u);
-    for (size_t i = 0; i < 25; ++i) {
-        EXPECT_NEAR(h[i], h1[i] + h2[i], 1e-14);
-        EXPECT_GT(h2[i], 0);
-    }
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(ModelFile, ReadsWhatItWrites) {
     const ModelSettings settings = {.k = 5,
                                     .n = 60,
                                     .m = 25,
-                                    .feature = Feature::H2,
+                                    .features = {Feature::H2},
                                     .snorm = false,
                                     .bnorm = true,
                                     .votes = 2,
@@ -81,13 +81,30 @@ TEST(ModelFile, ReadsWhatItWrites) {
     EXPECT_EQ(model.settings.k, 5);
     EXPECT_EQ(model.settings.n, 60);
     EXPECT_EQ(model.settings.m, 25);
-    EXPECT_EQ(model.settings.feature, Feature::H2);
+    EXPECT_EQ(model.settings.features, std::vector<Feature>{Feature::H2});
     EXPECT_FALSE(model.settings.snorm);
     EXPECT_TRUE(model.settings.bnorm);
     EXPECT_EQ(model.settings.votes, 2);
     EXPECT_EQ(model.settings.voteSpacing, 120);
     EXPECT_EQ(model.checksum, FileChecksum(file.path));
     EXPECT_FALSE(std::filesystem::exists(file.path + ".new"));
+}
+
+TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
+    ModelSettings settings = {.k = 3, .features = ParseFeatures("masked_noise,logspp")};
+    settings.pools = ParsePools("rms,q90");
+    Network network;
+    network.dense.push_back({"dense_1", Eigen::MatrixXf::Random(4, 9), Eigen::VectorXf::Random(4)});
+    network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
+    const ScratchFile file(".h5");
+    WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});
+    const Model model = ReadModel(file.path);
+    EXPECT_TRUE(Equal(model.network, network));
+    EXPECT_EQ(model.settings.features, settings.features);
+    EXPECT_EQ(model.settings.pools, settings.pools);
+    EXPECT_EQ(model.settings.k, 3);
+    const Hdf5Group record = Hdf5Group::Open(file.path).Group("lull").Group("training");
+    EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
 }
 
 TEST(ModelFile, WritesNoBrokenModel) {
@@ -127,7 +144,7 @@ void WriteSmallModel(const std::string& path, const std::string& config, float v
                      const std::vector<int64_t>& shape, float x, Hdf5Group group) {
         int64_t size = 1;
         for (int64_t n : shape) size *= n;
-        group.AddFloats(layer + "/" + name, shape, std::vector<float>(size_t(size), x));
+        group.AddArray<float>(layer + "/" + name, shape, std::vector<float>(size_t(size), x));
     };
     Hdf5Group lstm = root.MakeGroup("l"), dense = root.MakeGroup("d");
     lstm.MakeGroup("l");
@@ -173,7 +190,7 @@ TEST(ModelFile, RefusesWeightsOfAnotherShape) {
 TEST(ModelFile, RefusesContradictingSettings) {
     const ScratchFile file(".h5");
     WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 25});
-    ExpectError(file.path, "/lull says k = 8 and m = 25, but the network takes 8 steps of 4");
+    ExpectError(file.path, "/lull says 8 steps of 25 values, but the network takes 8 steps of 4");
 }
 
 TEST(ModelFile, RefusesSettingsOfNoSense) {

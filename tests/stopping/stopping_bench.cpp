@@ -33,8 +33,7 @@ BENCHMARK(DisplayLightness)->Unit(benchmark::kMillisecond);
 
 void EntropyFeature(benchmark::State& state) {
     for (auto _ : state)
-        benchmark::DoNotOptimize(
-            ComputeFeature(TestBlock().mean, 200, 200, int(state.range(0)), Feature::H));
+        benchmark::DoNotOptimize(MeasureBlock(TestBlock().At(20), {.m = int(state.range(0))}));
 }
 BENCHMARK(EntropyFeature)->Arg(4)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
 

@@ -112,9 +112,7 @@ TEST(ModelSettings, AreChecked) {
     EXPECT_THROW(CheckSettings({.m = 99}), std::invalid_argument);
     EXPECT_THROW(CheckSettings({.votes = 0}), std::invalid_argument);
     EXPECT_THROW(CheckSettings({.voteSpacing = -20}), std::invalid_argument);
-    for (Feature feature : {Feature::H, Feature::H1, Feature::H2})
-        EXPECT_EQ(ParseFeature(FeatureName(feature)), feature);
-    EXPECT_THROW(ParseFeature("H3"), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.features = {}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,66 @@
+// Says what a learned rule looks at and how its answers count.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lull {
+
+// Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
+// features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
+// and the logarithm of the spp, one number.
+enum class Feature {
+    H,
+    H1,
+    H2,
+    Lightness,
+    Deviation,
+    Texture,
+    Noise,
+    NoiseMean,
+    MaskedNoise,
+    HalfNoise,
+    LogSpp
+};
+
+// Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
+// "noise_mean", "masked_noise", "half_noise" and "logspp"; a list has commas between them.
+// ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
+std::string FeatureNames(std::span<const Feature> features);
+std::vector<Feature> ParseFeatures(const std::string& names);
+inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
+
+// Summarises the values of all sub-blocks in one number.
+struct Pool {
+    enum Kind { Mean, Rms, Quantile };
+
+    Kind kind = Mean;
+    int percent = 0;  // of a quantile: the least value at 0, the largest at 100
+
+    bool operator==(const Pool&) const = default;
+};
+
+// Convert to and from names: "mean", "rms" and "q0" to "q100"; a list has commas between them and
+// may be empty. ParsePools() throws std::invalid_argument as ParseFeatures() does.
+std::string PoolNames(std::span<const Pool> pools);
+std::vector<Pool> ParsePools(const std::string& names);
+
+// Holds what a model was trained on and how its answers count; the defaults are the paper's.
+struct ModelSettings {
+    int k = 8;    // steps in a window
+    int n = 40;   // spp between them
+    int m = 100;  // sub-blocks that entropies are computed of, a square number
+    std::vector<Feature> features = {Feature::H};
+    std::vector<Pool> pools = {};  // empty: the network is given the value of each sub-block
+    bool snorm = true;             // normalise entropies over the window, each by itself
+    bool bnorm = false;            // normalise the entropies of a step, before that
+    int votes = 3;                 // noiseless votes in a row that stop a block
+    int voteSpacing = 0;           // spp between votes; 0: vote after every pass
+};
+
+// Throws std::invalid_argument naming the setting that is out of range. (More sub-blocks than the
+// smallest block that votes has pixels are too many, so that no block turns out to be too small.)
+void CheckSettings(const ModelSettings& settings);
+
+}  // namespace lull
