@@ -1,0 +1,22 @@
+#include "stopping/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace lull {
+
+void ForEachIndex(int count, const std::function<void(int)>& body) {
+    if (count == 1) return body(0);
+    tbb::parallel_for(0, count, body, tbb::simple_partitioner());
+}
+
+void RunWithThreads(int threads, const std::function<void()>& body) {
+    if (threads <= 0) threads = tbb::info::default_concurrency();
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    tbb::task_arena arena(threads);
+    arena.execute(body);
+}
+
+}  // namespace lull
