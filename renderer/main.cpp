@@ -36,6 +36,8 @@ ExitCode Main(int argc, char** argv) {
     AddRenderCommand(app, &command);
     AddInfoCommand(app, &command);
     AddDatasetCommand(app, &command);
+    AddTrainCommand(app, &command);
+    AddEvaluateCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

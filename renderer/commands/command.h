@@ -15,5 +15,7 @@ using Command = std::function<ExitCode()>;
 void AddRenderCommand(CLI::App& app, Command* command);
 void AddInfoCommand(CLI::App& app, Command* command);
 void AddDatasetCommand(CLI::App& app, Command* command);
+void AddTrainCommand(CLI::App& app, Command* command);
+void AddEvaluateCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

@@ -1,0 +1,242 @@
+// `lull evaluate`: judges stopping rules by the thresholds of people.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "renderer/base/error.h"
+#include "renderer/commands/command.h"
+#include "renderer/commands/evaluation_table.h"
+#include "renderer/output/file_io.h"
+#include "stopping/rivals.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    std::vector<std::string> datasets, predicted, rules, without;
+    std::string human, csv;
+    bool rivals = false, brief = false;
+    ChooseBy chooseBy = ChooseBy::AbsoluteError;
+    JudgeOptions judge;
+};
+
+constexpr const char* kFooter =
+    R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
+have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
+rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
+
+Rules for --stop: dammertz:T, cycles:T, luxtile:T, lnoise:T, learned:MODEL.h5, fixed:N and
+thresholds:FILE. --rivals runs the first four, each with the one setting that is best on the other
+viewpoints (leave one out); "setting" says which, and for all what would be best on all of them.
+
+Columns:
+  views   how many viewpoints, and in them
+  blocks  how many blocks were judged
+  open    recordings that ended, before 10,000 spp, when the rule had not stopped the block; it is
+          taken to stop at their end. Predicted thresholds are taken as they are, and clipped in
+          the same way in a row of their own.
+  ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
+          not, against the judgement of people, in %
+  error   mean distance from the human threshold, in spp, and in % of 10,000 spp
+  early   % of the blocks that stop below 80 % of the human threshold
+  late    % of the blocks that stop above 125 % of it
+  acc     accuracy of the decisions (noisy or not, by block and spp) in %, classes balanced
+  auc     area under their ROC curve in %, by the number that the rule compares; for those that
+          have none (fixed, thresholds, cycles) by its stop / spp
+All are means over the viewpoints, but acc and auc are of all decisions together.
+
+Examples:
+  lull evaluate --human human.csv --predicted predicted.csv --grid 40
+  lull evaluate data.h5 more.h5 --human human.csv --stop lnoise:0.5 --stop learned:model.h5
+  lull evaluate data.h5 more.h5 --human human.csv --rivals --predicted predicted.csv --brief
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+
+void AddOptions(CLI::App& app, Options* o) {
+    app.add_option("DATASET.h5", o->datasets, "Recordings to run rules on")
+        ->check(CLI::ExistingFile);
+    app.add_option("--human", o->human, "Thresholds of people")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("H.csv");
+    app.add_option("--predicted", o->predicted, "Thresholds to judge; can be given again")
+        ->check(CLI::ExistingFile)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("P.csv");
+    app.add_option("--stop", o->rules, "Rule to judge; can be given again")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("RULE");
+    app.add_flag("--rivals", o->rivals, "Judge the rules that have one setting");
+    const std::map<std::string, ChooseBy> choices = {{"error", ChooseBy::AbsoluteError},
+                                                     {"critical", ChooseBy::CriticalError}};
+    app.add_option_function<std::string>(
+           "--choose-by", [o, choices](const std::string& s) { o->chooseBy = choices.at(s); },
+           "What the setting of a rival makes least: error (default), or the\n"
+           "critical error at 2 %")
+        ->check(CLI::IsMember(choices))
+        ->type_name("error|critical");
+    app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME");
+    app.add_option("--grid", o->judge.grid, "Spp between the judgements of the critical error")
+        ->check(CLI::Range(1, kJudgedCap))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--margins", o->judge.margins, "Margins of the critical error in %")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 100.0))
+        ->type_name("M,M,...")
+        ->default_str("2,6,10");
+    app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
+    app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
+}
+
+std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+void Talk(const std::string& message) { fmt::print(stderr, "lull: {}\n", message); }
+
+// Reads thresholds less the viewpoints that are to be left out.
+std::vector<ThresholdsRow> ReadHuman(const Options& options) {
+    std::vector<ThresholdsRow> rows = ReadThresholds(options.human);
+    for (const std::string& name : options.without)
+        if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0)
+            throw Error(fmt::format("--without: {} has no row '{}'", options.human, name));
+    return rows;
+}
+
+// Judges the thresholds of a file on the viewpoints that people judged, too.
+JudgedRule JudgeFile(const std::string& path, const std::vector<ThresholdsRow>& human,
+                     const Options& options) {
+    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
+    JudgedRule rule{.name = Stem(path)};
+    for (const ThresholdsRow& people : human) {
+        const auto row = std::ranges::find(rows, people.name, &ThresholdsRow::name);
+        if (row == rows.end()) continue;
+        if (row->spp.size() != people.spp.size())
+            throw Error(fmt::format("{}: '{}' has {} thresholds, but {} in {}", path, row->name,
+                                    row->spp.size(), people.spp.size(), options.human));
+        ViewpointOutcome& viewpoint = rule.viewpoints.emplace_back();
+        viewpoint.name = row->name;
+        for (size_t i = 0; i < row->spp.size(); ++i)
+            viewpoint.blocks.push_back(
+                {people.spp[i], OutcomeOfStop(row->spp[i], options.judge.grid)});
+    }
+    if (rule.viewpoints.empty())
+        throw Error(fmt::format("{} and {} have no viewpoint in common", path, options.human));
+    if (rule.viewpoints.size() < rows.size())
+        Talk(
+            fmt::format("{} of {} viewpoints in {} are judged; there are no human thresholds for "
+                        "the others",
+                        rule.viewpoints.size(), rows.size(), path));
+    return rule;
+}
+
+// Judges the thresholds of a file on recorded blocks; those beyond the end of a recording as they
+// are or, if `clipped`, at that end, as rules that run on recordings are judged.
+JudgedRule JudgeFileOnBlocks(const std::string& path, std::span<const JudgedBlock> blocks,
+                             bool clipped) {
+    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
+    const Simulator simulator = [&](const JudgedBlock& block) {
+        const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
+        if (row == rows.end() || size_t(block.block) >= row->spp.size())
+            throw Error(fmt::format("{}: has no threshold for block {} of '{}'", path, block.block,
+                                    block.viewpoint));
+        RuleOutcome outcome = SimulateStop(block, row->spp[size_t(block.block)]);
+        const int end = block.recording->spp.back();
+        if (clipped && outcome.stop > end) {
+            outcome.stop = end;
+            outcome.open = true;
+        }
+        return outcome;
+    };
+    return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
+}
+
+// Reads the data sets as one; blocks of a viewpoint can be in several files.
+std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& paths) {
+    std::vector<ViewpointRecording> all;
+    for (const std::string& path : paths)
+        for (const ViewpointRecording& viewpoint : ReadDataset(path)) try {
+                AddToDataset(viewpoint, &all);
+            } catch (const std::runtime_error& error) {
+                throw Error(path + ": " + error.what());
+            }
+    return all;
+}
+
+std::vector<JudgedBlock> Join(const std::vector<ViewpointRecording>& viewpoints,
+                              const std::vector<ThresholdsRow>& human, const Options& options) try {
+    std::vector<std::string> unknown;
+    const std::vector<JudgedBlock> blocks = JoinHuman(viewpoints, human, &unknown);
+    for (const std::string& name : unknown)
+        if (std::ranges::find(options.without, name) == options.without.end())
+            Talk(fmt::format("{} has no thresholds for '{}'", options.human, name));
+    if (blocks.empty()) throw Error("no block is left that was recorded and judged by people");
+    return blocks;
+} catch (const std::invalid_argument& error) {
+    throw Error(options.human + ": " + error.what());
+}
+
+std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const Options& options) {
+    std::vector<JudgedRule> rules;
+    if (options.rivals)
+        for (Rival& rival : JudgeRivals(blocks, options.chooseBy, options.judge.grid))
+            rules.push_back(
+                {rival.rule, fmt::format("{:.3g}", rival.bestOfAll), std::move(rival.viewpoints)});
+    for (const std::string& rule : options.rules)
+        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule), "")});
+    const bool anyShort = std::ranges::any_of(
+        blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
+    for (const std::string& path : options.predicted) {
+        rules.push_back(JudgeFileOnBlocks(path, blocks, false));
+        if (anyShort) rules.push_back(JudgeFileOnBlocks(path, blocks, true));
+    }
+    return rules;
+}
+
+ExitCode RunEvaluate(const Options& options) {
+    if (!options.csv.empty()) CheckWritable(options.csv);
+    const std::vector<ThresholdsRow> human = ReadHuman(options);
+    std::vector<JudgedRule> rules;
+    if (options.datasets.empty()) {
+        for (const std::string& path : options.predicted)
+            rules.push_back(JudgeFile(path, human, options));
+    } else {
+        const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+        rules = JudgeOnBlocks(Join(viewpoints, human, options), options);
+    }
+    PrintEvaluation(stdout, rules, options.judge, !options.brief);
+    if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
+    return kDone;
+}
+
+// Throws a usage error if there is nothing to judge, or nothing to judge it on.
+void CheckUsage(const Options& options) {
+    const bool runs = options.rivals || !options.rules.empty();
+    if (options.datasets.empty() && runs)
+        throw CLI::ValidationError("--stop and --rivals", "need DATASET.h5 to run rules on");
+    if (!runs && options.predicted.empty())
+        throw CLI::ValidationError("evaluate", "needs --predicted, --stop or --rivals");
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& app, Command* command) {
+    CLI::App* evaluate =
+        app.add_subcommand("evaluate", "Judges stopping rules by the thresholds of people.");
+    auto options = std::make_shared<Options>();
+    AddOptions(*evaluate, options.get());
+    evaluate->footer(kFooter);
+    evaluate->callback([=] {
+        CheckUsage(*options);
+        *command = [=] { return RunEvaluate(*options); };
+    });
+}
+
+}  // namespace lull

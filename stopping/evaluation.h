@@ -1,0 +1,69 @@
+// Judges where a rule stopped blocks, and what it said of them before, against what people see.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lull {
+
+// The spp at which the human thresholds end: nobody was shown more.
+inline constexpr int kJudgedCap = 10000;
+
+// Holds what a rule said of a block at some spp.
+struct Verdict {
+    int spp = 0;
+    double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
+    bool noisy = false;
+};
+
+// Holds what a rule did to a block.
+struct RuleOutcome {
+    int stop = 0;  // spp; kJudgedCap where it never stopped
+    // Whether what is known ends at `stop`, below the cap, and the rule had not stopped the block.
+    bool open = false;
+    std::vector<Verdict> verdicts = {};
+};
+
+// Returns the outcome of which only the stop is known: noisy below it at the spp 20, 20 + grid, ...
+// up to the cap, with the score stop / spp.
+RuleOutcome OutcomeOfStop(int stop, int grid);
+
+struct BlockOutcome {
+    int human = 0;  // the threshold of people in spp, kJudgedCap where they saw noise even there
+    RuleOutcome outcome = {};
+};
+struct ViewpointOutcome {
+    std::string name;
+    std::string setting = {};  // of the rule, for tables
+    std::vector<BlockOutcome> blocks = {};
+};
+
+// Returns the critical error of one viewpoint (paper, Table 3), in [0, 1]: over its blocks and the
+// spp x = 20, 20 + grid, ... up to kJudgedCap, the share of x at which the stop S is wrong. With
+// the human threshold T and a margin of `margin` % of the cap in all, lo and hi are half the margin
+// below and above T, in whole passes of 20 spp, but T itself where T is the cap; x is right if
+// x <= lo and x <= S, x >= hi and x >= S, or lo < x < hi. 0 for no blocks.
+double CriticalError(std::span<const BlockOutcome> blocks, double margin, int grid);
+
+struct JudgeOptions {
+    int grid = 40;                             // spp, > 0
+    std::vector<double> margins = {2, 6, 10};  // % of the cap
+};
+
+// Holds the measures of some viewpoints. Shares are in [0, 1].
+struct Judgement {
+    int viewpoints = 0, blocks = 0, open = 0;
+    // Means over the viewpoints of the means over their blocks:
+    std::vector<double> criticalErrors = {};  // for each margin
+    double absoluteError = 0;                 // |stop - human| in spp
+    double early = 0, late = 0;               // shares with stop < 80 %, > 125 % of human
+    // Of all verdicts together, where people see noise below their threshold; nothing where all
+    // verdicts are on one side of it. The accuracy is the mean of those of both classes, which
+    // balances them.
+    std::optional<double> auc, accuracy;
+};
+Judgement Judge(std::span<const ViewpointOutcome> viewpoints, const JudgeOptions& options);
+
+}  // namespace lull

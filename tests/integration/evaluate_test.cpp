@@ -1,0 +1,157 @@
+// Judges rules and thresholds as a user would.
+#include <cmath>
+
+#include "renderer/output/file_io.h"
+#include "stopping/dataset.h"
+#include "tests/integration/run_lull.h"
+#include "tests/stopping/channel_recordings.h"
+#include "tests/stopping/shared_data.h"
+
+namespace lull {
+namespace {
+
+// Holds thresholds of people for two viewpoints of four blocks, and recordings of some of these,
+// in which visible noise is 0.5 where people stop to see it.
+struct EvaluationDirectory : TemporaryDirectory {
+    EvaluationDirectory() {
+        Write("human.csv", "attic;400;900;1600;2500;\ncellar;625;10000;1225;3025;\n");
+        Write("predicted.csv", "attic;300;900;2400;2500;\nbarn;20;20;20;20;\n");
+        Write("all.csv", "attic;300;900;2400;2500;\ncellar;625;625;625;10000;\n");
+        std::vector<ViewpointRecording> viewpoints;
+        for (const auto& [name, roots] : {std::pair("attic", std::vector<int>{20, 30, 40, 50}),
+                                          std::pair("cellar", std::vector<int>{25, 100, 35}),
+                                          std::pair("shed", std::vector<int>{10})}) {
+            ViewpointRecording& viewpoint = viewpoints.emplace_back();
+            viewpoint = {.name = name,
+                         .blockCount = 4,
+                         .cap = 10000,
+                         .passSpp = 20,
+                         .provenance = {{"scene", "made up"}},
+                         .blocks = {},
+                         .blockNotes = {}};
+            for (const int root : roots) {
+                const int end = std::min(10000, root * root * 3 / 2 / 20 * 20);
+                BlockRecording recording = EmptyRecording(end);
+                for (const char* channel : {"masked_noise", "dammertz", "luxtile"})
+                    SetChannel(&recording, channel,
+                               [&](int spp) { return 0.5 * root / std::sqrt(spp); });
+                viewpoint.blocks[int(viewpoint.blocks.size())] = recording;
+            }
+        }
+        WriteFileAtomically(File("data.h5"), EncodeDataset(viewpoints));
+    }
+};
+
+// Returns the line of `out` that begins with `begin`; empty if there is none.
+std::string Line(const std::string& out, const std::string& begin) {
+    const size_t at = ("\n" + out).find("\n" + begin);
+    return at == std::string::npos ? "" : out.substr(at, out.find('\n', at) - at);
+}
+
+TEST(Evaluate, PrintsThePublishedErrors) {
+    LULL_SHARED_FILE(human, "thresholds/human.csv");
+    LULL_SHARED_FILE(entropy, "thresholds/svd-entropy-rnn.csv");
+    LULL_SHARED_FILE(attributes, "thresholds/26-attributes-rnn.csv");
+    const TemporaryDirectory directory;
+    const std::string files = " --human '" + human + "' --predicted '";
+    const Outcome first = RunLull(directory, "evaluate" + files + entropy + "' --grid 40");
+    EXPECT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_TRUE(Contains(Line(first.out, "all"), "  15.05   13.51   12.16  ")) << first.out;
+    EXPECT_TRUE(Contains(Line(first.out, "all"), "  38     608     0")) << first.out;
+    const Outcome second =
+        RunLull(directory, "evaluate" + files + attributes + "' --grid 20 --margins 10,2,6");
+    EXPECT_TRUE(Contains(Line(second.out, "all"), "  14.57   17.62   16.02  ")) << second.out;
+    EXPECT_NE(Line(second.out, "p3d_kitchen-view0_part6"), "");
+}
+
+TEST(Evaluate, ComparesTwoFiles) {
+    const EvaluationDirectory directory;
+    const std::string files = "evaluate --human human.csv --predicted predicted.csv";
+    const Outcome outcome = RunLull(directory, files + " --csv out.csv");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "1 of 2 viewpoints")) << outcome.err;
+    // 100 early and 800 late of 4 blocks; the first is early, the third late.
+    EXPECT_TRUE(Contains(Line(outcome.out, "attic"), "  225    2.2   25.0   25.0")) << outcome.out;
+    const std::string csv = ReadBytes(directory.File("out.csv"));
+    EXPECT_TRUE(Contains(csv, "\npredicted,attic,,1,4,0,")) << csv;
+    EXPECT_TRUE(Contains(csv, "\npredicted,all,,1,4,0,")) << csv;
+
+    const Outcome brief = RunLull(directory, files + " --predicted all.csv --brief");
+    EXPECT_EQ(Line(brief.out, "attic"), "");
+    EXPECT_NE(Line(brief.out, "predicted"), "");
+    EXPECT_NE(Line(brief.out, "all"), "");
+    const Outcome without = RunLull(directory, files + " --predicted all.csv --without cellar");
+    EXPECT_EQ(Line(without.out, "cellar"), "");
+}
+
+TEST(Evaluate, RunsRulesOnRecordings) {
+    const EvaluationDirectory directory;
+    const Outcome outcome =
+        RunLull(directory,
+                "evaluate data.h5 --human human.csv --stop lnoise:0.51 --stop fixed:900 "
+                "--stop lnoise:0.3 --stop thresholds:all.csv --brief");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "no thresholds for 'shed'")) << outcome.err;
+    // Seven blocks of two viewpoints; at 0.3 all but the one at the cap end before they stop.
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.51"), "  2       7     0")) << outcome.out;
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3"), "  2       7     6")) << outcome.out;
+    // fixed: 500, 0, 700, 1600 and 275, 9100, 325: means of 700 and 3233.
+    EXPECT_TRUE(Contains(Line(outcome.out, "fixed:900"), "  1967   19.7")) << outcome.out;
+    EXPECT_NE(Line(outcome.out, "thresholds:all.csv"), "");
+}
+
+TEST(Evaluate, ComparesRivals) {
+    const EvaluationDirectory directory;
+    for (const char* choice : {"error", "critical"}) {
+        const Outcome outcome = RunLull(directory,
+                                        "evaluate data.h5 --human human.csv --rivals --predicted "
+                                        "all.csv --choose-by " +
+                                            std::string(choice));
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        // The last table has all of them.
+        const std::string table = outcome.out.substr(outcome.out.rfind("\nrule ") + 1);
+        for (const char* rule : {"dammertz", "cycles", "luxtile", "lnoise"})
+            EXPECT_NE(Line(table, rule), "") << table;
+        EXPECT_TRUE(Contains(Line(table, "all "), "  2       7     0")) << table;
+        // Thresholds of 2400, 625 and 10000 spp: the first is at the end of the recording.
+        EXPECT_TRUE(Contains(Line(table, "all, clipped"), "  2       7     0")) << table;
+    }
+    const Outcome alone =
+        RunLull(directory, "evaluate data.h5 --human human.csv --rivals --without cellar");
+    EXPECT_EQ(alone.exitCode, 1);
+    EXPECT_TRUE(Contains(alone.err, "other viewpoints")) << alone.err;
+}
+
+TEST(Evaluate, SaysWhatIsWrong) {
+    const EvaluationDirectory directory;
+    directory.Write("bad.csv", "attic;20;x;\n");
+    directory.Write("short.csv", "attic;20;\n");
+    const struct {
+        const char* arguments;
+        std::vector<std::string> parts;
+    } cases[] = {
+        {"evaluate --human human.csv --predicted bad.csv", {"bad.csv:1: "}},
+        {"evaluate --human bad.csv --predicted human.csv", {"bad.csv:1: "}},
+        {"evaluate --human human.csv --predicted short.csv", {"short.csv", "1 thresholds, but 4"}},
+        {"evaluate data.h5 --human short.csv --stop fixed:20", {"short.csv", "attic"}},
+        {"evaluate data.h5 --human human.csv --predicted short.csv", {"short.csv", "'attic'"}},
+        {"evaluate human.csv --human human.csv --stop fixed:20", {"human.csv"}},
+        {"evaluate data.h5 --human human.csv --stop oracle:1", {"oracle:1"}},
+        {"evaluate data.h5 --human human.csv --stop cycles:0.05", {"0.06 0.04"}},
+        {"evaluate data.h5 --human human.csv --stop learned:human.csv", {"human.csv"}},
+        {"evaluate data.h5 --human human.csv --stop fixed:20 --without barn", {"'barn'"}},
+        {"evaluate data.h5 --human human.csv --stop fixed:20 --csv no/such/f.csv", {"no/such"}}};
+    for (const auto& [arguments, parts] : cases) ExpectFailure(directory, arguments, parts);
+    for (const char* arguments :
+         {"evaluate", "evaluate --human human.csv", "evaluate --human human.csv --rivals",
+          "evaluate --human human.csv --stop fixed:20", "evaluate data.h5 --human human.csv",
+          "evaluate --human no.csv --predicted predicted.csv",
+          "evaluate --human human.csv --predicted predicted.csv --grid 0",
+          "evaluate --human human.csv --predicted predicted.csv --margins 2,x",
+          "evaluate data.h5 --human human.csv --rivals --choose-by taste"})
+        EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
+    EXPECT_EQ(RunLull(directory, "evaluate --help").exitCode, 0);
+}
+
+}  // namespace
+}  // namespace lull
