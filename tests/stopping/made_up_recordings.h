@@ -41,7 +41,7 @@ inline ViewpointRecording MakeViewpoint(const std::string& name, int recorded, i
                                  .blockCount = 16,
                                  .cap = end,
                                  .passSpp = 20,
-                                 .provenance = {},
+                                 .provenance = {{"scene", "made up"}},
                                  .blocks = {},
                                  .blockNotes = {}};
     for (int i = 0; i < recorded; ++i)

@@ -1,0 +1,189 @@
+#include "renderer/commands/train_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFooter =
+    R"(Learns from recordings (see lull dataset) and the thresholds of people when these stop to see
+noise. The defaults are the paper's: an LSTM network on windows of k SVD-entropies of m sub-blocks.
+Viewpoints are joined by their exact names; those without thresholds are left aside.
+
+Features for --features (also --channels), a list with commas:
+  H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
+  noise, noise_mean, masked_noise, half_noise, lightness, deviation, texture
+                     statistics of 10x10 sub-blocks, never normalised over the window
+  logspp             the logarithm of the samples per pixel
+--pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
+rms, or qN for the quantile at N %.
+
+--units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
+
+The same options and seed give the same weights for any number of threads. Interrupted, a training
+with -o leaves MODEL.h5.checkpoint, and goes on from there with --resume.
+
+With --cross-validate each viewpoint is judged by a network that was trained on all others; with
+-o, a network trained on all of them is written as well. For the columns of the tables see
+lull evaluate --help.
+
+Examples:
+  lull train data.h5 --human human.csv -o model.h5
+  lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
+  lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
+      --pool rms,q90 --units 16,8
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+bool ParseUnits(const std::string& text, std::vector<int>* units) {
+    units->clear();
+    if (text == "none") return true;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (true) {
+        int value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || value < 1 || value > 16384) return false;
+        units->push_back(value);
+        if (next == end) return true;
+        if (*next != ',') return false;
+        at = next + 1;
+    }
+}
+
+void AddUnits(CLI::App& app, const std::string& name, std::vector<int>* units,
+              const std::string& help, const std::string& standard) {
+    app.add_option_function<std::string>(
+           name,
+           [=](const std::string& text) {
+               if (!ParseUnits(text, units))
+                   throw CLI::ValidationError(name, text + " is not a list as 512,128,32, or none");
+           },
+           help)
+        ->type_name("N,N,...")
+        ->default_str(standard);
+}
+
+// Adds an option whose text is parsed by a function that throws std::invalid_argument.
+template <typename T>
+void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::string&), T* value,
+              const std::string& help) {
+    app.add_option_function<std::string>(
+           names,
+           [=](const std::string& text) {
+               try {
+                   *value = parse(text);
+               } catch (const std::invalid_argument& error) {
+                   throw CLI::ValidationError(names, error.what());
+               }
+           },
+           help)
+        ->type_name("A,B,...");
+}
+
+template <typename T>
+void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most,
+               const std::string& help) {
+    app.add_option(name, *value, help)
+        ->check(CLI::Range(least, most))
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+void AddSettings(CLI::App& app, ModelSettings* s) {
+    AddNumber(app, "--k", &s->k, 1, 1000, "Steps in a window");
+    AddNumber(app, "--n", &s->n, 1, 1000000, "Spp between the steps");
+    app.add_option("--m", s->m, "Sub-blocks that entropies are computed of")
+        ->check(CLI::IsMember({4, 25, 100, 400}))
+        ->type_name("N")
+        ->capture_default_str();
+    AddNames(app, "--features,--channels", ParseFeatures, &s->features,
+             "What the network is given [H]");
+    AddNames(app, "--pool", ParsePools, &s->pools, "Statistics in place of all sub-blocks");
+    app.add_flag("--snorm,!--no-snorm", s->snorm,
+                 "Normalise entropies over the window [the default]");
+    app.add_flag("--bnorm", s->bnorm, "Normalise the entropies of each step");
+    AddNumber(app, "--votes", &s->votes, 1, 1000, "Noiseless votes in a row that stop a block");
+    app.add_option("--vote-spacing", s->voteSpacing, "Spp between votes [n]")
+        ->check(CLI::Range(1, 1000000))
+        ->type_name("N");
+}
+
+void AddTraining(CLI::App& app, TrainingOptions* t) {
+    AddUnits(app, "--units", &t->units, "Units of the LSTM layers, or none", "512,128,32");
+    AddUnits(app, "--dense", &t->dense, "Units of dense layers before the last one", "none");
+    app.add_option("--dropout", t->dropout, "Share of each LSTM layer's inputs that is dropped")
+        ->check(CLI::Range(0.0, 0.99))
+        ->type_name("X")
+        ->capture_default_str();
+    app.add_option("--learning-rate", t->learningRate, "Learning rate of RMSprop")
+        ->check(CLI::PositiveNumber)
+        ->type_name("X")
+        ->capture_default_str();
+    AddNumber(app, "--batch", &t->batch, 1, 1 << 20, "Samples in a batch");
+    AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "How often all samples are shown");
+    app.add_option("--seed", t->seed, "Another seed gives another network")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
+}
+
+void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
+             const std::string& help) {
+    app.add_option(name, *list, help)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME");
+}
+
+}  // namespace
+
+void AddTrainOptions(CLI::App& app, TrainOptions* o) {
+    app.add_option("DATASET.h5", o->datasets, "Recordings to learn from")
+        ->required()
+        ->check(CLI::ExistingFile);
+    app.add_option("--human", o->human, "Thresholds of people")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("H.csv");
+    app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
+    AddSettings(app, &o->settings);
+    AddTraining(app, &o->training);
+    AddList(app, "--leave-out", &o->leaveOut,
+            "Viewpoint to judge by, not to train on; can be given again");
+    AddList(app, "--without", &o->without, "Viewpoint to ignore; can be given again");
+    app.add_option_function<std::string>(
+           "--split",
+           [o](const std::string& text) {
+               if (!text.starts_with("paper:") || text.size() == 6)
+                   throw CLI::ValidationError("--split", text + " is not paper:FILE");
+               o->split = text.substr(6);
+           },
+           "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others")
+        ->type_name("paper:FILE");
+    app.add_flag("--cross-validate", o->crossValidate, "Leave each viewpoint out in turn");
+    app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
+    app.add_option("--csv", o->csv, "Write the judgement to a CSV file")->type_name("F.csv");
+    AddNumber(app, "--threads", &o->threads, 0, 4096, "Threads; 0: one for each core");
+    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the judgement");
+    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    app.footer(kFooter);
+}
+
+void CompleteTrainOptions(TrainOptions* o) {
+    if (o->output.empty() && !o->crossValidate)
+        throw CLI::ValidationError("train", "needs -o MODEL.h5 or --cross-validate");
+    if (o->resume && o->output.empty())
+        throw CLI::ValidationError("--resume", "needs -o MODEL.h5, beside which the checkpoint is");
+    if (o->crossValidate && (!o->leaveOut.empty() || !o->split.empty()))
+        throw CLI::ValidationError("--cross-validate",
+                                   "chooses blocks itself, without --leave-out and --split");
+    // Recordings have every second pass, and so has a rule that votes as often as it was trained.
+    if (o->settings.voteSpacing == 0) o->settings.voteSpacing = o->settings.n;
+}
+
+}  // namespace lull
