@@ -1,6 +1,7 @@
 #include "stopping/training_samples.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "stopping/window.h"

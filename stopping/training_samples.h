@@ -1,7 +1,6 @@
 // Makes what a network is trained on: windows of recordings, and whether people saw noise.
 #pragma once
 
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
