@@ -8,6 +8,7 @@
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
+#include "renderer/commands/judged_blocks.h"
 #include "renderer/output/file_io.h"
 #include "stopping/rivals.h"
 
@@ -158,31 +159,6 @@ JudgedRule JudgeFileOnBlocks(const std::string& path, std::span<const JudgedBloc
     return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
 }
 
-// Reads the data sets as one; blocks of a viewpoint can be in several files.
-std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& paths) {
-    std::vector<ViewpointRecording> all;
-    for (const std::string& path : paths)
-        for (const ViewpointRecording& viewpoint : ReadDataset(path)) try {
-                AddToDataset(viewpoint, &all);
-            } catch (const std::runtime_error& error) {
-                throw Error(path + ": " + error.what());
-            }
-    return all;
-}
-
-std::vector<JudgedBlock> Join(const std::vector<ViewpointRecording>& viewpoints,
-                              const std::vector<ThresholdsRow>& human, const Options& options) try {
-    std::vector<std::string> unknown;
-    const std::vector<JudgedBlock> blocks = JoinHuman(viewpoints, human, &unknown);
-    for (const std::string& name : unknown)
-        if (std::ranges::find(options.without, name) == options.without.end())
-            Talk(fmt::format("{} has no thresholds for '{}'", options.human, name));
-    if (blocks.empty()) throw Error("no block is left that was recorded and judged by people");
-    return blocks;
-} catch (const std::invalid_argument& error) {
-    throw Error(options.human + ": " + error.what());
-}
-
 std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const Options& options) {
     std::vector<JudgedRule> rules;
     if (options.rivals)
@@ -202,14 +178,15 @@ std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const
 
 ExitCode RunEvaluate(const Options& options) {
     if (!options.csv.empty()) CheckWritable(options.csv);
-    const std::vector<ThresholdsRow> human = ReadHuman(options);
     std::vector<JudgedRule> rules;
     if (options.datasets.empty()) {
+        const std::vector<ThresholdsRow> human = ReadHuman(options);
         for (const std::string& path : options.predicted)
             rules.push_back(JudgeFile(path, human, options));
     } else {
         const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
-        rules = JudgeOnBlocks(Join(viewpoints, human, options), options);
+        rules =
+            JudgeOnBlocks(ReadJudgedBlocks(viewpoints, options.human, options.without), options);
     }
     PrintEvaluation(stdout, rules, options.judge, !options.brief);
     if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
