@@ -86,7 +86,8 @@ ViewpointRecording ReadViewpoint(const std::string& name, const Hdf5Group& group
     viewpoint.blockCount = group.Int("block_count");
     viewpoint.cap = group.Int("cap");
     viewpoint.passSpp = group.Int("pass");
-    const std::vector<std::string> provenance = group.Strings("provenance");
+    const std::vector<std::string> provenance =
+        group.HasAttribute("provenance") ? group.Strings("provenance") : std::vector<std::string>();
     for (const std::string& entry : provenance) {
         const size_t equals = entry.find('=');
         if (equals == std::string::npos) throw std::runtime_error("'provenance' is damaged");
@@ -128,7 +129,7 @@ std::vector<std::byte> EncodeDataset(std::span<const ViewpointRecording> viewpoi
         std::vector<std::string> provenance;
         for (const auto& [key, value] : viewpoint.provenance)
             provenance.push_back(key + "=" + value);
-        group.SetStrings("provenance", provenance);
+        if (!provenance.empty()) group.SetStrings("provenance", provenance);
         for (const auto& [number, block] : viewpoint.blocks) {
             Hdf5Group blockGroup = group.MakeGroup(BlockName(number));
             WriteBlock(block, blockGroup);

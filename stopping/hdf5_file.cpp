@@ -269,6 +269,8 @@ void Hdf5Group::AddArray(const std::string& path, std::span<const int64_t> shape
     const Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, what);
     if (Count(space) != values.size()) Fail(what + ": its values do not fill its shape");
     const Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+    // Without the time, the same content gives the same bytes.
+    Check(H5Pset_obj_track_times(options, false), what);
     if (storage == Hdf5Storage::Compressed && !values.empty()) {
         Check(H5Pset_chunk(options, int(size.size()), size.data()), what);
         Check(H5Pset_shuffle(options), what);
