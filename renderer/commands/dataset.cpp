@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-#include "renderer/checkpoint.h"
+#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/scene_options.h"
@@ -83,7 +83,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
-        ->check(CLI::Range(1.0, 1e6))
+        ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     app.add_flag("--quiet", o->quiet, "Print only warnings and errors");
     app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
@@ -152,6 +152,10 @@ RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& 
     return state;
 }
 
+std::string CheckpointName(const Options& options) {
+    return fmt::format("{}.{}.checkpoint", options.output, options.name);
+}
+
 ExitCode RunDataset(const Options& options) {
     Warnings warnings = MakePrintedWarnings();
     const Description description = LoadDescription(options.scene, warnings);
@@ -200,13 +204,12 @@ ExitCode RunDataset(const Options& options) {
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
     // Go on where an earlier run was interrupted.
-    const std::string checkpoint = fmt::format("{}.{}.checkpoint", options.output, options.name);
+    const CheckpointOptions checkpoint{.file = CheckpointName(options),
+                                       .interval = options.checkpointInterval,
+                                       .resume = std::filesystem::exists(CheckpointName(options))};
     Film pixels(region);
-    RenderState state = Beginning(blocks, limits);
-    if (std::filesystem::exists(checkpoint)) {
-        state = ReadCheckpoint(checkpoint, identity, &pixels);
-        fmt::print(stderr, "lull: going on from {}\n", checkpoint);
-    }
+    const RenderState state =
+        Resume(checkpoint, identity, &pixels).value_or(Beginning(blocks, limits));
 
     std::vector<BlockRecording> recordings(blocks.size());
     ProgressPrinter printer = MakePrinter(options);
@@ -222,16 +225,14 @@ ExitCode RunDataset(const Options& options) {
                                           &recordings[size_t(info.index)]);
     };
     render.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
-    render.onCheckpoint = [&](const RenderState& s) {
-        WriteCheckpoint(checkpoint, identity, s, pixels);
-    };
-    render.checkpointInterval = options.checkpointInterval;
     render.isCancelled = Interrupted;
+    WriteCheckpoints(checkpoint, identity, pixels, &render);
     const RenderResult result =
         Render(SamplesOf(*scene, options.estimator), render, &pixels, &state);
     printer.Finish(result.progress);
     if (result.cancelled) {
-        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n", checkpoint);
+        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
+                   checkpoint.file);
         return kInterrupted;
     }
 
@@ -244,7 +245,7 @@ ExitCode RunDataset(const Options& options) {
     }
     AddToDataset(viewpoint, &dataset);
     WriteFileAtomically(options.output, EncodeDataset(dataset));
-    std::filesystem::remove(checkpoint);
+    std::filesystem::remove(checkpoint.file);
     fmt::print("{}\n", options.output);
     return kDone;
 }

@@ -6,11 +6,12 @@
 #include <charconv>
 #include <filesystem>
 
+#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/scene_options.h"
-#include "renderer/input/pbrt_parser.h"
+#include "renderer/input/scene_hash.h"
 
 namespace lull {
 
@@ -26,6 +27,7 @@ struct Options {
     std::optional<SamplerKind> sampler;
     Estimator estimator = Estimator::Combined;
     uint64_t seed = 0;
+    CheckpointOptions checkpoint;
     bool quiet = false, jsonProgress = false;
 };
 
@@ -49,6 +51,7 @@ Examples:
   lull render scene.pbrt -o image.exr
   lull render scene.pbrt --stop dammertz:0.01 --cap 2000 --report report.json
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
+  lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
 
 Ctrl-C ends the render early and writes what there is; twice, it ends at once.
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
@@ -101,6 +104,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->capture_default_str();
     app.add_option("--report", o->report, "Write what happened to each block as JSON")
         ->type_name("R.json");
+    AddCheckpointOptions(app, &o->checkpoint);
     app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the files written");
     app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
     app.footer(kFooter);
@@ -188,32 +192,16 @@ ExitCode RunRender(Options options) {
     const RenderFiles files =
         NameFiles(options.output.empty() ? filmSettings.filename : options.output, options.report);
     CheckWritable(files, options.scene.file);
+    CheckCheckpoint(options.checkpoint);
 
     const std::unique_ptr<const Scene> scene =
         Compile(description, options.scene.compile, warnings);
     warnings.Summarize();
 
-    Film film(region);
-    ProgressPrinter printer = MakePrinter(options);
-    CatchInterrupts();
-    RenderOptions renderOptions;
-    renderOptions.schedule = options.schedule;
-    renderOptions.sampler = options.sampler.value_or(scene->sampler);
-    renderOptions.seed = options.seed;
-    renderOptions.threads = options.scene.compile.threads;
-    renderOptions.makeCriterion = factory.make;
-    renderOptions.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
-    renderOptions.isCancelled = Interrupted;
-    const RenderResult result = Render(SamplesOf(*scene, options.estimator), renderOptions, &film);
-    printer.Finish(result.progress);
-
-    if (!options.quiet) PrintSummary(result, film, options.schedule.cap);
-    if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
-
     const Provenance provenance{.version = LULL_VERSION,
                                 .scene = options.scene.file,
                                 .seed = options.seed,
-                                .sampler = renderOptions.sampler,
+                                .sampler = options.sampler.value_or(scene->sampler),
                                 .estimator = options.estimator,
                                 .criterion = factory.rule,
                                 .checksum = factory.checksum,
@@ -223,8 +211,33 @@ ExitCode RunRender(Options options) {
                                 .substitute = options.scene.compile.substitute,
                                 .resolution = filmSettings.resolution,
                                 .crop = region};
+    RenderIdentity identity;
+    if (!options.checkpoint.file.empty()) identity = IdentityOf(provenance, SceneHash(description));
+    Film film(region);
+    const std::optional<RenderState> interrupted = Resume(options.checkpoint, identity, &film);
+
+    ProgressPrinter printer = MakePrinter(options);
+    CatchInterrupts();
+    RenderOptions renderOptions;
+    renderOptions.schedule = options.schedule;
+    renderOptions.sampler = provenance.sampler;
+    renderOptions.seed = options.seed;
+    renderOptions.threads = options.scene.compile.threads;
+    renderOptions.makeCriterion = factory.make;
+    renderOptions.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
+    renderOptions.isCancelled = Interrupted;
+    WriteCheckpoints(options.checkpoint, identity, film, &renderOptions);
+    const RenderResult result = Render(SamplesOf(*scene, options.estimator), renderOptions, &film,
+                                       interrupted ? &*interrupted : nullptr);
+    printer.Finish(result.progress);
+
+    if (!options.quiet) PrintSummary(result, film, options.schedule.cap);
+    if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
+
     WriteFiles(files, *scene, film, provenance, result, warnings);
     PrintFiles(files, result);
+    if (!result.cancelled && !options.checkpoint.file.empty())
+        std::filesystem::remove(options.checkpoint.file);
     return result.cancelled ? kInterrupted : kDone;
 }
 

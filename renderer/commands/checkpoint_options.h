@@ -1,0 +1,33 @@
+// Lets commands that render go on where they were interrupted.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+
+#include "renderer/checkpoint.h"
+
+namespace lull {
+
+struct CheckpointOptions {
+    std::string file;      // empty: none
+    double interval = 60;  // seconds
+    bool resume = false;
+};
+
+// Adds --checkpoint, --checkpoint-interval and --resume.
+void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);
+
+// Throws Error if the file could not be written, or if it is there and not to be resumed from, as
+// the render would replace it.
+void CheckCheckpoint(const CheckpointOptions&);
+
+// Fills the film and returns the state to go on from; nothing, and a word on stderr, where there
+// is no file yet. Throws as ReadCheckpoint() does.
+std::optional<RenderState> Resume(const CheckpointOptions&, const RenderIdentity&, Film*);
+
+// Lets a render of `film` write its checkpoints. One that cannot be written is a warning on stderr:
+// the last good one stays, and so does the render. All arguments must outlive the render.
+void WriteCheckpoints(const CheckpointOptions&, const RenderIdentity&, const Film& film,
+                      RenderOptions* render);
+
+}  // namespace lull

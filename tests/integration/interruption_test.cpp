@@ -1,0 +1,145 @@
+// Interrupts renders in all ways and compares what they come to in the end.
+#include <fmt/format.h>
+
+#include <random>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kOptions =
+    "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.004 --cap 1500 --quiet";
+
+struct SceneDirectory : TemporaryDirectory {
+    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
+};
+
+std::string RenderCommand(const std::string& more) {
+    return fmt::format("LULL render {} {}", kOptions, more);
+}
+
+// Runs `command`, which keeps its state in the file `checkpoint`, and sends it a signal `delay`
+// seconds after that file is there.
+Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
+                     const std::string& signal, const std::string& checkpoint, double delay = 0) {
+    return RunShell(
+        directory, fmt::format("{} & p=$!; while kill -0 $p && [ ! -e '{}' ]; do sleep 0.02; done; "
+                               "sleep {:.3f}; kill -{} $p; wait $p",
+                               command, checkpoint, delay, signal));
+}
+
+// Returns the image, the thresholds and the map as one text.
+std::string Results(const TemporaryDirectory& directory, const std::string& name) {
+    return ReadBytes(directory.File(name + ".png")) +
+           ReadBytes(directory.File(name + ".thresholds.csv")) +
+           ReadBytes(directory.File(name + ".spp.png"));
+}
+
+// Says whether both linear images have the same bits.
+bool SameImages(const TemporaryDirectory& directory, const std::string& a, const std::string& b) {
+    return ReadImage(directory.File(a + ".exr")).texels ==
+           ReadImage(directory.File(b + ".exr")).texels;
+}
+
+TEST(Interruption, KilledRendersComeToTheSameBits) {
+    const SceneDirectory directory;
+    ASSERT_EQ(RunShell(directory, RenderCommand("-o whole.exr --threads 2")).exitCode, 0);
+
+    std::mt19937 random(1);
+    int kills = 0;
+    Outcome outcome;
+    for (int run = 0; run < 200; ++run) {
+        // At first at random moments, then as long as it takes.
+        const double seconds =
+            kills < 30 ? 0.15 + 0.25 * std::generate_canonical<double, 32>(random) : 600;
+        outcome = RunShell(
+            directory, fmt::format("timeout -s KILL {:.3f} ", seconds) +
+                           RenderCommand(fmt::format("-o parts.exr --threads {} --checkpoint c.h5 "
+                                                     "--checkpoint-interval 0.1 --resume",
+                                                     1 + run % 3)));
+        if (outcome.exitCode == 0) break;
+        ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
+        ++kills;
+    }
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_GE(kills, 10);
+    EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole"));
+    EXPECT_TRUE(SameImages(directory, "parts", "whole"));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+}
+
+TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
+    const SceneDirectory directory;
+    ASSERT_EQ(RunShell(directory, RenderCommand("-o whole.exr")).exitCode, 0);
+    const Outcome interrupted = RunAndSignal(
+        directory, RenderCommand("-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1"),
+        "TERM", "c.h5");
+    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
+    EXPECT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+    EXPECT_TRUE(std::filesystem::exists(directory.File("parts.png")));
+
+    // Without --resume the file is in the way.
+    const Outcome refused = RunShell(directory, RenderCommand("-o x.exr --checkpoint c.h5"));
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_TRUE(Contains(refused.err, "--resume")) << refused.err;
+
+    const Outcome resumed =
+        RunShell(directory, RenderCommand("-o parts.exr --checkpoint c.h5 --resume"));
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole"));
+}
+
+TEST(Interruption, RefusesToGoOnWithAnotherRender) {
+    const SceneDirectory directory;
+    RunAndSignal(directory, RenderCommand("--checkpoint c.h5 --checkpoint-interval 0.1"), "INT",
+                 "c.h5");
+    ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+    const auto errorOf = [&](const std::string& more) {
+        const Outcome outcome =
+            RunShell(directory, RenderCommand("--checkpoint c.h5 --resume " + more));
+        EXPECT_EQ(outcome.exitCode, 1) << more;
+        EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+        return outcome.err;
+    };
+    EXPECT_TRUE(Contains(errorOf("--seed 1"), "another seed (0 there, 1 here)"));
+    EXPECT_TRUE(Contains(errorOf("--pass 10"), "another pass"));
+    EXPECT_TRUE(Contains(errorOf("--crop 0,0.5,0,1"), "another crop"));
+    EXPECT_TRUE(Contains(errorOf("--estimator pbrt-v3"), "another estimator"));
+    EXPECT_TRUE(Contains(errorOf("--sampler sobol"), "another sampler"));
+    directory.Write("scene.pbrt", SceneText("Shape \"sphere\" \"float radius\" [.9]"));
+    EXPECT_TRUE(Contains(errorOf(""), "another scene"));
+    directory.Write("c.h5", "rubbish");
+    EXPECT_TRUE(Contains(errorOf(""), "c.h5"));
+}
+
+TEST(Interruption, RecordingsComeToTheSameBits) {
+    const SceneDirectory directory;
+    const std::string record =
+        "LULL dataset scene.pbrt --name a --resolution 400x200 --cap 40 --quiet";
+    ASSERT_EQ(RunShell(directory, record + " -o whole.h5").exitCode, 0);
+    for (const double delay : {0.0, 0.13, 0.31}) {
+        const Outcome killed =
+            RunAndSignal(directory, record + " -o parts.h5 --checkpoint-interval 0.1", "KILL",
+                         "parts.h5.a.checkpoint", delay);
+        ASSERT_EQ(killed.exitCode, 137) << killed.err;
+    }
+    ASSERT_EQ(RunShell(directory, record + " -o parts.h5").exitCode, 0);
+    // The same but for the notes of what it cost, which are attributes of a few characters.
+    const std::string whole = ReadBytes(directory.File("whole.h5")),
+                      parts = ReadBytes(directory.File("parts.h5"));
+    ASSERT_EQ(whole.size(), parts.size());
+    size_t different = 0;
+    for (size_t i = 0; i < whole.size(); ++i) different += whole[i] != parts[i];
+    EXPECT_LT(different, 100u);
+
+    // What is there already is not recorded again.
+    const Outcome again = RunShell(directory, record + " -o whole.h5");
+    EXPECT_EQ(again.exitCode, 0);
+    EXPECT_TRUE(Contains(again.err, "already")) << again.err;
+    EXPECT_EQ(ReadBytes(directory.File("whole.h5")), whole);
+}
+
+}  // namespace
+}  // namespace lull
