@@ -76,18 +76,11 @@ Distribution2D::Distribution2D(std::span<const float> values, int nu, int nv) {
     marginal = Distribution1D(rowIntegrals);
 }
 
-Vec2f Distribution2D::SampleContinuous(const Vec2f& u, float* pdf) const {
-    float pdfU, pdfV;
+Vec2f Distribution2D::SampleContinuous(const Vec2f& u) const {
+    float pdf;
     int row, column;
-    const float v = marginal.SampleContinuous(u.y(), &pdfV, &row);
-    const float x = conditional[row].SampleContinuous(u.x(), &pdfU, &column);
-    *pdf = pdfU * pdfV;
-    return {x, v};
-}
-
-float Distribution2D::Pdf(const Vec2f& p) const {
-    const int row = std::clamp(int(p.y() * marginal.Count()), 0, marginal.Count() - 1);
-    return marginal.Pdf(p.y()) * conditional[row].Pdf(p.x());
+    const float v = marginal.SampleContinuous(u.y(), &pdf, &row);
+    return {conditional[row].SampleContinuous(u.x(), &pdf, &column), v};
 }
 
 }  // namespace lull

@@ -85,8 +85,7 @@ class Distribution2D {
     Distribution2D() = default;
     Distribution2D(std::span<const float> values, int nu, int nv);
 
-    Vec2f SampleContinuous(const Vec2f& u, float* pdf) const;
-    float Pdf(const Vec2f& p) const;
+    Vec2f SampleContinuous(const Vec2f& u) const;
 
   private:
     std::vector<Distribution1D> conditional;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <string>
+#include <memory>
 
-#include "renderer/base/sampling.h"
 #include "renderer/input/description.h"
+#include "renderer/scene/lights/environment_map.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -24,13 +24,10 @@ class InfiniteLight {
     Rgb Power() const;
 
   private:
-    Rgb Lookup(const Vec2f& st) const;
-
     Mat3f lightFromWorld = Mat3f::Identity(), worldFromLight = Mat3f::Identity();
     float worldRadius = 1;
-    int width = 1, height = 1;
-    std::vector<Rgb> texels;  // row-major from theta = 0; scaled
-    Distribution2D distribution;
+    Rgb constant = Rgb::Ones();                 // where there is no map
+    std::shared_ptr<const EnvironmentMap> map;  // null: none
 };
 
 }  // namespace lull
