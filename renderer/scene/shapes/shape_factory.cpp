@@ -108,8 +108,26 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     return mesh;
 }
 
-QuadricPlacement PlacementOf(const ShapeEntity& entity) {
-    const Mat4d& m = entity.worldFromObject;
+// Takes the scale out of a transform, for the sizes of the shape to be multiplied by: sampling
+// takes a shape's area and the cone that it subtends from its sizes. A transform that stretches is
+// left as it is, which emitting shapes must not have.
+float TakeScale(const ShapeEntity& entity, Mat4d* m) {
+    auto linear = m->topLeftCorner<3, 3>();
+    const double scale = linear.col(0).norm();
+    if ((linear.transpose() * linear).isApprox(scale * scale * Eigen::Matrix3d::Identity(), 1e-4)) {
+        linear /= scale;
+        return float(scale);
+    }
+    if (entity.areaLight)
+        throw Error(entity.loc, fmt::format("a light of shape \"{}\" under a transform that "
+                                            "stretches it is not modelled; a mesh is",
+                                            entity.name));
+    return 1;
+}
+
+QuadricPlacement PlacementOf(const ShapeEntity& entity, float* scale) {
+    Mat4d m = entity.worldFromObject;
+    *scale = TakeScale(entity, &m);
     return {m, m.inverse(), entity.reverseOrientation, entity.reverseOrientation != Mirrors(m)};
 }
 
@@ -117,37 +135,32 @@ float PhiMaxOf(const Parameters& params) {
     return std::clamp(params.GetFloat("phimax", 360), 0.f, 360.f) * kPi / 180;
 }
 
-Sphere MakeSphere(const ShapeEntity& entity, Warnings& warnings) {
+Sphere MakeSphere(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     Sphere sphere;
-    sphere.place = PlacementOf(entity);
-    sphere.radius = params.GetFloat("radius", 1);
-    if (!(sphere.radius > 0) || !std::isfinite(sphere.radius))
-        throw Error(entity.loc,
-                    fmt::format("a sphere's radius has to be positive; it is {}", sphere.radius));
-    const float r = sphere.radius;
+    float scale;
+    sphere.place = PlacementOf(entity, &scale);
+    const float r = params.GetFloat("radius", 1);
+    if (!(r > 0) || !std::isfinite(r))
+        throw Error(entity.loc, fmt::format("a sphere's radius has to be positive; it is {}", r));
     const float z0 = params.GetFloat("zmin", -r), z1 = params.GetFloat("zmax", r);
-    sphere.zMin = std::clamp(std::min(z0, z1), -r, r);
-    sphere.zMax = std::clamp(std::max(z0, z1), -r, r);
+    sphere.radius = scale * r;
+    sphere.zMin = scale * std::clamp(std::min(z0, z1), -r, r);
+    sphere.zMax = scale * std::clamp(std::max(z0, z1), -r, r);
     sphere.phiMax = PhiMaxOf(params);
     if (!(sphere.Area() > 0))
         throw Error(entity.loc, "the sphere has no area left by its clipping");
-    const Eigen::Matrix3d linear = entity.worldFromObject.topLeftCorner<3, 3>();
-    const double scale = linear.col(0).norm();
-    if (entity.areaLight &&
-        !(linear.transpose() * linear).isApprox(scale * scale * Eigen::Matrix3d::Identity(), 1e-4))
-        warnings.Add(entity.loc, "spherical light with a scale in its transform",
-                     "it is sampled as if there were none");
     return sphere;
 }
 
 Disk MakeDisk(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     Disk disk;
-    disk.place = PlacementOf(entity);
-    disk.height = params.GetFloat("height", 0);
-    disk.radius = params.GetFloat("radius", 1);
-    disk.innerRadius = params.GetFloat("innerradius", 0);
+    float scale;
+    disk.place = PlacementOf(entity, &scale);
+    disk.height = scale * params.GetFloat("height", 0);
+    disk.radius = scale * params.GetFloat("radius", 1);
+    disk.innerRadius = scale * params.GetFloat("innerradius", 0);
     disk.phiMax = PhiMaxOf(params);
     if (!(disk.radius > 0) || !(disk.innerRadius >= 0) || !(disk.Area() > 0))
         throw Error(entity.loc, "the disk has no area; \"radius\" has to be above \"innerradius\"");
@@ -183,7 +196,7 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     } else if (entity.name == "loopsubdiv") {
         mesh(SubdividedMesh(entity));
     } else if (entity.name == "sphere") {
-        shape.geometry = MakeSphere(entity, warnings);
+        shape.geometry = MakeSphere(entity);
     } else if (entity.name == "disk") {
         shape.geometry = MakeDisk(entity);
     } else {
