@@ -1,13 +1,17 @@
 // Measures whole renders: samples a second, how many cores they had (process time / elapsed time,
 // less where others use the machine) and which share of their threads' time went into samples and
-// criteria rather than waiting. The scenes are those of LULL_BENCH_SCENES (files, separated by
-// colons), or our own. LULL_BENCH_SPP sets the samples per pixel of the whole images.
+// criteria rather than waiting; and the start of each: seconds by phase and the peak of memory, in
+// MB, from nothing to a scene that can be rendered. The scenes are those of LULL_BENCH_SCENES
+// (files, separated by colons), or our own. LULL_BENCH_SPP sets the samples per pixel of the whole
+// images.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -31,6 +35,43 @@ std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& res
     options.substitute = true;
     options.film.resolution = resolution;
     return Compile(ParsePbrt(file, {.substitute = true}, warnings), options, warnings);
+}
+
+// Returns the most memory that this process has had since ForgetPeak(), in MB (Linux only).
+double PeakMegabytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) / 1024;
+    return 0;
+}
+void ForgetPeak() {
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5;
+}
+
+// Loads the scene again and again.
+void BenchStart(benchmark::State& state, const std::string& file) {
+    double parse = 0, textures = 0, shapes = 0, accelerator = 0, peak = 0;
+    for (auto _ : state) {
+        ForgetPeak();
+        Warnings warnings;
+        const auto start = std::chrono::steady_clock::now();
+        const Description description = ParsePbrt(file, {.substitute = true}, warnings);
+        parse += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        CompileOptions options;
+        options.substitute = true;
+        const auto scene = Compile(description, options, warnings);
+        textures += scene->textureSeconds;
+        shapes += scene->shapeSeconds;
+        accelerator += scene->acceleratorSeconds;
+        peak = std::max(peak, PeakMegabytes());
+    }
+    const auto average = benchmark::Counter::kAvgIterations;
+    state.counters["parse_s"] = benchmark::Counter(parse, average);
+    state.counters["textures_s"] = benchmark::Counter(textures, average);
+    state.counters["shapes_s"] = benchmark::Counter(shapes, average);
+    state.counters["accelerator_s"] = benchmark::Counter(accelerator, average);
+    state.counters["peak_MB"] = peak;
 }
 
 // Renders `region` of the scene again and again.
@@ -95,6 +136,7 @@ int RegisterAll() {
     for (const std::string& file : SceneFiles()) {
         const std::filesystem::path path(file);
         const std::string name = path.parent_path().filename() / path.stem();
+        registerOne(name + "/start", [file](benchmark::State& state) { BenchStart(state, file); });
         registerOne(name + "/combined", [file](benchmark::State& state) {
             BenchWhole(state, file, Estimator::Combined);
         });
