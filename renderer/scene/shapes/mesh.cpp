@@ -51,6 +51,23 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
     hit->dpdv = mesh.reverseOrientation ? Vec3f(-t) : t;
 }
 
+// Returns the weights of a point that is as far from the triangle's edges as its coordinates can be
+// wrong by, and no more than eight times as far from the one given. A point on an edge could
+// otherwise come to lie in the plane of the triangle beyond that edge, or behind it, and rays that
+// start there would leave a closed mesh. Slivers, less than a quarter as high as long, get a part
+// of that distance.
+Eigen::Array3f KeepInside(Eigen::Array3f b, const Vec3f& p0, const Vec3f& p1, const Vec3f& p2,
+                          const Vec3f& error) {
+    constexpr float kLargest = 1.f / 16;  // weight that is looked at, and that is given
+    if (b.minCoeff() >= kLargest) return b;
+    const float length2 =
+        std::max({(p1 - p0).squaredNorm(), (p2 - p1).squaredNorm(), (p0 - p2).squaredNorm()});
+    const float least = std::min(kLargest, 4 * error.maxCoeff() / std::sqrt(length2));
+    if (b.minCoeff() >= least) return b;
+    b = b.max(least);
+    return b / b.sum();
+}
+
 }  // namespace
 
 void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
@@ -58,9 +75,12 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
     const auto& v = triangles[triangle];
     const Vec3f &p0 = p[v[0]], &p1 = p[v[1]], &p2 = p[v[2]];
     const float b0 = 1 - b1 - b2;
-    const Vec3f q0 = b0 * p0, q1 = b1 * p1, q2 = b2 * p2;
-    hit->p = q0 + q1 + q2;
-    hit->pError = Gamma(7) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
+    // The sum of the weighted vertices would bound the error of the point itself, but that of
+    // Embree's distance to this triangle comes from all of the vertices, also from a far one that
+    // has no weight here.
+    hit->pError = Gamma(7) * p0.cwiseAbs().cwiseMax(p1.cwiseAbs()).cwiseMax(p2.cwiseAbs());
+    const Eigen::Array3f inside = KeepInside({b0, b1, b2}, p0, p1, p2, hit->pError);
+    hit->p = inside[0] * p0 + inside[1] * p1 + inside[2] * p2;
     hit->n = (p0 - p2).cross(p1 - p2).normalized();
     if (flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
