@@ -103,10 +103,10 @@ std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Ve
     const Light& light = lights[i];
     if (const AreaLight* area = std::get_if<AreaLight>(&light)) return area->Sample(from, u);
     if (const InfiniteLight* environment = std::get_if<InfiniteLight>(&light))
-        return environment->Sample(from, u);
+        return environment->Sample(u);
     if (const PointLight* point = std::get_if<PointLight>(&light)) return point->Sample(from);
     if (const SpotLight* spot = std::get_if<SpotLight>(&light)) return spot->Sample(from);
-    return std::get<DistantLight>(light).Sample(from);
+    return std::get<DistantLight>(light).Sample();
 }
 
 }  // namespace lull

@@ -20,11 +20,15 @@ struct Path {
 };
 
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
-// the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon).
+// the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
+// turns a grazing ray to the other side of the surface, it would pass through: that is in shadow.
 bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSample& light) {
-    const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.p - hit.p);
+    if (light.isAtInfinity) return !scene.accelerator.Occluded(hit.SpawnRay(light.wi));
+    const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
-    return !scene.accelerator.Occluded({origin, target - origin, 1 - 0.0001f});
+    const Vec3f d = target - origin;
+    if ((d.dot(hit.n) < 0) != (light.wi.dot(hit.n) < 0)) return false;
+    return !scene.accelerator.Occluded({origin, d, 1 - 0.0001f});
 }
 
 // Returns the light that sampling light `index` brings to the hit, weighted against BSDF sampling.

@@ -13,13 +13,9 @@ DistantLight DistantLight::Make(const LightEntity& entity, float worldRadius) {
     return {w.normalized(), L, worldRadius};
 }
 
-std::optional<LightSample> DistantLight::Sample(const Vec3f& from) const {
-    return LightSample{.L = L,
-                       .wi = w,
-                       .pdf = 1,
-                       .isDelta = true,
-                       .isHidden = false,
-                       .p = from + w * (2 * worldRadius)};
+std::optional<LightSample> DistantLight::Sample() const {
+    return LightSample{
+        .L = L, .wi = w, .pdf = 1, .isDelta = true, .isHidden = false, .isAtInfinity = true};
 }
 
 }  // namespace lull

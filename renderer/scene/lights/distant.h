@@ -12,7 +12,7 @@ struct DistantLight {
     float worldRadius = 1;
 
     static DistantLight Make(const LightEntity&, float worldRadius);
-    std::optional<LightSample> Sample(const Vec3f& from) const;
+    std::optional<LightSample> Sample() const;
     Rgb Power() const { return kPi * Sqr(worldRadius) * L; }
 };
 

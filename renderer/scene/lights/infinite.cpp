@@ -65,7 +65,7 @@ Rgb InfiniteLight::Le(const Vec3f& w) const {
 }
 
 // A constant light is sampled as pbrt-v3 does, as a map of one texel: evenly in both coordinates.
-std::optional<LightSample> InfiniteLight::Sample(const Vec3f& from, const Vec2f& u) const {
+std::optional<LightSample> InfiniteLight::Sample(const Vec2f& u) const {
     float mapPdf = 1;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
     const float theta = st.y() * kPi, phi = st.x() * 2 * kPi;
@@ -79,7 +79,7 @@ std::optional<LightSample> InfiniteLight::Sample(const Vec3f& from, const Vec2f&
                        .pdf = pdf,
                        .isDelta = false,
                        .isHidden = false,
-                       .p = from + wi * (2 * worldRadius)};
+                       .isAtInfinity = true};
 }
 
 float InfiniteLight::Pdf(const Vec3f& w) const {

@@ -18,7 +18,7 @@ class InfiniteLight {
 
     // Returns the radiance that arrives from direction w (unit, world).
     Rgb Le(const Vec3f& w) const;
-    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    std::optional<LightSample> Sample(const Vec2f& u) const;
     // Returns the density, 1/sr, with which Sample finds w.
     float Pdf(const Vec3f& w) const;
     Rgb Power() const;

@@ -11,8 +11,9 @@ struct LightSample {
     float pdf;      // 1/sr; 1 for delta lights
     bool isDelta;   // no other strategy can find this direction
     bool isHidden;  // the emitter is invisible to rays, only this sampling finds it
-    // Where the light sits; at infinity `n` is zero and p is ref + wi * (2 world radii).
-    Vec3f p, pError = Vec3f::Zero(), n = Vec3f::Zero();
+    // Where the light sits; n is zero for lights that are points. A light at infinity sits nowhere.
+    bool isAtInfinity = false;
+    Vec3f p = Vec3f::Zero(), pError = Vec3f::Zero(), n = Vec3f::Zero();
 };
 
 }  // namespace lull
