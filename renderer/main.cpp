@@ -38,6 +38,7 @@ ExitCode Main(int argc, char** argv) {
     AddDatasetCommand(app, &command);
     AddTrainCommand(app, &command);
     AddEvaluateCommand(app, &command);
+    AddSelftestCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -17,5 +17,6 @@ void AddInfoCommand(CLI::App& app, Command* command);
 void AddDatasetCommand(CLI::App& app, Command* command);
 void AddTrainCommand(CLI::App& app, Command* command);
 void AddEvaluateCommand(CLI::App& app, Command* command);
+void AddSelftestCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

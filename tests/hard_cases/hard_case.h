@@ -1,0 +1,63 @@
+// Inputs that are built to break a path tracer or a stopping rule, each with its answer known. The
+// program's `selftest` and the test program run the same cases; neither is known here.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lull {
+
+struct HardCaseOptions {
+    bool isLong = false;  // the counts of rays, samples and trials of a nightly run
+    uint64_t seed = 1;    // of everything random, so that a failure can be had again
+};
+
+// Holds what came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
+struct HardCaseResult {
+    double answer = 0, ours = 0, tolerance = 0;
+    std::string note;  // what the figures count, and of several trials which one is shown
+
+    bool Passed() const;
+};
+
+struct HardCase {
+    std::string theme;
+    std::string name;
+    std::string what;  // what goes wrong elsewhere
+    std::function<HardCaseResult(const HardCaseOptions&)> run;
+};
+
+// Lists all cases, theme by theme. The files of this folder hold one theme each.
+std::vector<HardCase> AllHardCases();
+
+std::vector<HardCase> EnergyCases();
+std::vector<HardCase> ScaleCases();
+std::vector<HardCase> DegenerateCases();
+std::vector<HardCase> DielectricCases();
+std::vector<HardCase> RoughnessCases();
+std::vector<HardCase> LightCases();
+std::vector<HardCase> AccumulationCases();
+std::vector<HardCase> ImageSizeCases();
+std::vector<HardCase> SignalCases();
+std::vector<HardCase> HeavyTailCases();
+std::vector<HardCase> RandomCases();
+
+// Returns the result that is furthest out of its tolerance, or closest to it. At least one.
+HardCaseResult Worst(std::span<const HardCaseResult> results);
+
+// Counts what must never happen. The note of what it was for the first time follows the total.
+struct Failures {
+    int64_t trials = 0, count = 0;
+    std::string first;  // of the first failure: the seed or whatever else it can be had again by
+
+    void Note(bool failed, const std::function<std::string()>& how);
+    HardCaseResult Result(const std::string& trialName) const;
+};
+
+// Formats numbers for tables: seven digits, or "1e-09".
+std::string NumberText(double value);
+
+}  // namespace lull
