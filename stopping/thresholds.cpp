@@ -26,6 +26,9 @@ ThresholdsRow ParseRow(const std::string& line) {
     const std::vector<std::string> fields = Split(line);
     if (fields.empty() || fields[0].empty())
         throw std::invalid_argument("the name of the viewpoint is missing");
+    if (fields[0].find('\r') != std::string::npos)
+        throw std::invalid_argument(
+            "a carriage return in the name of the viewpoint; lines have to end with a line feed");
     ThresholdsRow row{fields[0], {}};
     for (size_t i = 1; i < fields.size(); ++i) {
         const char *begin = fields[i].data(), *end = begin + fields[i].size();

@@ -18,7 +18,7 @@ struct HardCaseOptions {
 // Holds what came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
 struct HardCaseResult {
     double answer = 0, ours = 0, tolerance = 0;
-    std::string note;  // what the figures count, and of several trials which one is shown
+    std::string note = "";  // what the figures count, and of several trials which one is shown
 
     bool Passed() const;
 };

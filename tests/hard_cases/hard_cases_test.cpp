@@ -10,6 +10,10 @@
 #include "tests/hard_cases/hard_case.h"
 
 namespace lull {
+
+// Tells the test framework how to name a case in its messages.
+void PrintTo(const HardCase& hardCase, std::ostream* out) { *out << hardCase.name; }
+
 namespace {
 
 HardCaseOptions OptionsFromEnvironment() {

@@ -1,0 +1,73 @@
+#include "tests/fuzz/fuzz_targets.h"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/input/ply_loader.h"
+#include "stopping/model_file.h"
+#include "stopping/thresholds.h"
+#include "tests/output/test_files.h"
+
+namespace lull {
+
+namespace {
+
+// Writes the bytes to a file, always the same one, and returns its path.
+std::string WriteInput(std::span<const char> bytes) {
+    static const TemporaryDirectory directory;
+    return directory.Write("input", {bytes.data(), bytes.size()});
+}
+
+void FuzzPbrt(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    for (const bool substitute : {false, true}) try {
+            Warnings warnings;
+            ParsePbrt(path, {.substitute = substitute}, warnings);
+        } catch (const Error&) {
+        }
+}
+
+void FuzzPly(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    Warnings warnings;
+    try {
+        LoadPly(path, warnings);
+    } catch (const Error&) {
+    }
+}
+
+void FuzzModel(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        ReadModel(path);
+    } catch (const std::runtime_error&) {
+    }
+}
+
+// What is read is written as it was, but for the ends of lines.
+void FuzzThresholds(std::span<const char> bytes) {
+    std::istringstream in(std::string(bytes.begin(), bytes.end()));
+    std::vector<ThresholdsRow> rows;
+    try {
+        rows = ReadThresholds(in, "input");
+    } catch (const std::runtime_error&) {
+        return;
+    }
+    std::stringstream copy;
+    WriteThresholds(copy, rows);
+    const std::vector<ThresholdsRow> again = ReadThresholds(copy, "copy");
+    bool same = again.size() == rows.size();
+    for (size_t i = 0; same && i < rows.size(); ++i)
+        same = again[i].name == rows[i].name && again[i].spp == rows[i].spp;
+    if (!same) throw std::logic_error("thresholds change when written and read again");
+}
+
+}  // namespace
+
+std::vector<NamedFuzzTarget> FuzzTargets() {
+    return {
+        {"pbrt", FuzzPbrt}, {"ply", FuzzPly}, {"model", FuzzModel}, {"thresholds", FuzzThresholds}};
+}
+
+}  // namespace lull
