@@ -162,6 +162,7 @@ ExitCode RunDataset(const Options& options) {
     Warnings unheard;  // Compile() will give them again
     const FilmSettings film = MakeFilmSettings(description, options.scene.compile.film, unheard);
     const PixelRect region{film.cropMin, film.cropMax};
+    CheckFilm(region);
     const std::vector<Block> blocks = MakeBlocks(region, options.schedule);
     for (const Block& block : blocks)
         if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)

@@ -187,6 +187,7 @@ ExitCode RunRender(Options options) {
     const FilmSettings filmSettings =
         MakeFilmSettings(description, options.scene.compile.film, unheard);
     const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
+    CheckFilm(region);
     const CriterionFactory factory = MakeFactory(options, region, &options.schedule);
     CheckBlocks(region, options.schedule, warnings);
     const RenderFiles files =

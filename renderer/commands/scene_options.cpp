@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "renderer/base/memory.h"
 #include "renderer/input/pbrt_parser.h"
 
 namespace lull {
@@ -80,6 +81,14 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
 
 Warnings MakePrintedWarnings() {
     return Warnings([](const std::string& message) { fmt::print(stderr, "lull: {}\n", message); });
+}
+
+void CheckFilm(const PixelRect& region) {
+    // The sums, and at the end the means and counts as they are written.
+    constexpr int64_t kBytes = sizeof(FilmPixel) + 2 * 4 * sizeof(float) + 3;
+    CheckMemory(region.Area() * kBytes,
+                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
+                "render it in parts with --crop, or smaller with --resolution");
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/output/film.h"
 #include "renderer/scene/compile.h"
 
 namespace lull {
@@ -18,6 +19,9 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.
 Warnings MakePrintedWarnings();
+
+// Throws Error if the memory cannot hold a film of this size.
+void CheckFilm(const PixelRect& region);
 
 // Reads the scene's file. Throws Error.
 Description LoadDescription(const SceneOptions&, Warnings&);

@@ -8,6 +8,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/memory.h"
 #include "renderer/output/file_io.h"
 
 namespace lull {
@@ -50,6 +51,9 @@ void CheckSize(const std::string& path, const OIIO::ImageSpec& spec, int channel
     const auto fileSize = std::filesystem::file_size(path, error);
     if (!error && bytes > kAlwaysAllowed && bytes / kMaxCompression > fileSize)
         FailToRead(path, "it is too short for its size of " + size);
+    // As read, and once more as a texture keeps it.
+    CheckMemory(int64_t(2 * bytes), fmt::format("image \"{}\" of {}", path, size),
+                "use a smaller version of it");
 }
 
 int CountChannels(const OIIO::ImageSpec& spec) {

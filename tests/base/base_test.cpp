@@ -5,6 +5,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/memory.h"
 #include "tests/bsdf/sphere_statistics.h"
 
 namespace lull {
@@ -71,6 +72,18 @@ TEST(Bounds, StartEmptyAndGrow) {
     bounds.Extend(Bounds3f());
     bounds.Extend(Vec3f(0, 5, 3));
     EXPECT_EQ(bounds.Diagonal(), Vec3f(1, 3, 0));
+}
+
+TEST(Memory, IsCheckedBeforeItIsTaken) {
+    EXPECT_GT(AvailableMemory(), 1 << 20);
+    EXPECT_NO_THROW(CheckMemory(1000, "a thousand bytes", "take less"));
+    try {
+        CheckMemory(int64_t(1) << 60, "an exbibyte", "take less", {});
+        ADD_FAILURE() << "no machine has that much";
+    } catch (const Error& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with("an exbibyte needs 1152921504.6 GB"));
+        EXPECT_TRUE(std::string(error.what()).ends_with("GB are available; take less"));
+    }
 }
 
 TEST(Color, RoundTripsTheTransferCurve) {

@@ -199,6 +199,19 @@ TEST(BadInput, NanVertex) {
 }
 
 // The limit on the size of files stands in for a full disk: every write beyond it fails.
+TEST(BadInput, ImageTooLargeForTheMemory) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome outcome = RunShell(directory,
+                                     "ulimit -v 4000000 && LULL render scene.pbrt -o out.exr "
+                                     "--resolution 12000x12000 --spp 1");
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "an image of 12000x12000 pixels needs 13.1 GB of memory"))
+        << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "--crop")) << outcome.err;
+}
+
 TEST(BadInput, FullDisk) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
