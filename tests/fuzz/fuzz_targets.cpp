@@ -5,6 +5,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "stopping/keras_config.h"
 #include "stopping/model_file.h"
 #include "stopping/thresholds.h"
 #include "tests/output/test_files.h"
@@ -45,6 +46,15 @@ void FuzzModel(std::span<const char> bytes) {
     }
 }
 
+// The part of a model file that lull itself parses, in a file that the HDF5 library has no trouble
+// with.
+void FuzzKerasConfig(std::span<const char> bytes) {
+    for (const char* version : {"", "2.2.4", "2.11.0"}) try {
+            ParseKerasConfig({bytes.begin(), bytes.end()}, version);
+        } catch (const std::runtime_error&) {
+        }
+}
+
 // What is read is written as it was, but for the ends of lines.
 void FuzzThresholds(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
@@ -66,8 +76,11 @@ void FuzzThresholds(std::span<const char> bytes) {
 }  // namespace
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
-    return {
-        {"pbrt", FuzzPbrt}, {"ply", FuzzPly}, {"model", FuzzModel}, {"thresholds", FuzzThresholds}};
+    return {{"pbrt", FuzzPbrt},
+            {"ply", FuzzPly},
+            {"model", FuzzModel},
+            {"keras_config", FuzzKerasConfig},
+            {"thresholds", FuzzThresholds}};
 }
 
 }  // namespace lull
