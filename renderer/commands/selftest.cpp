@@ -103,6 +103,11 @@ void PrintHeavyTails(const SelftestOptions& options) {
                        100 * outcomes[i].bias, 100 * outcomes[i].error,
                        tail.rarity > 0 ? fmt::format("{:.1f}", 100 * outcomes[i].unseen) : "-");
     }
+    fmt::print(
+        "\n`lnoise` does not see fireflies that saturate the display: where the mean of a pixel is "
+        "beyond white it takes the\nnoise there for invisible, also if only one half of the "
+        "samples "
+        "is beyond.\n");
 }
 
 ExitCode RunSelftest(const SelftestOptions& options) {

@@ -109,7 +109,7 @@ HardCaseResult NoLeaks(const HardCaseOptions& options) {
                        .fov = 100,
                        .integrator = "\"integer maxdepth\" [20]"});
         Sampler sampler(SamplerKind::Random, options.seed);
-        for (int i = 0; i < (options.isLong ? 500'000 : 20'000); ++i) {
+        for (int i = 0; i < (options.isLong ? 500'000 : 10'000); ++i) {
             const PathSample sample =
                 RenderSample(*scene, Estimator::Combined, sampler, {i % 8, i / 8 % 8}, i / 64);
             leaks.Note(sample.rejected || !IsBlack(sample.radiance),

@@ -91,6 +91,23 @@ TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
     EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole"));
 }
 
+// A limit on the size of files stands for a disk that is full.
+TEST(Interruption, FullDisksLeaveTheLastCheckpoint) {
+    const SceneDirectory directory;
+    RunAndSignal(directory, RenderCommand("--checkpoint c.h5 --checkpoint-interval 0.1"), "INT",
+                 "c.h5");
+    const std::string good = ReadBytes(directory.File("c.h5"));
+    ASSERT_GT(good.size(), 1u << 16);
+    const Outcome full =
+        RunShell(directory, "trap '' XFSZ; ulimit -f 16; " +
+                                RenderCommand("-o parts.exr --checkpoint c.h5 --resume "
+                                              "--checkpoint-interval 0.1"));
+    EXPECT_EQ(full.exitCode, 1) << full.err;
+    EXPECT_EQ(CountErrorLines(full.err), 1) << full.err;
+    EXPECT_TRUE(Contains(full.err, "no checkpoint: cannot write \"c.h5\"")) << full.err;
+    EXPECT_EQ(ReadBytes(directory.File("c.h5")), good);
+}
+
 TEST(Interruption, RefusesToGoOnWithAnotherRender) {
     const SceneDirectory directory;
     RunAndSignal(directory, RenderCommand("--checkpoint c.h5 --checkpoint-interval 0.1"), "INT",
