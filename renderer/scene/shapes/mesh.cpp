@@ -58,7 +58,7 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
 // of that distance.
 Eigen::Array3f KeepInside(Eigen::Array3f b, const Vec3f& p0, const Vec3f& p1, const Vec3f& p2,
                           const Vec3f& error) {
-    constexpr float kLargest = 1.f / 16;  // weight that is looked at, and that is given
+    constexpr float kLargest = 1.f / 64;  // weight that is looked at, and that is given
     if (b.minCoeff() >= kLargest) return b;
     const float length2 =
         std::max({(p1 - p0).squaredNorm(), (p2 - p1).squaredNorm(), (p0 - p2).squaredNorm()});
