@@ -11,6 +11,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "renderer/base/thread_clock.h"
+
 namespace lull {
 
 namespace {
@@ -79,13 +81,14 @@ class Executor {
             nextCheckpoint = Seconds() + options.checkpointInterval;
             Spawn(schedule.ReadyTiles());
             group.wait();
-            if (options.onCheckpoint && !schedule.Done()) options.onCheckpoint(State());
+            if (options.onCheckpoint && (!schedule.Done() || options.checkpointAtEnd))
+                options.onCheckpoint(State());
         } while (pausing && !IsCancelled());
 
         NoteBlocks();
         const RenderProgress progress = CurrentProgress();
         if (options.onProgress) options.onProgress(progress);
-        return {std::move(results), progress, !schedule.Done()};
+        return {std::move(results), progress, !schedule.Done(), 0};
     }
 
   private:
@@ -96,10 +99,10 @@ class Executor {
     void RunTile() {
         if (pausing || IsCancelled()) return;
         const Tile tile = TakeTile();
-        const Clock::time_point tileStart = Clock::now();
+        const double tileStart = ThreadSeconds();
         const int64_t taken =
             RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
-        if (FinishTile(tile, taken, SecondsSince(tileStart))) Spawn(DecideBlock(tile.block));
+        if (FinishTile(tile, taken, ThreadSeconds() - tileStart)) Spawn(DecideBlock(tile.block));
         ReportProgress();
         if (options.onCheckpoint && Seconds() >= nextCheckpoint) pausing = true;
     }
@@ -160,14 +163,14 @@ class Executor {
     // Nobody else touches a block between the end of its pass and the decision.
     bool AskCriterion(int i) {
         if (!criteria[i]) return false;
-        const Clock::time_point start = Clock::now();
+        const double start = ThreadSeconds();
         Decision decision;
         // Isolation keeps a criterion that waits for tasks of its own from running a tile here,
         // which would fill the same view.
         tbb::this_task_arena::isolate([&] { decision = Observe(i); });
         const Block& block = schedule.Blocks()[i];
         if (decision.judged) results[i].decisions.push_back({block.spp, decision});
-        results[i].criterionSeconds += SecondsSince(start);
+        results[i].criterionSeconds += ThreadSeconds() - start;
         return decision.stop;
     }
 
@@ -177,11 +180,14 @@ class Executor {
         blockView.width = block.pixels.Width();
         blockView.height = block.pixels.Height();
         blockView.spp = block.spp;
+        blockView.seconds = results[i].seconds;
         if (const ViewNeed need = criteria[i]->Need(block.spp); need != ViewNeed::Nothing) {
+            const double start = ThreadSeconds();
             FilmView& view = views.local();
             film->Extract(block.pixels, need == ViewNeed::MeanAndHalf, &view);
             blockView.mean = view.mean;
             blockView.halfMean = view.halfMean;
+            blockView.viewSeconds = ThreadSeconds() - start;
         }
         return criteria[i]->Observe(blockView);
     }
@@ -235,7 +241,10 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
-    return arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
+    RenderResult result =
+        arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
+    result.threads = threads;
+    return result;
 }
 
 SampleSource SamplesOf(const Scene& scene, Estimator estimator) {

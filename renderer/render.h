@@ -18,7 +18,7 @@ struct DecisionRecord {
 
 struct BlockResult {
     Block block;
-    double seconds = 0;           // of threads, spent on its samples
+    double seconds = 0;           // of processors, spent on its samples
     double criterionSeconds = 0;  // spent on its criterion, the view of the pixels included
     std::vector<DecisionRecord> decisions;  // those for which the block was looked at
 };
@@ -47,6 +47,7 @@ struct RenderOptions {
     // when the render is cancelled. Can be empty.
     std::function<void(const RenderState&)> onCheckpoint;
     double checkpointInterval = 60;
+    bool checkpointAtEnd = false;  // also when every block has stopped
     // Is asked before every tile; true ends the render after the tiles under way. Can be empty.
     std::function<bool()> isCancelled;
 };
@@ -55,6 +56,7 @@ struct RenderResult {
     std::vector<BlockResult> blocks;
     RenderProgress progress;  // at the end
     bool cancelled = false;   // before every block had stopped
+    int threads = 0;          // that it could use
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.

@@ -19,6 +19,9 @@ struct BlockView {
     // finite (others lead to no NaN, but to no sense either). The half mean is the mean over one
     // fixed half of the samples.
     std::span<const float> mean = {}, halfMean = {};
+    // What the samples so far and this view have cost, in seconds of processors: for those who
+    // measure rules. A rule that went by them would not give the same image twice.
+    double seconds = 0, viewSeconds = 0;
 };
 
 // Says which spans of a BlockView a criterion reads; the others may be left empty.

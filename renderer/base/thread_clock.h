@@ -1,0 +1,16 @@
+// Measures work by the time that threads have spent on a processor.
+#pragma once
+
+#include <ctime>
+
+namespace lull {
+
+// Returns the seconds that the calling thread has run; only differences mean anything. On a machine
+// that others use as well, time on the clock would say how busy they were.
+inline double ThreadSeconds() {
+    timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+}  // namespace lull
