@@ -39,6 +39,8 @@ ExitCode Main(int argc, char** argv) {
     AddTrainCommand(app, &command);
     AddEvaluateCommand(app, &command);
     AddSelftestCommand(app, &command);
+    AddCompareCommand(app, &command);
+    AddBenchCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -1,35 +1,10 @@
 #include "renderer/report.h"
 
-#include <nlohmann/json.hpp>
+#include "renderer/report_json.h"
 
 namespace lull {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json RectJson(const PixelRect& r) {
-    return {{"x", r.min.x()}, {"y", r.min.y()}, {"width", r.Width()}, {"height", r.Height()}};
-}
-
-Json ProvenanceJson(const Provenance& p) {
-    return {{"renderer", "lull"},
-            {"version", p.version},
-            {"scene", p.scene},
-            {"seed", p.seed},
-            {"sampler", NameOf(p.sampler)},
-            {"estimator", NameOf(p.estimator)},
-            {"criterion", p.criterion},
-            {"modelChecksum", p.checksum},
-            {"cap", p.schedule.cap},
-            {"pass", p.schedule.passLength},
-            {"blockSize", p.schedule.blockSize},
-            {"maxDepth", p.maxDepth},
-            {"threads", p.threads},
-            {"substitute", p.substitute},
-            {"resolution", {p.resolution.x(), p.resolution.y()}},
-            {"crop", RectJson(p.crop)}};
-}
 
 const char* EndOf(const Block& block) {
     return !block.stopped ? "interrupted" : block.stoppedByVote ? "stopped" : "cap";
@@ -44,19 +19,7 @@ Json BlockJson(const BlockResult& result, int cap) {
     if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
     json["seconds"] = result.seconds;
     json["criterionSeconds"] = result.criterionSeconds;
-
-    // List the decisions by column: a tenth of the size of one object for each.
-    Json spp = Json::array(), value = Json::array(), votes = Json::array();
-    for (const DecisionRecord& record : result.decisions) {
-        spp.push_back(record.spp);
-        value.push_back(record.decision.value);
-        votes.push_back(record.decision.votes);
-    }
-    if (!result.decisions.empty())
-        json["decisions"] = {{"threshold", result.decisions.back().decision.threshold},
-                             {"spp", spp},
-                             {"value", value},
-                             {"votes", votes}};
+    if (!result.decisions.empty()) json["decisions"] = DecisionsJson(result.decisions);
     return json;
 }
 
@@ -97,8 +60,44 @@ Savings ComputeSavings(const RenderResult& result, int cap) {
     return savings;
 }
 
-std::string MakeReport(const Provenance& provenance, const RenderResult& result,
-                       int64_t rejectedSamples, const std::map<std::string, int>& warnings) {
+Json RectJson(const PixelRect& r) {
+    return {{"x", r.min.x()}, {"y", r.min.y()}, {"width", r.Width()}, {"height", r.Height()}};
+}
+
+Json ProvenanceJson(const Provenance& p) {
+    return {{"renderer", "lull"},
+            {"version", p.version},
+            {"scene", p.scene},
+            {"seed", p.seed},
+            {"sampler", NameOf(p.sampler)},
+            {"estimator", NameOf(p.estimator)},
+            {"criterion", p.criterion},
+            {"modelChecksum", p.checksum},
+            {"cap", p.schedule.cap},
+            {"pass", p.schedule.passLength},
+            {"blockSize", p.schedule.blockSize},
+            {"maxDepth", p.maxDepth},
+            {"threads", p.threads},
+            {"substitute", p.substitute},
+            {"resolution", {p.resolution.x(), p.resolution.y()}},
+            {"crop", RectJson(p.crop)}};
+}
+
+Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
+    Json spp = Json::array(), value = Json::array(), votes = Json::array();
+    for (const DecisionRecord& record : decisions) {
+        spp.push_back(record.spp);
+        value.push_back(record.decision.value);
+        votes.push_back(record.decision.votes);
+    }
+    return {{"threshold", decisions.empty() ? 0 : decisions.back().decision.threshold},
+            {"spp", spp},
+            {"value", value},
+            {"votes", votes}};
+}
+
+Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_t rejectedSamples,
+                const std::map<std::string, int>& warnings) {
     Json report;
     report["provenance"] = ProvenanceJson(provenance);
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
@@ -106,8 +105,16 @@ std::string MakeReport(const Provenance& provenance, const RenderResult& result,
     for (const BlockResult& block : result.blocks)
         report["blocks"].push_back(BlockJson(block, provenance.schedule.cap));
     report["warnings"] = warnings;
-    // A file name that is not UTF-8 must not cost the report.
-    return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return report;
+}
+
+std::string Dump(const Json& json) {
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string MakeReport(const Provenance& provenance, const RenderResult& result,
+                       int64_t rejectedSamples, const std::map<std::string, int>& warnings) {
+    return Dump(ReportJson(provenance, result, rejectedSamples, warnings));
 }
 
 }  // namespace lull

@@ -30,8 +30,8 @@ std::string NameOf(Estimator);
 // Compares what a render took with what it would have taken with every block at the cap.
 struct Savings {
     int64_t samples = 0, samplesAtCap = 0;
-    double seconds = 0;           // of threads, the criteria's included
-    double criterionSeconds = 0;  // of threads, spent on the criteria
+    double seconds = 0;           // of processors, the criteria's included
+    double criterionSeconds = 0;  // of processors, spent on the criteria
     double secondsAtCap = 0;      // estimated from each block's seconds per sample
 
     // Return the share that was saved, in [0, 1] (seconds: can be negative).

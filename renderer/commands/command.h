@@ -18,5 +18,7 @@ void AddDatasetCommand(CLI::App& app, Command* command);
 void AddTrainCommand(CLI::App& app, Command* command);
 void AddEvaluateCommand(CLI::App& app, Command* command);
 void AddSelftestCommand(CLI::App& app, Command* command);
+void AddCompareCommand(CLI::App& app, Command* command);
+void AddBenchCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

@@ -1,16 +1,13 @@
 // `lull render`: renders a scene until every block has stopped.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <filesystem>
 
-#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
-#include "renderer/commands/scene_options.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 
 namespace lull {
@@ -18,17 +15,10 @@ namespace lull {
 namespace {
 
 struct Options {
-    SceneOptions scene;
+    RenderSettings render;
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
-    std::optional<int> cap;
-    ScheduleOptions schedule;
-    std::optional<SamplerKind> sampler;
-    Estimator estimator = Estimator::Combined;
-    uint64_t seed = 0;
-    CheckpointOptions checkpoint;
-    bool quiet = false, jsonProgress = false;
 };
 
 constexpr const char* kFooter =
@@ -49,7 +39,7 @@ Files, beside each other:
 
 Examples:
   lull render scene.pbrt -o image.exr
-  lull render scene.pbrt --stop dammertz:0.01 --cap 2000 --report report.json
+  lull render scene.pbrt --stop dammertz:0.01 --cap 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
 
@@ -57,7 +47,7 @@ Ctrl-C ends the render early and writes what there is; twice, it ends at once.
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
 void AddOptions(CLI::App& app, Options* o) {
-    AddSceneOptions(app, &o->scene);
+    AddRenderSettings(app, &o->render);
     app.add_option("-o,--output", o->output,
                    "Image to write, .exr or .png; both are written [the scene's file name]")
         ->check([](const std::string& file) {
@@ -71,70 +61,23 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N")
         ->excludes(stop);
-    app.add_option("--cap", o->cap, "Samples per pixel that no block exceeds [10000]")
-        ->check(CLI::Range(1, 1 << 24))
-        ->type_name("N");
-    app.add_option("--pass", o->schedule.passLength, "Samples per pixel between two decisions")
-        ->check(CLI::Range(1, 1 << 20))
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--block", o->schedule.blockSize, "Pixels a side of the blocks")
-        ->check(CLI::Range(1, 1 << 16))
-        ->type_name("N")
-        ->capture_default_str();
-
-    const std::map<std::string, SamplerKind> samplers = {{"random", SamplerKind::Random},
-                                                         {"sobol", SamplerKind::Sobol}};
-    app.add_option_function<std::string>(
-           "--sampler", [o, samplers](const std::string& s) { o->sampler = samplers.at(s); },
-           "Where sample positions come from [as the scene says]")
-        ->check(CLI::IsMember(samplers))
-        ->type_name("random|sobol");
-    const std::map<std::string, Estimator> estimators = {{"combined", Estimator::Combined},
-                                                         {"pbrt-v3", Estimator::PbrtV3}};
-    app.add_option_function<std::string>(
-           "--estimator",
-           [o, estimators](const std::string& s) { o->estimator = estimators.at(s); },
-           "combined (default): least noise; pbrt-v3: the same noise as pbrt-v3's path")
-        ->check(CLI::IsMember(estimators))
-        ->type_name("combined|pbrt-v3");
-    app.add_option("--seed", o->seed, "Another seed gives other, equally good, samples")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--report", o->report, "Write what happened to each block as JSON")
-        ->type_name("R.json");
-    AddCheckpointOptions(app, &o->checkpoint);
-    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the files written");
-    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    app.add_option("--report", o->report,
+                   "Write what happened to each block: .html to look at, else JSON")
+        ->type_name("R.html|R.json");
+    AddCheckpointOptions(app, &o->render.checkpoint);
     app.footer(kFooter);
 }
 
-// Returns N of "fixed:N", 0 for other rules.
-int FixedSpp(const std::string& rule) {
-    int spp = 0;
-    if (rule.starts_with("fixed:"))
-        std::from_chars(rule.data() + 6, rule.data() + rule.size(), spp);
-    return spp;
-}
-
-// Makes the rule's factory and lets the schedule suit it.
-CriterionFactory MakeFactory(const Options& options, const PixelRect& region,
-                             ScheduleOptions* schedule) try {
+// Reads the rule and lets the schedule suit it.
+CriterionFactory ReadRule(const Options& options, const PixelRect& region,
+                          RenderSettings* settings) {
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
-    if (options.cap) schedule->cap = *options.cap;
+    if (settings->cap) settings->schedule.cap = *settings->cap;
     if (const int spp = FixedSpp(options.rule))
-        schedule->cap = options.cap ? std::min(*options.cap, spp) : spp;
-
-    const RuleContext context{.passSpp = std::min(schedule->passLength, schedule->cap),
-                              .blockCount = int(MakeBlocks(region, *schedule).size()),
-                              .sceneName = SceneName(options.scene.file),
-                              .defaultModel = ""};
-    const CriterionFactory factory = MakeCriterionFactory(options.rule, context);
-    schedule->smallestSide = factory.smallestSide;
+        settings->schedule.cap = settings->cap ? std::min(*settings->cap, spp) : spp;
+    const CriterionFactory factory = ReadRule("--stop", options.rule, *settings, region);
+    settings->schedule.smallestSide = factory.smallestSide;
     return factory;
-} catch (const std::logic_error& e) {
-    throw Error(std::string("--stop: ") + e.what());
 }
 
 // Warns of blocks that no criterion will ever stop.
@@ -144,15 +87,6 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
             warnings.Add({}, fmt::format("block of less than {} pixels a side goes on to the cap, "
                                          "as it is too small to be judged",
                                          schedule.smallestSide));
-}
-
-ProgressPrinter MakePrinter(const Options& options) {
-    const bool adaptive = FixedSpp(options.rule) == 0;
-    const ProgressStyle style = options.jsonProgress    ? ProgressStyle::Json
-                                : options.quiet         ? ProgressStyle::Silent
-                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
-                                                        : ProgressStyle::Plain;
-    return ProgressPrinter(style, adaptive, stderr);
 }
 
 void PrintSummary(const RenderResult& result, const Film& film, int cap) {
@@ -177,68 +111,72 @@ void PrintFiles(const RenderFiles& files, const RenderResult& result) {
     if (!files.report.empty()) fmt::print("{}\n", files.report);
 }
 
+bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
+
+// Makes the criteria; for a page, they also keep the curves of each block.
+std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
+    const CriterionFactory& factory, bool withCurves, std::vector<BlockHistory>* histories) {
+    if (!withCurves) return factory.make;
+    return [=, &factory](const BlockInfo& info) {
+        std::vector<std::unique_ptr<Criterion>> rules;
+        rules.push_back(factory.make(info));
+        return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
+                                               &(*histories)[size_t(info.index)]);
+    };
+}
+
 ExitCode RunRender(Options options) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
+    RenderSettings& settings = options.render;
 
     // Check all that can be wrong before the work begins.
     Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(options.scene, warnings);
+    const Description description = LoadDescription(settings.scene, warnings);
     Warnings unheard;  // Compile() will give them again
     const FilmSettings filmSettings =
-        MakeFilmSettings(description, options.scene.compile.film, unheard);
+        MakeFilmSettings(description, settings.scene.compile.film, unheard);
     const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
     CheckFilm(region);
-    const CriterionFactory factory = MakeFactory(options, region, &options.schedule);
-    CheckBlocks(region, options.schedule, warnings);
+    const CriterionFactory factory = ReadRule(options, region, &settings);
+    CheckBlocks(region, settings.schedule, warnings);
     const RenderFiles files =
         NameFiles(options.output.empty() ? filmSettings.filename : options.output, options.report);
-    CheckWritable(files, options.scene.file);
-    CheckCheckpoint(options.checkpoint);
+    CheckWritable(files, settings.scene.file);
+    CheckCheckpoint(settings.checkpoint);
 
     const std::unique_ptr<const Scene> scene =
-        Compile(description, options.scene.compile, warnings);
+        Compile(description, settings.scene.compile, warnings);
     warnings.Summarize();
 
-    const Provenance provenance{.version = LULL_VERSION,
-                                .scene = options.scene.file,
-                                .seed = options.seed,
-                                .sampler = options.sampler.value_or(scene->sampler),
-                                .estimator = options.estimator,
-                                .criterion = factory.rule,
-                                .checksum = factory.checksum,
-                                .schedule = options.schedule,
-                                .maxDepth = scene->maxDepth,
-                                .threads = options.scene.compile.threads,
-                                .substitute = options.scene.compile.substitute,
-                                .resolution = filmSettings.resolution,
-                                .crop = region};
+    Provenance provenance = MakeProvenance(settings, *scene, filmSettings);
+    provenance.criterion = factory.rule;
+    provenance.checksum = factory.checksum;
+    const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
-    if (!options.checkpoint.file.empty()) identity = IdentityOf(provenance, SceneHash(description));
+    if (!settings.checkpoint.file.empty()) {
+        identity = IdentityOf(provenance, SceneHash(description));
+        identity["curves"] = withCurves ? "yes" : "no";
+    }
     Film film(region);
-    const std::optional<RenderState> interrupted = Resume(options.checkpoint, identity, &film);
+    const std::optional<RenderState> interrupted = Resume(settings.checkpoint, identity, &film);
 
-    ProgressPrinter printer = MakePrinter(options);
+    std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
+    ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
     CatchInterrupts();
-    RenderOptions renderOptions;
-    renderOptions.schedule = options.schedule;
-    renderOptions.sampler = provenance.sampler;
-    renderOptions.seed = options.seed;
-    renderOptions.threads = options.scene.compile.threads;
-    renderOptions.makeCriterion = factory.make;
-    renderOptions.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
-    renderOptions.isCancelled = Interrupted;
-    WriteCheckpoints(options.checkpoint, identity, film, &renderOptions);
-    const RenderResult result = Render(SamplesOf(*scene, options.estimator), renderOptions, &film,
+    RenderOptions renderOptions = MakeRenderOptions(settings, provenance.sampler, &printer);
+    renderOptions.makeCriterion = MakeCriteria(factory, withCurves, &histories);
+    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions);
+    const RenderResult result = Render(SamplesOf(*scene, settings.estimator), renderOptions, &film,
                                        interrupted ? &*interrupted : nullptr);
     printer.Finish(result.progress);
 
-    if (!options.quiet) PrintSummary(result, film, options.schedule.cap);
+    if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 
-    WriteFiles(files, *scene, film, provenance, result, warnings);
+    WriteFiles(files, *scene, film, provenance, result, warnings, histories);
     PrintFiles(files, result);
-    if (!result.cancelled && !options.checkpoint.file.empty())
-        std::filesystem::remove(options.checkpoint.file);
+    if (!result.cancelled && !settings.checkpoint.file.empty())
+        std::filesystem::remove(settings.checkpoint.file);
     return result.cancelled ? kInterrupted : kDone;
 }
 

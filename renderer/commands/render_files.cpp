@@ -6,6 +6,7 @@
 #include "renderer/output/file_io.h"
 #include "renderer/output/image_io.h"
 #include "renderer/output/spp_map.h"
+#include "renderer/pages/html_page.h"
 #include "stopping/thresholds.h"
 
 namespace lull {
@@ -14,23 +15,23 @@ namespace {
 
 using std::filesystem::path;
 
-ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provenance,
-                 const RenderResult& result) {
-    const PixelRect& region = film.Region();
+// Makes the image of a region of the film: `mean` are R, G, B a pixel, `spp` the samples of each.
+ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<float>& mean,
+                 std::vector<float> spp, const Provenance& provenance, double seconds) {
     ExrImage exr;
     exr.width = region.Width();
     exr.height = region.Height();
     exr.origin = region.min;
     exr.displaySize = scene.film.resolution;
-
-    const std::vector<float> mean = film.MeanImage();
     for (int c = 0; c < 3; ++c) {
         ExrChannel channel{.name = std::string(1, "RGB"[c]), .values = {}};
         channel.values.reserve(mean.size() / 3);
         for (size_t i = c; i < mean.size(); i += 3) channel.values.push_back(mean[i]);
         exr.channels.push_back(std::move(channel));
     }
-    exr.channels.push_back({.name = "spp", .values = film.SppImage()});
+    int64_t samples = 0;
+    for (const float n : spp) samples += int64_t(n);
+    exr.channels.push_back({.name = "spp", .values = std::move(spp)});
 
     // Counts go in as text, since an EXR's integers end at 2^31.
     exr.attributes = {{"renderer", "lull"},
@@ -38,23 +39,27 @@ ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provena
                       {"seed", std::to_string(provenance.seed)},
                       {"sampler", NameOf(provenance.sampler)},
                       {"estimator", NameOf(provenance.estimator)},
-                      {"samples", std::to_string(film.SampleCount())},
+                      {"samples", std::to_string(samples)},
                       {"criterion", provenance.criterion},
-                      {"seconds", float(result.progress.seconds)},
-                      {"rejectedSamples", std::to_string(film.RejectedCount())},
+                      {"seconds", float(seconds)},
                       {"worldToCamera", WorldToCamera(scene.camera)},
                       {"worldToNDC", WorldToNdc(scene.camera, scene.film)}};
     if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
+    return exr;
+}
+
+ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provenance,
+                 const RenderResult& result) {
+    ExrImage exr = MakeExr(scene, film.Region(), film.MeanImage(), film.SppImage(), provenance,
+                           result.progress.seconds);
+    exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
     return exr;
 }
 
-void WriteMeanPng(const std::string& file, const Film& film) {
-    std::vector<Rgb> pixels;
-    pixels.reserve(film.Pixels().size());
-    for (const FilmPixel& pixel : film.Pixels()) pixels.push_back(pixel.Mean());
-    WritePng(file, pixels, film.Region().Width(), film.Region().Height());
+void WriteImagePng(const std::string& file, const RgbImage& image) {
+    WritePng(file, PixelsOf(image), image.width, image.height);
 }
 
 void WriteSppMap(const std::string& file, const Film& film, const ScheduleOptions& schedule,
@@ -112,16 +117,33 @@ std::string SceneName(const std::string& file) {
 }
 
 void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
-                const Provenance& provenance, const RenderResult& result,
-                const Warnings& warnings) {
+                const Provenance& provenance, const RenderResult& result, const Warnings& warnings,
+                const std::vector<BlockHistory>& histories) {
     WriteExr(files.exr, MakeExr(scene, film, provenance, result));
-    WriteMeanPng(files.png, film);
+    WriteImagePng(files.png, ImageOf(film));
     WriteSppMap(files.sppMap, film, provenance.schedule, result);
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
     if (!result.cancelled) WriteThresholdsRow(files.thresholds, provenance, result);
-    if (!files.report.empty())
+    if (files.report.ends_with(".html"))
+        WriteFileAtomically(files.report,
+                            MakeRenderPage(provenance, result, film, histories, warnings.Counts()));
+    else if (!files.report.empty())
         WriteFileAtomically(
             files.report, MakeReport(provenance, result, film.RejectedCount(), warnings.Counts()));
+}
+
+void WriteImage(const std::string& exr, const std::string& png, const Scene& scene,
+                const RgbImage& image, const std::vector<Block>& blocks,
+                const std::vector<int>& spp, const Provenance& provenance, double seconds) {
+    const PixelRect& region = provenance.crop;
+    std::vector<float> sppImage(size_t(region.Area()));
+    for (size_t i = 0; i < blocks.size(); ++i)
+        for (int y = blocks[i].pixels.min.y(); y < blocks[i].pixels.max.y(); ++y)
+            for (int x = blocks[i].pixels.min.x(); x < blocks[i].pixels.max.x(); ++x)
+                sppImage[size_t(y - region.min.y()) * size_t(region.Width()) +
+                         size_t(x - region.min.x())] = float(spp[i]);
+    WriteExr(exr, MakeExr(scene, region, image.values, std::move(sppImage), provenance, seconds));
+    WriteImagePng(png, image);
 }
 
 }  // namespace lull

@@ -1,6 +1,8 @@
 // Writes the files of a render.
 #pragma once
 
+#include "renderer/compare/block_observer.h"
+#include "renderer/compare/image_error.h"
 #include "renderer/report.h"
 
 namespace lull {
@@ -24,8 +26,14 @@ void CheckWritable(const RenderFiles&, const std::string& scene);
 // the file is called scene.pbrt. Not empty, without what the format has no room for.
 std::string SceneName(const std::string& file);
 
-// Writes all files, each whole or not at all. Throws Error.
+// Writes all files, each whole or not at all; a report whose name ends in .html as a page, which
+// shows the curves in `histories`. Throws Error.
 void WriteFiles(const RenderFiles&, const Scene&, const Film&, const Provenance&,
-                const RenderResult&, const Warnings&);
+                const RenderResult&, const Warnings&, const std::vector<BlockHistory>& histories);
+
+// Writes an image as EXR and PNG, as of a render whose block i, of those in `blocks`, took spp[i].
+void WriteImage(const std::string& exr, const std::string& png, const Scene&, const RgbImage&,
+                const std::vector<Block>& blocks, const std::vector<int>& spp, const Provenance&,
+                double seconds);
 
 }  // namespace lull

@@ -74,10 +74,11 @@ std::vector<T> ReadTexels(const std::string& path, OIIO::ImageInput* input,
     return texels;
 }
 
-// Encodes in memory, so that every error of the disk meets the one place that handles them.
+// Encodes in memory, so that every error of the disk meets the one place that handles them. The
+// path is for messages.
 template <typename Write>
-void EncodeAndWrite(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
-                    const Write& write) {
+std::vector<std::byte> Encode(const std::string& path, const char* format,
+                              const OIIO::ImageSpec& spec, const Write& write) {
     OIIO::Filesystem::IOVecOutput bytes;
     auto output = OIIO::ImageOutput::create(format);
     if (!output) FailToWrite(path, OIIO::geterror());
@@ -85,7 +86,29 @@ void EncodeAndWrite(const std::string& path, const char* format, const OIIO::Ima
         !output->close())
         FailToWrite(path, output->geterror());
     output.reset();
-    WriteFileAtomically(path, std::as_bytes(std::span(bytes.buffer())));
+    const auto encoded = std::as_bytes(std::span(bytes.buffer()));
+    return {encoded.begin(), encoded.end()};
+}
+
+uint8_t Encode8Bit(float linear) {
+    const float v = 255 * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
+    return uint8_t(std::min(v, 255.f));
+}
+
+std::vector<std::byte> EncodePng(const std::string& path, std::span<const Rgb> pixels, int width,
+                                 int height) {
+    std::vector<uint8_t> bytes;
+    bytes.reserve(pixels.size() * 3);
+    for (const Rgb& p : pixels)
+        for (int c = 0; c < 3; ++c) bytes.push_back(Encode8Bit(p[c]));
+    if (bytes.size() != size_t(width) * size_t(height) * 3)
+        FailToWrite(path, "the pixels do not fit the size");
+
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return Encode(path, "png", spec, [&](OIIO::ImageOutput* output) {
+        return output->write_image(OIIO::TypeDesc::UINT8, bytes.data());
+    });
 }
 
 void SetAttribute(OIIO::ImageSpec* spec, const std::string& name, const ExrAttribute& value) {
@@ -119,11 +142,6 @@ std::map<std::string, ExrAttribute> GetAttributes(const OIIO::ImageSpec& spec) {
         }
     }
     return attributes;
-}
-
-uint8_t Encode8Bit(float linear) {
-    const float v = 255 * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
-    return uint8_t(std::min(v, 255.f));
 }
 
 }  // namespace
@@ -176,9 +194,9 @@ void WriteExr(const std::string& path, const ExrImage& image) {
     for (size_t c = 0; c < count; ++c)
         for (size_t i = 0; i < pixels; ++i)
             interleaved[i * count + c] = image.channels[c].values[i];
-    EncodeAndWrite(path, "openexr", spec, [&](OIIO::ImageOutput* output) {
-        return output->write_image(OIIO::TypeDesc::FLOAT, interleaved.data());
-    });
+    WriteFileAtomically(path, Encode(path, "openexr", spec, [&](OIIO::ImageOutput* output) {
+                            return output->write_image(OIIO::TypeDesc::FLOAT, interleaved.data());
+                        }));
 }
 
 ExrImage ReadExr(const std::string& path) {
@@ -206,19 +224,12 @@ ExrImage ReadExr(const std::string& path) {
     return image;
 }
 
-void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {
-    std::vector<uint8_t> bytes;
-    bytes.reserve(pixels.size() * 3);
-    for (const Rgb& p : pixels)
-        for (int c = 0; c < 3; ++c) bytes.push_back(Encode8Bit(p[c]));
-    if (bytes.size() != size_t(width) * size_t(height) * 3)
-        FailToWrite(path, "the pixels do not fit the size");
+std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height) {
+    return EncodePng("picture in memory", pixels, width, height);
+}
 
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    EncodeAndWrite(path, "png", spec, [&](OIIO::ImageOutput* output) {
-        return output->write_image(OIIO::TypeDesc::UINT8, bytes.data());
-    });
+void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {
+    WriteFileAtomically(path, EncodePng(path, pixels, width, height));
 }
 
 }  // namespace lull

@@ -49,8 +49,11 @@ void WriteExr(const std::string& path, const ExrImage& image);
 // Error as ReadImage does.
 ExrImage ReadExr(const std::string& path);
 
-// Writes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,
-// rounded, clamped to [0, 255]; NaN is black. Whole or not at all; throws Error.
+// Encodes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,
+// rounded, clamped to [0, 255]; NaN is black. Throws Error.
+std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height);
+
+// Writes such a PNG, whole or not at all; throws Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
 
 }  // namespace lull

@@ -1,0 +1,15 @@
+# lull_embed(OUTPUT FILE...): writes a source file that holds the files, by name, as texts; see
+# renderer/pages/embedded.h. Done when CMake configures, which a change of any of the files repeats.
+function(lull_embed output)
+  set(source "// Made by CMake from the files it names.\n#include \"renderer/pages/embedded.h\"\n\n")
+  string(APPEND source "std::string_view lull::EmbeddedFile(std::string_view name) {\n")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    get_filename_component(name ${file} NAME)
+    file(READ ${file} text)
+    string(APPEND source "    if (name == \"${name}\")\n        return R\"embedded(${text})embedded\";\n")
+  endforeach()
+  string(APPEND source "    return {};\n}\n")
+  file(WRITE ${output}.new "${source}")
+  file(COPY_FILE ${output}.new ${output} ONLY_IF_DIFFERENT)
+endfunction()

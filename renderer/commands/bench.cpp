@@ -1,0 +1,262 @@
+// `lull bench`: error against seconds and samples.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+
+#include "renderer/bench.h"
+#include "renderer/commands/command.h"
+#include "renderer/commands/compared_files.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/render_files.h"
+#include "renderer/commands/render_settings.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/output/file_io.h"
+#include "renderer/pages/bench_page.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    RenderSettings render;
+    std::vector<std::string> samplers = {"sobol", "random"};
+    std::vector<std::string> rules;  // beside those that are always measured
+    std::string reference, external, output, report;
+};
+
+constexpr const char* kFooter =
+    R"(One render to the cap with each sampler gives the images of all fixed numbers of samples and of all
+stopping rules over a range of their settings, and what each would have cost: the measured seconds
+of processors, divided by the number of threads. The errors are against --reference, or else
+against the image of the first sampler at the cap; that one has the samples of its sampler's other
+images in it, so that their error is understated near the cap.
+
+Images of other renderers join in from a CSV with lines "name,seconds,file.exr".
+
+Interrupted, it leaves OUT.SAMPLER.checkpoint and goes on from there the next time.
+
+Files:
+  OUT.csv   a line a point: rule, setting, sampler, spp, seconds, errors
+
+Examples:
+  lull bench scene.pbrt --resolution 400x400 --block 100 --cap 2000 -o room --report room.html
+  lull bench scene.pbrt --rule learned:model.h5 --external others.csv -o room
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+void AddOptions(CLI::App& app, Options* o) {
+    AddRenderSettings(app, &o->render, false);
+    app.add_option("--samplers", o->samplers, "Where sample positions come from [sobol,random]")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"random", "sobol"}))
+        ->type_name("S,S");
+    app.add_option("--rule", o->rules, "Another stopping rule to measure; can be given again")
+        ->take_all()
+        ->type_name("RULE");
+    app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
+    app.add_option("--external", o->external, "Images of other renderers: name,seconds,file.exr")
+        ->type_name("E.csv");
+    app.add_option("-o,--output", o->output, "Beginning of the names of the files [the scene's]")
+        ->type_name("OUT");
+    app.add_option("--report", o->report, "Write a page to look at")
+        ->check([](const std::string& file) {
+            return file.ends_with(".html") ? "" : file + " does not end in .html";
+        })
+        ->type_name("R.html");
+    app.add_option("--checkpoint-interval", o->render.checkpoint.interval,
+                   "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    app.footer(kFooter);
+}
+
+std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& region) {
+    const ScheduleOptions& schedule = options.render.schedule;
+    std::vector<std::string> texts = BenchRules(schedule.passLength, schedule.cap);
+    texts.insert(texts.end(), options.rules.begin(), options.rules.end());
+    std::vector<ObservedRule> rules;
+    for (const std::string& text : texts) {
+        const CriterionFactory factory = ReadRule("--rule", text, options.render, region);
+        rules.push_back({text, factory.rule, factory.smallestSide, factory.make});
+    }
+    return rules;
+}
+
+// Holds all that the renders of both samplers have in common.
+struct Job {
+    std::unique_ptr<const Scene> scene;
+    std::string sceneHash;
+    Provenance provenance;
+    std::vector<ObservedRule> rules;
+    std::vector<ComparedFile> external;
+    std::vector<double> externalSeconds;
+    std::optional<RgbImage> reference;  // set by the first render, unless it was given
+};
+
+RgbImage ReadPicture(const std::string& file, const PixelRect& region, ComparedFile* read) {
+    *read = ReadComparedFile(file, file);
+    const RgbImage& image = read->image.image;
+    if (image.width != region.Width() || image.height != region.Height())
+        throw Error(fmt::format("{}: has {}x{} pixels, not {}x{}", file, image.width, image.height,
+                                region.Width(), region.Height()));
+    return image;
+}
+
+Job Prepare(const Options& options) {
+    const RenderSettings& settings = options.render;
+    Warnings warnings = MakePrintedWarnings();
+    const Description description = LoadDescription(settings.scene, warnings);
+    Warnings unheard;  // Compile() will give them again
+    const FilmSettings film = MakeFilmSettings(description, settings.scene.compile.film, unheard);
+    const PixelRect region{film.cropMin, film.cropMax};
+    CheckFilm(region);
+    Job job;
+    job.rules = MakeRules(options, region);
+    ComparedFile file;
+    if (!options.reference.empty()) job.reference = ReadPicture(options.reference, region, &file);
+    if (!options.external.empty())
+        for (const ExternalImage& external : ReadExternalImages(options.external)) {
+            ReadPicture(external.file, region, &file);
+            file.image.name = external.name;
+            job.external.push_back(file);
+            job.externalSeconds.push_back(external.seconds);
+        }
+    CheckWritable(options.output + ".csv");
+    if (!options.report.empty()) CheckWritable(options.report);
+    job.scene = Compile(description, settings.scene.compile, warnings);
+    warnings.Summarize();
+    job.sceneHash = SceneHash(description);
+    job.provenance = MakeProvenance(settings, *job.scene, film);
+    return job;
+}
+
+std::string CheckpointName(const Options& options, SamplerKind sampler) {
+    return fmt::format("{}.{}.checkpoint", options.output, NameOf(sampler));
+}
+
+// Says how far the comparisons are, at most once a second.
+class PointCounter {
+  public:
+    PointCounter(size_t count, bool quiet) : count(count), quiet(quiet) {}
+    void Add() {
+        using namespace std::chrono;
+        const double seconds = duration<double>(steady_clock::now() - start).count();
+        ++done;
+        if (quiet || (seconds < next && done < count)) return;
+        next = seconds + 10;
+        fmt::print(stderr, "lull: compared {} of {} images, {} left\n", done, count,
+                   FormatDuration(seconds / double(done) * double(count - done)));
+    }
+
+  private:
+    size_t count, done = 0;
+    bool quiet;
+    double next = 10;
+    const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+// Renders with one sampler, or takes what is left of an earlier run, and adds its points. Returns
+// false if it was interrupted.
+bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
+                  std::vector<BenchPoint>* points) {
+    const RenderSettings& settings = options.render;
+    Provenance provenance = job->provenance;
+    provenance.sampler = sampler;
+    for (const ObservedRule& rule : job->rules) provenance.criterion += rule.text + " ";
+    RenderIdentity identity = IdentityOf(provenance, job->sceneHash);
+    const CheckpointOptions checkpoint{
+        .file = CheckpointName(options, sampler),
+        .interval = settings.checkpoint.interval,
+        .resume = std::filesystem::exists(CheckpointName(options, sampler))};
+
+    Film film(provenance.crop);
+    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &film);
+    std::vector<BlockHistory> histories(MakeBlocks(provenance.crop, settings.schedule).size());
+    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(sampler));
+    ProgressPrinter printer = MakePrinter(settings, false);
+    RenderOptions render = MakeRenderOptions(settings, sampler, &printer);
+    render.makeCriterion = MakeObservers(job->rules, provenance.crop, settings.schedule,
+                                         {.snapshots = true, .goesOn = true}, &histories);
+    render.checkpointAtEnd = true;
+    WriteCheckpoints(checkpoint, identity, film, &render);
+    const SampleSource source = SamplesOf(*job->scene, settings.estimator);
+    const RenderResult result =
+        Render(source, render, &film, interrupted ? &*interrupted : nullptr);
+    printer.Finish(result.progress);
+    if (result.cancelled) return false;
+
+    const ObservedRender observed{source, render, film, result, histories};
+    const bool makesReference = !job->reference;
+    if (makesReference) job->reference = TakeWholeImage(observed).image;
+    PointCounter counter(job->rules.size(), settings.quiet);
+    for (BenchPoint point : MeasurePoints(observed, job->rules, *job->reference, result.threads,
+                                          [&] { counter.Add(); })) {
+        point.sampler = NameOf(sampler);
+        point.sharesReference = makesReference;
+        points->push_back(std::move(point));
+    }
+    return true;
+}
+
+void AddExternalPoints(const Job& job, std::vector<BenchPoint>* points) {
+    for (size_t i = 0; i < job.external.size(); ++i) {
+        BenchPoint& point = points->emplace_back();
+        point.rule = job.external[i].image.name;
+        point.seconds = job.externalSeconds[i];
+        point.figures = Average(CompareImages(job.external[i].image.image, *job.reference));
+    }
+}
+
+ExitCode RunBench(Options options) {
+    RenderSettings& settings = options.render;
+    settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
+    if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
+    Job job = Prepare(options);
+    CatchInterrupts();
+    std::vector<BenchPoint> points;
+    for (const std::string& name : options.samplers) {
+        const SamplerKind sampler = name == "random" ? SamplerKind::Random : SamplerKind::Sobol;
+        if (BenchSampler(options, sampler, &job, &points)) continue;
+        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
+                   CheckpointName(options, sampler));
+        return kInterrupted;
+    }
+    AddExternalPoints(job, &points);
+
+    std::vector<std::string> notes;
+    if (options.reference.empty())
+        notes.push_back(fmt::format(
+            "The reference is the image of {} at the cap: it holds the samples of that sampler's "
+            "other images, so that their errors are understated near the cap.",
+            options.samplers.front()));
+    notes.push_back(
+        "Seconds are the measured seconds of processors, of the samples and of the rule, divided "
+        "by "
+        "the number of threads.");
+    WriteFileAtomically(options.output + ".csv", BenchCsv(points));
+    fmt::print("{}.csv\n", options.output);
+    if (!options.report.empty()) {
+        WriteFileAtomically(options.report,
+                            MakeBenchPage(SceneName(settings.scene.file), job.provenance, points,
+                                          options.samplers, *job.reference, notes));
+        fmt::print("{}\n", options.report);
+    }
+    for (const std::string& name : options.samplers)
+        std::filesystem::remove(
+            CheckpointName(options, name == "random" ? SamplerKind::Random : SamplerKind::Sobol));
+    return kDone;
+}
+
+}  // namespace
+
+void AddBenchCommand(CLI::App& app, Command* command) {
+    CLI::App* bench = app.add_subcommand(
+        "bench", "Measures error against seconds and samples: fixed numbers, and stopping rules.");
+    auto options = std::make_shared<Options>();
+    AddOptions(*bench, options.get());
+    bench->callback([=] { *command = [=] { return RunBench(*options); }; });
+}
+
+}  // namespace lull

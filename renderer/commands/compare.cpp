@@ -1,0 +1,280 @@
+// `lull compare`: the automatic image, the image at human thresholds and the reference.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <sstream>
+
+#include "renderer/commands/command.h"
+#include "renderer/commands/compare_options.h"
+#include "renderer/commands/compared_files.h"
+#include "renderer/commands/comparison_table.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/render_files.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/output/file_io.h"
+#include "stopping/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+bool IsImage(const std::string& file) { return file.ends_with(".exr"); }
+
+std::vector<PixelRect> RectsOf(const std::vector<Block>& blocks) {
+    std::vector<PixelRect> rects;
+    for (const Block& block : blocks) rects.push_back(block.pixels);
+    return rects;
+}
+
+// Writes figures and page, and prints the table and the names of the files, `images` first.
+void WriteReport(const CompareOptions& options, const ComparisonReport& report,
+                 const std::vector<std::string>& images) {
+    const std::string json = options.output + ".compare.json";
+    WriteFileAtomically(json, Dump(ComparisonJson(report)));
+    if (!options.report.empty()) WriteFileAtomically(options.report, MakeComparisonPage(report));
+    fmt::print("{}", ComparisonTable(report));
+    for (const std::string& file : images) fmt::print("{}\n", file);
+    fmt::print("{}\n", json);
+    if (!options.report.empty()) fmt::print("{}\n", options.report);
+}
+
+void CheckOutputs(const CompareOptions& options) {
+    CheckWritable(options.output + ".compare.json");
+    if (!options.report.empty()) CheckWritable(options.report);
+}
+
+// Compares images from files.
+ExitCode CompareFiles(CompareOptions options) {
+    if (options.output.empty()) options.output = "lull";
+    if (options.reference.empty() || (options.automatic.empty() && options.human.empty()))
+        throw Error(
+            "compare: a scene is missing, or images: --reference and --automatic or --human");
+    if (!options.human.empty() && !IsImage(options.human))
+        throw Error("--human " + options.human + ": thresholds need a scene; without one, an .exr");
+    CheckOutputs(options);
+
+    std::vector<ComparedFile> files;
+    if (!options.automatic.empty())
+        files.push_back(ReadComparedFile(options.automatic, "automatic"));
+    if (!options.human.empty()) files.push_back(ReadComparedFile(options.human, "human"));
+    files.push_back(ReadComparedFile(options.reference, "reference"));
+
+    ComparisonReport report;
+    report.title = options.reference;
+    Comparison& comparison = report.comparison;
+    comparison.region = files.back().region;
+    comparison.blocks = RectsOf(MakeBlocks(comparison.region, options.render.schedule));
+    comparison.hasReference = true;
+    for (ComparedFile& file : files) {
+        if (!(file.region == comparison.region))
+            throw Error(fmt::format("{}: shows another part of the image than the {} one",
+                                    options.reference, file.image.name));
+        SetCosts(comparison.blocks, &file);
+        comparison.images.push_back(std::move(file.image));
+    }
+    for (const BlockCost& cost : comparison.images.back().costs)
+        comparison.cap = std::max(comparison.cap, cost.spp);
+    Measure(&comparison);
+    WriteReport(options, report, {});
+    return kDone;
+}
+
+// Holds a scene that is ready, and the rules to be compared on it.
+struct Job {
+    std::unique_ptr<const Scene> scene;
+    Provenance provenance;
+    std::vector<ObservedRule> rules;
+    RenderIdentity identity;
+    std::map<std::string, int> warnings;
+};
+
+ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) {
+    return {name, factory.rule, factory.smallestSide, factory.make};
+}
+
+// Loads the scene and checks all that can be wrong before the work begins.
+Job Prepare(const CompareOptions& options) {
+    const RenderSettings& settings = options.render;
+    Warnings warnings = MakePrintedWarnings();
+    const Description description = LoadDescription(settings.scene, warnings);
+    Warnings unheard;  // Compile() will give them again
+    const FilmSettings film = MakeFilmSettings(description, settings.scene.compile.film, unheard);
+    const PixelRect region{film.cropMin, film.cropMax};
+    CheckFilm(region);
+
+    Job job;
+    const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, region);
+    job.rules.push_back(MakeRule("automatic", automatic));
+    std::string humanChecksum = "none";
+    if (!options.human.empty() && !IsImage(options.human)) {
+        const CriterionFactory human =
+            ReadRule("--human", "thresholds:" + options.human, settings, region);
+        job.rules.push_back(MakeRule("human", human));
+        humanChecksum = human.checksum;
+    }
+    CheckOutputs(options);
+    CheckCheckpoint(settings.checkpoint);
+    job.scene = Compile(description, settings.scene.compile, warnings);
+    warnings.Summarize();
+    job.warnings = warnings.Counts();
+    job.provenance = MakeProvenance(settings, *job.scene, film);
+    job.provenance.criterion = automatic.rule;
+    job.provenance.checksum = automatic.checksum;
+    job.identity = IdentityOf(job.provenance, SceneHash(description));
+    job.identity["human"] = humanChecksum;
+    job.identity["snapshots"] = options.snapshots ? "yes" : "no";
+    job.identity["curves"] = options.report.empty() ? "no" : "yes";
+    return job;
+}
+
+// Renders the automatic image by itself.
+Verification Verify(const Job& job, const RenderSettings& settings, int threads,
+                    const ComparedImage& expected) {
+    ProgressPrinter printer = MakePrinter(settings, true);
+    RenderOptions options = MakeRenderOptions(settings, job.provenance.sampler, &printer);
+    options.schedule.smallestSide = job.rules.front().smallestSide;
+    options.threads = threads;
+    options.makeCriterion = job.rules.front().make;
+    Film film(job.provenance.crop);
+    if (!settings.quiet) fmt::print(stderr, "lull: the automatic image by itself\n");
+    const RenderResult result = Render(SamplesOf(*job.scene, settings.estimator), options, &film);
+    printer.Finish(result.progress);
+
+    Verification v{.threads = result.threads, .wallSeconds = result.progress.seconds};
+    for (const BlockResult& block : result.blocks) {
+        v.seconds += block.seconds;
+        v.ruleSeconds += block.criterionSeconds;
+    }
+    v.samePixels = film.MeanImage() == expected.image.values;
+    return v;
+}
+
+std::vector<std::string> WriteImages(const CompareOptions& options, const Job& job,
+                                     const Comparison& comparison) {
+    std::vector<std::string> names;
+    const std::vector<Block> blocks = MakeBlocks(comparison.region, options.render.schedule);
+    for (const ComparedImage& image : comparison.images) {
+        if (image.wallSeconds) continue;  // is a file already
+        const std::string base = options.output + "." + image.name;
+        std::vector<int> spp;
+        for (const BlockCost& cost : image.costs) spp.push_back(cost.spp);
+        Provenance provenance = job.provenance;
+        provenance.criterion =
+            image.rule.empty() ? fmt::format("fixed:{}", comparison.cap) : image.rule;
+        if (image.name != "automatic") provenance.checksum.clear();
+        WriteImage(base + ".exr", base + ".png", *job.scene, image.image, blocks, spp, provenance,
+                   SumCosts(comparison, image).seconds);
+        names.insert(names.end(), {base + ".exr", base + ".png"});
+    }
+    ThresholdsRow row{SceneName(options.render.scene.file), {}};
+    for (const BlockCost& cost : comparison.images.front().costs) row.spp.push_back(cost.spp);
+    std::ostringstream text;
+    WriteThresholds(text, {row});
+    names.push_back(options.output + ".thresholds.csv");
+    WriteFileAtomically(names.back(), text.str());
+    return names;
+}
+
+ComparedImage ReadBeside(const std::string& path, const std::string& name,
+                         const Comparison& comparison) {
+    ComparedFile file = ReadComparedFile(path, name);
+    if (!(file.region == comparison.region))
+        throw Error(path + ": shows another part of the image than the scene would");
+    SetCosts(comparison.blocks, &file);
+    if (!file.image.wallSeconds) file.image.wallSeconds = 0;
+    return std::move(file.image);
+}
+
+ExitCode CompareRenders(CompareOptions options) {
+    RenderSettings& settings = options.render;
+    settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
+    if (options.output.empty()) options.output = SceneName(settings.scene.file);
+    if (!options.snapshots && options.reference.empty())
+        throw Error(
+            "compare: a reference is missing: --snapshots renders one, to the cap; "
+            "--reference R.exr takes one rendered before");
+    const Job job = Prepare(options);
+    const PixelRect& region = job.provenance.crop;
+
+    ComparisonReport report;
+    Comparison& comparison = report.comparison;
+    comparison.region = region;
+    comparison.blocks = RectsOf(MakeBlocks(region, settings.schedule));
+    comparison.cap = settings.schedule.cap;
+    comparison.hasReference = true;
+    std::vector<ComparedImage> fromFiles;
+    if (IsImage(options.human)) fromFiles.push_back(ReadBeside(options.human, "human", comparison));
+    if (!options.reference.empty())
+        fromFiles.push_back(ReadBeside(options.reference, "reference", comparison));
+
+    Film film(region);
+    const std::optional<RenderState> interrupted = Resume(settings.checkpoint, job.identity, &film);
+    report.histories.resize(comparison.blocks.size());
+    ProgressPrinter printer = MakePrinter(settings, !options.snapshots);
+    CatchInterrupts();
+    RenderOptions render = MakeRenderOptions(settings, job.provenance.sampler, &printer);
+    render.makeCriterion = MakeObservers(job.rules, region, settings.schedule,
+                                         {.snapshots = true,
+                                          .noise = true,
+                                          .curves = !options.report.empty(),
+                                          .goesOn = options.snapshots},
+                                         &report.histories);
+    WriteCheckpoints(settings.checkpoint, job.identity, film, &render);
+    const SampleSource source = SamplesOf(*job.scene, settings.estimator);
+    const RenderResult result =
+        Render(source, render, &film, interrupted ? &*interrupted : nullptr);
+    printer.Finish(result.progress);
+    if (result.cancelled) {
+        fmt::print(stderr, "lull: interrupted{}\n",
+                   settings.checkpoint.file.empty()
+                       ? "; nothing was written, as there is no --checkpoint"
+                       : "; --resume goes on from " + settings.checkpoint.file);
+        return kInterrupted;
+    }
+
+    const ObservedRender observed{source, render, film, result, report.histories};
+    for (size_t i = 0; i < job.rules.size(); ++i)
+        comparison.images.push_back(TakeImage(observed, job.rules, i));
+    if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
+    for (ComparedImage& image : fromFiles) comparison.images.push_back(std::move(image));
+    if (options.snapshots && IsImage(options.human))  // the reference is to be the last
+        std::swap(comparison.images.back(), *(comparison.images.end() - 2));
+    Measure(&comparison);
+    if (options.snapshots)
+        report.estimates = JudgeEstimates(comparison.images.front(), comparison.images.back());
+    for (const int threads : options.verify) {
+        const Verification v = Verify(job, settings, threads, comparison.images.front());
+        if (Interrupted()) break;
+        report.verifications.push_back(v);
+    }
+
+    report.provenance = job.provenance;
+    report.decisions = result.blocks;
+    report.warnings = job.warnings;
+    report.title = SceneName(settings.scene.file);
+    if (options.snapshots)
+        report.notes.push_back(
+            "The reference holds the samples of the other images, so that errors near the cap are "
+            "understated.");
+    WriteReport(options, report, WriteImages(options, job, comparison));
+    if (!settings.checkpoint.file.empty()) std::filesystem::remove(settings.checkpoint.file);
+    return Interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace
+
+void AddCompareCommand(CLI::App& app, Command* command) {
+    CLI::App* compare = app.add_subcommand(
+        "compare", "Compares automatic stopping with people's thresholds and with a reference.");
+    auto options = std::make_shared<CompareOptions>();
+    AddCompareOptions(*compare, options.get());
+    compare->callback([=] {
+        *command = [=] {
+            return options->render.scene.file.empty() ? CompareFiles(*options)
+                                                      : CompareRenders(*options);
+        };
+    });
+}
+
+}  // namespace lull

@@ -1,0 +1,19 @@
+// Holds the options of `lull compare`.
+#pragma once
+
+#include "renderer/commands/render_settings.h"
+
+namespace lull {
+
+struct CompareOptions {
+    RenderSettings render;
+    std::string rule = defaultRule;
+    std::string human, automatic, reference;  // empty: none
+    std::string output, report;
+    bool snapshots = false;
+    std::vector<int> verify;  // numbers of threads
+};
+
+void AddCompareOptions(CLI::App& app, CompareOptions* options);
+
+}  // namespace lull

@@ -1,0 +1,108 @@
+#include "renderer/commands/render_settings.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/render_files.h"
+
+namespace lull {
+
+void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
+    AddSceneOptions(app, &s->scene);
+    app.add_option("--cap", s->cap, "Samples per pixel that no block exceeds [10000]")
+        ->check(CLI::Range(1, 1 << 24))
+        ->type_name("N");
+    app.add_option("--pass", s->schedule.passLength, "Samples per pixel between two decisions")
+        ->check(CLI::Range(1, 1 << 20))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--block", s->schedule.blockSize, "Pixels a side of the blocks")
+        ->check(CLI::Range(1, 1 << 16))
+        ->type_name("N")
+        ->capture_default_str();
+
+    const std::map<std::string, SamplerKind> samplers = {{"random", SamplerKind::Random},
+                                                         {"sobol", SamplerKind::Sobol}};
+    if (withSampler)
+        app.add_option_function<std::string>(
+               "--sampler", [s, samplers](const std::string& n) { s->sampler = samplers.at(n); },
+               "Where sample positions come from [as the scene says]")
+            ->check(CLI::IsMember(samplers))
+            ->type_name("random|sobol");
+    const std::map<std::string, Estimator> estimators = {{"combined", Estimator::Combined},
+                                                         {"pbrt-v3", Estimator::PbrtV3}};
+    app.add_option_function<std::string>(
+           "--estimator",
+           [s, estimators](const std::string& n) { s->estimator = estimators.at(n); },
+           "combined (default): least noise; pbrt-v3: the same noise as pbrt-v3's path")
+        ->check(CLI::IsMember(estimators))
+        ->type_name("combined|pbrt-v3");
+    app.add_option("--seed", s->seed, "Another seed gives other, equally good, samples")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the files written");
+    app.add_flag("--json-progress", s->jsonProgress, "Print progress as JSON, an object a line");
+}
+
+int FixedSpp(const std::string& rule) {
+    int spp = 0;
+    if (rule.starts_with("fixed:"))
+        std::from_chars(rule.data() + 6, rule.data() + rule.size(), spp);
+    return spp;
+}
+
+CriterionFactory ReadRule(const std::string& option, const std::string& rule,
+                          const RenderSettings& settings, const PixelRect& region) try {
+    const ScheduleOptions& schedule = settings.schedule;
+    const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
+                              .blockCount = int(MakeBlocks(region, schedule).size()),
+                              .sceneName = SceneName(settings.scene.file),
+                              .defaultModel = ""};
+    return MakeCriterionFactory(rule, context);
+} catch (const std::logic_error& e) {
+    throw Error(option + ": " + e.what());
+}
+
+Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
+                          const FilmSettings& film) {
+    return {.version = LULL_VERSION,
+            .scene = settings.scene.file,
+            .seed = settings.seed,
+            .sampler = settings.sampler.value_or(scene.sampler),
+            .estimator = settings.estimator,
+            .criterion = "",
+            .checksum = "",
+            .schedule = settings.schedule,
+            .maxDepth = scene.maxDepth,
+            .threads = settings.scene.compile.threads,
+            .substitute = settings.scene.compile.substitute,
+            .resolution = film.resolution,
+            .crop = {film.cropMin, film.cropMax}};
+}
+
+RenderOptions MakeRenderOptions(const RenderSettings& settings, SamplerKind sampler,
+                                ProgressPrinter* printer) {
+    RenderOptions options;
+    options.schedule = settings.schedule;
+    options.sampler = sampler;
+    options.seed = settings.seed;
+    options.threads = settings.scene.compile.threads;
+    options.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
+    options.isCancelled = Interrupted;
+    return options;
+}
+
+ProgressPrinter MakePrinter(const RenderSettings& settings, bool adaptive) {
+    const ProgressStyle style = settings.jsonProgress   ? ProgressStyle::Json
+                                : settings.quiet        ? ProgressStyle::Silent
+                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
+                                                        : ProgressStyle::Plain;
+    return ProgressPrinter(style, adaptive, stderr);
+}
+
+}  // namespace lull

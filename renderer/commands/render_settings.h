@@ -1,0 +1,42 @@
+// Holds what all commands that render by stopping rules have in common.
+#pragma once
+
+#include "renderer/commands/checkpoint_options.h"
+#include "renderer/commands/scene_options.h"
+
+namespace lull {
+
+struct RenderSettings {
+    SceneOptions scene;
+    std::optional<int> cap;
+    ScheduleOptions schedule;
+    std::optional<SamplerKind> sampler;  // else the scene's
+    Estimator estimator = Estimator::Combined;
+    uint64_t seed = 0;
+    CheckpointOptions checkpoint;
+    bool quiet = false, jsonProgress = false;
+};
+
+// Adds the options of the scene, --cap, --pass, --block, --sampler (unless it is not wanted),
+// --estimator, --seed, --quiet and --json-progress.
+void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler = true);
+
+// Returns N of "fixed:N", 0 for other rules.
+int FixedSpp(const std::string& rule);
+
+// Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
+// Error that a bad rule is.
+CriterionFactory ReadRule(const std::string& option, const std::string& rule,
+                          const RenderSettings& settings, const PixelRect& region);
+
+// Says from what an image is made; the rule is left to be filled in.
+Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
+
+// Returns the options of a render, without a rule, that shows its progress and can be interrupted.
+// The printer must outlive it.
+RenderOptions MakeRenderOptions(const RenderSettings&, SamplerKind, ProgressPrinter*);
+
+// Makes what shows the progress on stderr; `adaptive` says whether blocks stop by themselves.
+ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
+
+}  // namespace lull

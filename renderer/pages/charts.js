@@ -1,0 +1,109 @@
+"use strict";
+// Draws charts of curves over a logarithmic axis with uPlot.
+
+// Draws marks that can be told apart without colour.
+function drawMark(u, kind, x, y, size) {
+  const c = u.ctx, s = size;
+  c.beginPath();
+  if (kind === 0) c.arc(x, y, s, 0, 7);
+  else if (kind === 1) c.rect(x - s, y - s, 2 * s, 2 * s);
+  else if (kind === 2) { c.moveTo(x, y - 1.3 * s); c.lineTo(x + 1.2 * s, y + s); c.lineTo(x - 1.2 * s, y + s); c.closePath(); }
+  else if (kind === 3) { c.moveTo(x, y - 1.4 * s); c.lineTo(x + 1.4 * s, y); c.lineTo(x, y + 1.4 * s); c.lineTo(x - 1.4 * s, y); c.closePath(); }
+  else { c.moveTo(x - s, y - s); c.lineTo(x + s, y + s); c.moveTo(x + s, y - s); c.lineTo(x - s, y + s); }
+  kind < 4 ? c.fill() : c.stroke();
+}
+
+// Joins series that have their own x into the one table that uPlot wants.
+function joinSeries(series) {
+  const xs = [...new Set(series.flatMap(s => s.x))].sort((a, b) => a - b);
+  const place = new Map(xs.map((x, i) => [x, i]));
+  return [xs, ...series.map(s => {
+    const column = new Array(xs.length).fill(undefined);
+    s.x.forEach((x, i) => { if (isNumber(s.y[i]) && !(s.log && s.y[i] <= 0)) column[place.get(x)] = s.y[i]; });
+    return column;
+  })];
+}
+
+// Marks places on the x axis: [{x, label, colour}], labels below each other.
+function drawLines(u, lines) {
+  const c = u.ctx, ratio = devicePixelRatio;
+  c.save();
+  c.font = `${12 * ratio}px sans-serif`;
+  lines.filter(l => isNumber(l.x)).forEach((l, i) => {
+    const x = u.valToPos(l.x, "x", true);
+    if (x < u.bbox.left - 1 || x > u.bbox.left + u.bbox.width + 1) return;
+    c.strokeStyle = c.fillStyle = l.colour;
+    c.lineWidth = 1.5 * ratio;
+    c.setLineDash([6 * ratio, 4 * ratio]);
+    c.beginPath(); c.moveTo(x, u.bbox.top); c.lineTo(x, u.bbox.top + u.bbox.height); c.stroke();
+    const right = x > u.bbox.left + 0.6 * u.bbox.width;
+    c.textAlign = right ? "right" : "left";
+    c.fillText(l.label, x + (right ? -4 : 4) * ratio, u.bbox.top + (14 + 15 * i) * ratio);
+  });
+  c.restore();
+}
+
+// Returns the places of ticks on a logarithmic axis: as many of each power of ten as there is room
+// for.
+function logTicks(min, max) {
+  const ticks = digits => {
+    const found = [];
+    for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); ++e)
+      for (const d of digits) { const v = +(d + "e" + e); if (v >= min * 0.9999 && v <= max * 1.0001) found.push(v); }
+    return found;
+  };
+  for (const digits of [[1, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5, 7], [1, 2, 5], [1, 3]])
+    if (ticks(digits).length <= 7) return ticks(digits);
+  return ticks([1]);
+}
+
+const charts = [];  // [chart, element], to follow the width of the page
+
+// Draws series [{label, x, y, colour, dash, mark, line}] into `parent`. options: title, xLabel,
+// yLabel, logY, lines, height.
+function drawChart(parent, series, options) {
+  const box = make("div", {class: "chart"}, make("h3", {}, options.title));
+  parent.append(box);
+  const logs = series.map(s => ({...s, log: options.logY}));
+  const data = joinSeries(logs);
+  if (!data[0].length) { box.append(make("p", {class: "small"}, "Nothing was recorded.")); return null; }
+  const values = data.slice(1).flat().filter(isNumber);
+  const isLogY = options.logY && values.length > 0;
+  // A logarithmic axis needs two different ends.
+  const widen = (min, max) => min === max ? [min / 1.5, max * 1.5] : [min / 1.08, max * 1.08];
+  const number = v => show(v, 3);
+  const axis = (label, size, isLog) => ({...(isLog ? {splits: (u, i, min, max) => logTicks(min, max), filter: (u, splits) => splits} : {}),
+    label, size, labelSize: 20, font: "12px sans-serif", labelFont: "12px sans-serif",
+    stroke: "#333", grid: {stroke: "#e3e3e3"}, values: (u, splits) => splits.map(v => v == null ? "" : number(v))});
+  const plot = new uPlot({
+    width: Math.max(280, box.clientWidth || 420), height: options.height || 240,
+    cursor: {points: {size: 7}}, legend: {live: true},
+    scales: {
+      x: {time: false, distr: 3, range: (u, min, max) => widen(min, max)},
+      y: isLogY ? {distr: 3, range: (u, min, max) => widen(min, max)} : {range: (u, min, max) => {
+        const low = options.yRange ? options.yRange[0] : Math.min(0, min), high = options.yRange ? options.yRange[1] : max;
+        return low === high ? [low, low + 1] : [low, high + 0.05 * (high - low)]; }}
+    },
+    axes: [axis(options.xLabel, 34, true), axis(options.yLabel, 58, isLogY)],
+    series: [{label: options.xLabel, value: (u, v) => v == null ? "" : number(v)},
+      ...series.map(s => ({
+        label: s.label, stroke: s.colour, width: s.line === false ? 0 : 2, dash: s.dash, spanGaps: true,
+        value: (u, v) => v == null ? "" : number(v),
+        points: s.mark == null ? {show: false} : {show: (u, i) => {
+          const c = u.ctx, [xs, ys] = [u.data[0], u.data[i]];
+          c.save(); c.fillStyle = c.strokeStyle = s.colour; c.lineWidth = 2 * devicePixelRatio;
+          xs.forEach((x, k) => { if (isNumber(ys[k])) drawMark(u, s.mark, u.valToPos(x, "x", true), u.valToPos(ys[k], "y", true), 3.5 * devicePixelRatio); });
+          c.restore();
+          return false; }}
+      }))],
+    hooks: {draw: [u => drawLines(u, options.lines || [])]}
+  }, data, box);
+  charts.push([plot, box]);
+  return plot;
+}
+
+function fitCharts() {
+  for (const [plot, box] of charts)
+    if (box.isConnected && box.clientWidth > 0) plot.setSize({width: box.clientWidth, height: plot.height});
+}
+addEventListener("resize", fitCharts);

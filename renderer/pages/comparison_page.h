@@ -1,0 +1,43 @@
+// Writes down comparisons: as JSON for programs, as a page for people.
+#pragma once
+
+#include "renderer/pages/html_page.h"
+
+namespace lull {
+
+// Holds one render of the automatic image by itself, as a measure of what the stopping rule costs
+// and saves on a number of threads.
+struct Verification {
+    int threads = 0;
+    double wallSeconds = 0;  // of the render
+    double seconds = 0;      // of processors, spent on samples
+    double ruleSeconds = 0;  // of processors, spent on the rule
+    bool samePixels = false;
+};
+
+// Holds what a comparison is reported with.
+struct ComparisonReport {
+    Comparison comparison;
+    std::optional<Provenance> provenance;    // of what was rendered; none for images from files
+    std::vector<BlockResult> decisions;      // of the automatic rule; may be empty
+    std::vector<BlockHistory> histories;     // for their curves; may be empty
+    std::optional<EstimateError> estimates;  // of the seconds to the cap
+    std::vector<Verification> verifications;
+    std::map<std::string, int> warnings;
+    std::vector<std::string> notes;  // what a reader should know, a sentence each
+    std::string title;
+};
+
+// Returns the figures of an image; what is infinite or not known is null.
+Json FiguresJson(const ErrorFigures&);
+
+// Returns all figures, without pictures. Seconds are of processors where nothing else is said;
+// those to the cap are estimated for blocks that were not rendered that far.
+Json ComparisonJson(const ComparisonReport&);
+
+// Returns what the blocks would take up to the cap; a cap and costs must be known.
+TotalCost CostAtCap(const Comparison&);
+
+std::string MakeComparisonPage(const ComparisonReport&);
+
+}  // namespace lull

@@ -1,0 +1,62 @@
+"use strict";
+// Small helpers: numbers for people, elements, colours.
+
+const isNumber = v => typeof v === "number" && isFinite(v);
+
+// Formats with about `digits` significant digits; "-" for what is not known.
+function show(v, digits = 4) {
+  if (!isNumber(v)) return "\u2013";
+  if (v === 0 || (Math.abs(v) >= 1e-3 && Math.abs(v) < 1e6)) return String(+v.toPrecision(digits));
+  return v.toExponential(digits - 1);
+}
+const showCount = v => isNumber(v) ? Math.round(v).toLocaleString("en") : "\u2013";
+const showShare = v => isNumber(v) ? (100 * v).toFixed(1) + "\u00a0%" : "\u2013";
+function showSeconds(v) {
+  if (!isNumber(v)) return "\u2013";
+  if (v < 120) return show(v, 3) + "\u00a0s";
+  const minutes = Math.floor(v / 60);
+  const two = n => String(Math.floor(n)).padStart(2, "0");
+  return minutes < 60 ? minutes + ":" + two(v % 60) + "\u00a0min"
+                      : Math.floor(minutes / 60) + ":" + two(minutes % 60) + ":" + two(v % 60) + "\u00a0h";
+}
+
+const byId = id => document.getElementById(id);
+
+// Makes an element; attributes that are functions listen to events.
+function make(tag, attributes = {}, ...children) {
+  const svg = ["svg", "rect", "text", "g", "title"].includes(tag);
+  const element = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag)
+                      : document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes))
+    if (typeof value === "function") element.addEventListener(name, value);
+    else if (value !== false && value != null) element.setAttribute(name, value === true ? "" : value);
+  element.append(...children.filter(c => c != null));
+  return element;
+}
+
+// Makes a table of rows of texts.
+function makeTable(caption, head, rows) {
+  return make("table", {}, caption ? make("caption", {}, caption) : null,
+    head ? make("thead", {}, make("tr", {}, ...head.map(h => make("th", {scope: "col"}, h)))) : null,
+    make("tbody", {}, ...rows.map(row => make("tr", {}, ...row.map((cell, i) =>
+      make(i ? "td" : "th", i ? {} : {scope: "row"}, cell))))));
+}
+
+// Viridis: ordered by lightness for every kind of colour vision.
+const viridisTable = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
+                      [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
+function viridis(t) {
+  const x = Math.min(1, Math.max(0, t)) * 8, i = Math.min(7, Math.floor(x));
+  const c = viridisTable[i].map((v, k) => Math.round(v + (x - i) * (viridisTable[i + 1][k] - v)));
+  return `rgb(${c.join(",")})`;
+}
+// Blue by white to orange, for what can be less or more.
+function diverging(t) {
+  const x = Math.min(1, Math.max(0, t)) * 2 - 1, end = x < 0 ? [58, 134, 200] : [224, 130, 40];
+  return `rgb(${end.map(v => Math.round(247 + Math.abs(x) * (v - 247))).join(",")})`;
+}
+// Says whether black or white can be read on that colour.
+const inkOn = t => t > 0.6 ? "#000" : "#fff";
+
+// Okabe and Ito's colours, which everyone can tell apart; together with dashes and marks.
+const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9", "#7f7f7f"];

@@ -1,0 +1,27 @@
+// Writes reports for people: one HTML file with everything in it, which opens from disk.
+#pragma once
+
+#include "renderer/comparison.h"
+#include "renderer/report_json.h"
+
+namespace lull {
+
+// Returns the page for `data`, whose form page.js describes.
+std::string MakePage(const Json& data);
+
+// Return pictures as data URIs: an image as a display shows it; values in [0, 1] in false colours.
+std::string PictureUri(const RgbImage&);
+std::string MapUri(std::span<const float> values, int width, int height);
+
+// Returns the image that the film has, and the pixels of an image.
+RgbImage ImageOf(const Film&);
+std::vector<Rgb> PixelsOf(const RgbImage&);
+
+Json CurvesJson(const BlockCurves&);
+
+// Returns the page for a render. `histories` have the curves of the blocks, or are empty.
+std::string MakeRenderPage(const Provenance&, const RenderResult&, const Film&,
+                           const std::vector<BlockHistory>& histories,
+                           const std::map<std::string, int>& warnings);
+
+}  // namespace lull

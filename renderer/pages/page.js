@@ -1,0 +1,35 @@
+"use strict";
+// Fills the page with the data of a render, a comparison or a bench:
+//   kind, title, cap, width, height, notes [text], warnings {kind: count}, provenance {}
+//   blocks [{x, y, width, height, end?, decisions? {threshold, spp [], value [], votes []},
+//            curves? {spp [], entropy [], noise []}}], in pixels of the image, row by row
+//   images [{name, label, rule, src, flipSrc?, figures?, seams?, cost?, saved?,
+//            blocks [{spp, seconds, ruleSeconds, estimated, and figures}]}]
+//   reference: the name of the image that the others are compared with
+//   totals (render); againstHuman, estimates, verifications (compare)
+//   bench {samplers [], points [{rule, setting, sampler, spp, seconds, sharesReference, and
+//   figures}]}
+
+const data = JSON.parse(byId("data").textContent);
+
+function chooseBlock(i) {
+  view.block = i;
+  showBlock(data, i);
+  stages.forEach(s => drawOverlay(data, s.svg));
+  [...byId("blocks-table").querySelectorAll("tbody tr")].forEach((row, k) => row.classList.toggle("chosen", k === i));
+}
+
+document.title = `${data.title} \u2013 lull ${data.kind}`;
+byId("title").textContent = data.title;
+const p = data.provenance;
+byId("subtitle").textContent = [{render: "A render", compare: "A comparison", bench: "A bench"}[data.kind] + " by lull" + (p ? " " + p.version : ""),
+  `${data.width}\u00d7${data.height} pixels`, data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
+  p ? `sampler ${[].concat(p.sampler).join(", ")}` : ""].filter(t => t).join(" \u00b7 ");
+document.body.classList.add(data.kind);
+startBench(data);
+startViewer(data);
+showSummary(data);
+showBlocksTable(data);
+showProvenance(data);
+if (data.blocks.length && layers.length) chooseBlock(0);
+dispatchEvent(new Event("resize"));  // now that the page has its height, and so its width

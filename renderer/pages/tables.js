@@ -1,0 +1,115 @@
+"use strict";
+// Fills in what was computed of a block, and the tables.
+
+const figureNames = [["rmse", "RMSE"], ["relMse", "relMSE"], ["rmseLightness", "RMSE of L"],
+                     ["psnr", "PSNR, dB"], ["ssim", "SSIM"], ["flip", "FLIP"]];
+// An image that is the same as the reference has an infinite PSNR, which JSON cannot hold.
+const showFigure = (figures, name) =>
+  name === "psnr" && figures && figures.psnr === null && figures.rmseLightness === 0 ? "\u221e" : show(figures && figures[name], name === "ssim" ? 5 : 4);
+const compared = data => data.images.filter(i => i.figures);
+
+// Says how much more or fewer samples a block had than people asked for.
+function differenceToHuman(data, i) {
+  const difference = data.againstHuman && data.againstHuman.spp[i];
+  if (!isNumber(difference)) return null;
+  return difference === 0 ? "as people" : `${showCount(Math.abs(difference))} spp ${difference < 0 ? "earlier" : "later"}`;
+}
+
+function showBlock(data, i) {
+  const block = data.blocks[i];
+  byId("block").hidden = false;
+  byId("block-title").textContent = `Block ${i} (${block.width}\u00d7${block.height} pixels at ${block.x}, ${block.y})`;
+  const images = data.images.filter(m => m.blocks && m.blocks[i]);
+  const rows = [];
+  const add = (label, has, text) => { if (images.some(m => has(m.blocks[i]))) rows.push([label, ...images.map(m => has(m.blocks[i]) ? text(m.blocks[i]) : "\u2013")]); };
+  add("samples per pixel", b => isNumber(b.spp), b => showCount(b.spp));
+  add("seconds of processors", b => b.seconds > 0, b => (b.estimated ? "~" : "") + showSeconds(b.seconds));
+  add("of the rule", b => b.ruleSeconds > 0, b => showSeconds(b.ruleSeconds));
+  for (const [name, label] of figureNames) add(label, b => name in b, b => showFigure(b, name));
+  const difference = differenceToHuman(data, i);
+  if (difference) rows.push(["against human", difference, ...images.slice(1).map(() => "")]);
+  if (block.end) rows.push(["end", {stopped: "its rule stopped it", cap: "it went to the cap", interrupted: "interrupted"}[block.end]]);
+  byId("block-facts").replaceChildren(makeTable("", ["", ...images.map(m => m.name)], rows));
+
+  const lines = data.images.filter(m => m.blocks && m.blocks[i] && m.name !== data.reference && isNumber(m.blocks[i].spp))
+    .map((m, k) => ({x: m.blocks[i].spp, label: m.name, colour: palette[k === 0 ? 1 : 2]}));
+  const parent = byId("block-charts");
+  parent.replaceChildren();
+  const rule = (data.provenance || {}).criterion || "";
+  if (block.decisions && !/^(fixed|thresholds)/.test(rule)) {  // those only count
+    const d = block.decisions, learned = /^learned/.test(rule);
+    drawChart(parent, [
+      {label: learned ? "P(noisy)" : "value", x: d.spp, y: d.value, colour: palette[0], mark: 0},
+      {label: "threshold", x: [d.spp[0], d.spp[d.spp.length - 1]], y: [d.threshold, d.threshold], colour: palette[4], dash: [2, 4]}
+    ], {title: learned ? "Probability of noise, as the network sees it" : `What the rule compared (${rule})`,
+        xLabel: "samples per pixel", yLabel: learned ? "probability" : "value", logY: !learned, yRange: learned ? [0, 1] : null, lines});
+  }
+  if (block.curves && block.curves.spp.length) {
+    const c = block.curves;
+    drawChart(parent, [{label: "noise", x: c.spp, y: c.noise, colour: palette[1], mark: 1}],
+      {title: "Visible noise in lightness (of 0 to 100)", xLabel: "samples per pixel", yLabel: "noise in L", logY: true, lines});
+    const low = Math.min(...c.entropy), high = Math.max(...c.entropy), room = Math.max(0.002, 0.1 * (high - low));
+    drawChart(parent, [{label: "entropy", x: c.spp, y: c.entropy, colour: palette[2], mark: 2}],
+      {title: "SVD-entropy, mean of 100 sub-blocks", xLabel: "samples per pixel", yLabel: "entropy", yRange: [low - room, high + room], lines});
+  }
+  if (!block.decisions && !(block.curves && block.curves.spp.length))
+    parent.append(make("p", {class: "small"}, "No curves were recorded of this block."));
+}
+
+function showSummary(data) {
+  const parent = byId("summary-tables");
+  const images = data.images.filter(i => i.figures || i.cost || i.seams);
+  if (images.length) {
+    const seams = images.some(i => i.seams), errors = images.some(i => i.figures);
+    parent.append(makeTable(errors ? "Errors against the reference; figures of displays (PSNR, SSIM, FLIP) of the 8-bit image" : "",
+      ["image", ...(errors ? figureNames.map(f => f[1]) : []), ...(seams ? ["seams"] : []), "samples", "mean spp", "seconds of processors", "of that the rule", "samples saved", "seconds saved"],
+      images.map(i => [i.label, ...(errors ? figureNames.map(([name]) => showFigure(i.figures, name)) : []),
+        ...(seams ? [show(i.seams && i.seams.ratio, 3)] : []),
+        showCount(i.cost && i.cost.samples), show(i.cost && i.cost.samples / (data.width * data.height), 4),
+        i.cost && i.cost.seconds > 0 ? (i.cost.estimated ? "~" : "") + showSeconds(i.cost.seconds) : "\u2013",
+        i.cost && i.cost.seconds > 0 ? showShare(i.cost.ruleSeconds / (i.cost.seconds + i.cost.ruleSeconds)) : "\u2013",
+        ...(i.saved && i.name !== data.reference ? [showShare(i.saved.samples), (i.saved.estimated && isNumber(i.saved.seconds) ? "~" : "") + showShare(i.saved.seconds)] : ["\u2013", "\u2013"])])));
+    if (seams) parent.append(make("p", {class: "small"}, "Seams: how much more the noise level jumps across borders of blocks than inside them; 1 is not at all. ~ marks what is estimated from the seconds that a block took for the samples it had."));
+  }
+  const t = data.totals;
+  if (t) parent.append(makeTable("", null, [
+    ["blocks stopped", `${t.stoppedBlocks} of ${t.blocks}`], ["median", showCount(t.medianSpp) + " spp"],
+    ["samples", `${showCount(t.samples)}; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} everywhere`],
+    ["time", `${showSeconds(t.seconds)}; of processors ${showSeconds(t.threadSeconds)}, about ${showShare(t.secondsSaved)} less than to the cap`],
+    ["the rule took", `${showSeconds(t.criterionSeconds)} of processors, ${showShare(t.criterionSeconds / t.threadSeconds)}`],
+    ["samples rejected", showCount(t.rejectedSamples)]]));
+  const h = data.againstHuman;
+  if (h) parent.append(make("p", {}, `Automatic against human: ${h.earlier} blocks earlier, ${h.later} later, ${showCount(h.meanDistance)} spp apart in the mean; ${showShare(Math.abs(h.savedSamples))} ${h.savedSamples < 0 ? "more" : "fewer"} samples.`));
+  const e = data.estimates;
+  if (e && e.blocks) parent.append(make("p", {}, `The seconds to the cap, estimated where ${e.blocks} blocks stopped, are ${showShare(e.total)} off the measured in all and ${showShare(e.worst)} at the worst.`));
+  if (data.verifications && data.verifications.length)
+    parent.append(makeTable("The automatic image rendered by itself", ["threads", "seconds", "to the cap (estimated)", "time saved", "of the saving in samples kept", "the rule's share", "pixels"],
+      data.verifications.map(v => [String(v.threads), showSeconds(v.wallSeconds), showSeconds(v.wallSecondsToCap), showShare(v.savedWall), showShare(v.kept), showShare(v.ruleShare), v.samePixels ? "the same bits" : "DIFFERENT"])));
+  byId("summary").hidden = !parent.children.length;
+}
+
+function showBlocksTable(data) {
+  const images = data.images.filter(i => i.blocks && i.blocks.length && i.name !== data.reference);
+  if (!data.blocks.length || !images.length) return;
+  byId("blocks").hidden = false;
+  const head = ["block"], cells = [];
+  for (const image of images) {
+    head.push(`spp of ${image.name}`);
+    cells.push(i => showCount(image.blocks[i].spp));
+    if (image.blocks[0].seconds > 0) { head.push("seconds"); cells.push(i => (image.blocks[i].estimated ? "~" : "") + show(image.blocks[i].seconds, 3)); }
+    if (image.figures) for (const [name, label] of figureNames) if (name !== "rmse") { head.push(label); cells.push(i => showFigure(image.blocks[i], name)); }
+  }
+  if (data.againstHuman) { head.push("against human"); cells.push(i => differenceToHuman(data, i)); }
+  const table = makeTable("", head, data.blocks.map((b, i) => [String(i), ...cells.map(c => c(i))]));
+  [...table.tBodies[0].rows].forEach((row, i) => row.addEventListener("click", () => chooseBlock(i)));
+  byId("blocks-table").append(table);
+}
+
+function showProvenance(data) {
+  byId("notes").append(...(data.notes || []).map(n => make("li", {}, n)),
+    ...Object.entries(data.warnings || {}).map(([kind, count]) => make("li", {}, `Warning, ${count} times: ${kind}`)));
+  const rows = Object.entries(data.provenance || {}).map(([k, v]) =>
+    [k, v && typeof v === "object" ? Object.entries(v).map(([a, b]) => Array.isArray(v) ? b : `${a} ${b}`).join(", ") : String(v)]);
+  if (rows.length) byId("provenance-table").replaceChildren(makeTable("", null, rows).querySelector("tbody"));
+  byId("provenance").hidden = !rows.length && !byId("notes").children.length;
+}

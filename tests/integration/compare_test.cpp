@@ -1,0 +1,213 @@
+// Runs `lull compare` and `lull bench` as their help describes them.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kSize = " --resolution 100x90 --block 40 --quiet ";
+
+struct SceneDirectory : TemporaryDirectory {
+    SceneDirectory() {
+        Write("scene.pbrt", SceneText(kSphere));
+        Write("human.csv", "a;20;40;60;80;100;120;20;40;60;\nb;20;20;20;20;20;20;20;20;20;\n");
+    }
+    Json Read(const std::string& name) const { return Json::parse(ReadBytes(File(name))); }
+};
+
+std::vector<float> Green(const TemporaryDirectory& directory, const std::string& name) {
+    return ReadExr(directory.File(name)).Find("G")->values;
+}
+
+TEST(Compare, OneRenderGivesTheImagesOfThree) {
+    const SceneDirectory directory;
+    const Outcome outcome =
+        RunLull(directory, std::string("compare scene.pbrt") + kSize +
+                               "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
+                               "room --report room.html --verify 2");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    for (const char* file : {"room.automatic.exr", "room.human.png", "room.reference.exr",
+                             "room.thresholds.csv", "room.compare.json", "room.html"}) {
+        EXPECT_TRUE(Contains(outcome.out, std::string(file) + "\n")) << file;
+        EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
+    }
+
+    RunLull(directory,
+            std::string("render scene.pbrt") + kSize + "--stop dammertz:0.02 --cap 160 -o a.exr");
+    RunLull(directory, std::string("render scene.pbrt") + kSize +
+                           "--stop thresholds:human.csv:a --cap 160 -o h.exr");
+    RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
+    EXPECT_EQ(Green(directory, "room.automatic.exr"), Green(directory, "a.exr"));
+    EXPECT_EQ(Green(directory, "room.human.exr"), Green(directory, "h.exr"));
+    EXPECT_EQ(Green(directory, "room.reference.exr"), Green(directory, "r.exr"));
+    EXPECT_EQ(ReadExr(directory.File("room.human.exr")).Find("spp")->values,
+              ReadExr(directory.File("h.exr")).Find("spp")->values);
+    EXPECT_EQ(ReadBytes(directory.File("room.automatic.png")), ReadBytes(directory.File("a.png")));
+
+    // The same images, from their files, have the same errors.
+    const Outcome files = RunLull(
+        directory, "compare --automatic a.exr --human h.exr --reference r.exr --block 40 -o files");
+    ASSERT_EQ(files.exitCode, 0) << files.err;
+    const Json one = directory.Read("room.compare.json"),
+               other = directory.Read("files.compare.json");
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(one["images"][i]["figures"], other["images"][i]["figures"]);
+        EXPECT_EQ(one["images"][i]["cost"]["samples"], other["images"][i]["cost"]["samples"]);
+        EXPECT_GT(one["images"][i]["figures"]["rmseLightness"], 0);
+    }
+    EXPECT_EQ(one["againstHuman"]["spp"], other["againstHuman"]["spp"]);
+    EXPECT_EQ(one["images"][2]["cost"]["samples"], 100 * 90 * 160);
+}
+
+TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
+    const SceneDirectory directory;
+    RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
+    const Outcome outcome = RunLull(
+        directory, std::string("compare scene.pbrt") + kSize +
+                       "--stop fixed:60 --human human.csv:b --reference r.exr --cap 160 -o room");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Json json = directory.Read("room.compare.json");
+    EXPECT_EQ(json["images"][0]["cost"]["samples"], 100 * 90 * 60);
+    EXPECT_EQ(json["images"][0]["saved"]["estimated"], true);
+    EXPECT_EQ(json["againstHuman"]["later"], 9);
+    EXPECT_FALSE(std::filesystem::exists(directory.File("room.reference.exr")));
+}
+
+TEST(Compare, GoesOnAfterAnInterruption) {
+    const SceneDirectory directory;
+    const std::string command = std::string("compare scene.pbrt") + kSize +
+                                "--snapshots --stop dammertz:0.005 --human human.csv:a --cap 600 ";
+    ASSERT_EQ(RunLull(directory, command + "-o whole").exitCode, 0);
+    int kills = 0;
+    for (; kills < 100; ++kills) {
+        const std::string limit =
+            kills < 5 ? "timeout -s KILL 0." + std::to_string(2 + kills) + " " : "";
+        const Outcome outcome = RunShell(
+            directory, limit + "LULL " + command +
+                           "-o parts --checkpoint c.h5 --checkpoint-interval 0.1 --resume");
+        if (outcome.exitCode == 0) break;
+        ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
+    }
+    for (const char* image : {"automatic", "human", "reference"})
+        EXPECT_EQ(ReadBytes(directory.File(std::string("parts.") + image + ".png")),
+                  ReadBytes(directory.File(std::string("whole.") + image + ".png")));
+    EXPECT_EQ(directory.Read("parts.compare.json")["images"][1]["figures"],
+              directory.Read("whole.compare.json")["images"][1]["figures"]);
+    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+}
+
+TEST(Compare, SaysWhatIsMissingOrWrong) {
+    const SceneDirectory directory;
+    RunLull(directory, "render scene.pbrt --spp 1 --quiet -o small.exr");
+    RunLull(directory, "render scene.pbrt --spp 1 --quiet -o crop.exr --crop 0,0.5,0,1");
+    directory.Write("text.exr", "no image");
+    const std::string scene = std::string("compare scene.pbrt") + kSize;
+    ExpectFailure(directory, "compare", {"a scene is missing"});
+    ExpectFailure(directory, scene, {"--snapshots", "--reference"});
+    ExpectFailure(directory, scene + "--snapshots --human human.csv:c",
+                  {"human.csv", "no row 'c'"});
+    ExpectFailure(directory, scene + "--snapshots --human missing.csv", {"missing.csv"});
+    ExpectFailure(
+        directory,
+        "compare scene.pbrt --block 50 --resolution 100x90 --snapshots --human human.csv:a",
+        {"9 blocks", "the image has 4"});
+    ExpectFailure(directory, scene + "--snapshots --stop dammertz:x", {"--stop", "'x'"});
+    ExpectFailure(directory, scene + "--reference small.exr", {"small.exr", "another part"});
+    ExpectFailure(directory, scene + "--snapshots -o nowhere/room", {"nowhere"});
+    ExpectFailure(directory, "compare --automatic small.exr --reference crop.exr",
+                  {"crop.exr", "another part"});
+    ExpectFailure(directory, "compare --automatic small.exr --reference text.exr", {"text.exr"});
+    ExpectFailure(directory, "compare --reference small.exr --human human.csv",
+                  {"human.csv", "need a scene"});
+    for (const char* arguments :
+         {"compare scene.pbrt --snapshots --reference r.exr", "compare --snapshots",
+          "compare scene.pbrt --automatic a.exr", "compare scene.pbrt --snapshots --verify x",
+          "compare scene.pbrt --snapshots --report r.pdf"})
+        EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
+}
+
+TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
+    const SceneDirectory directory;
+    const std::string size = " --resolution 48x44 --block 44 --quiet ";
+    RunLull(directory, "render scene.pbrt" + size + "--spp 7 -o other.exr");
+    directory.Write("others.csv", "someone,3.5,other.exr\n");
+    const Outcome outcome = RunLull(
+        directory,
+        "bench scene.pbrt" + size +
+            "--cap 100 --rule dammertz:0.03 --external others.csv -o room --report room.html");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "room.csv\nroom.html\n");
+    const std::string csv = ReadBytes(directory.File("room.csv"));
+    for (const char* part :
+         {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,", "\nlnoise,0.5,random,",
+          "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
+        EXPECT_TRUE(Contains(csv, part)) << part << csv;
+    // Fixed, 4 sweeps of 8 and the extra rule, for both samplers, and the line of names.
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 32 + 1) + 1);
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path))
+        EXPECT_FALSE(Contains(entry.path().string(), "checkpoint")) << entry.path();
+}
+
+TEST(Bench, GoesOnAfterAnInterruption) {
+    const SceneDirectory directory;
+    const std::string command =
+        "bench scene.pbrt --resolution 48x44 --block 44 --quiet --cap 400 --checkpoint-interval "
+        "0.1 -o ";
+    ASSERT_EQ(RunLull(directory, command + "whole").exitCode, 0);
+    for (int kill = 0; kill < 100; ++kill) {
+        const std::string limit =
+            kill < 6 ? "timeout -s KILL 0." + std::to_string(2 + kill) + " " : "";
+        const Outcome outcome = RunShell(directory, limit + "LULL " + command + "parts");
+        if (outcome.exitCode == 0) break;
+        ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
+    }
+    // All but the seconds is the same.
+    const auto withoutSeconds = [&](const char* name) {
+        std::istringstream in(ReadBytes(directory.File(name)));
+        std::string text, line;
+        while (std::getline(in, line)) {
+            int column = 0;
+            for (const char c : line) {
+                column += c == ',';
+                if (column < 4 || column > 6) text += c;
+            }
+        }
+        return text;
+    };
+    EXPECT_EQ(withoutSeconds("parts.csv"), withoutSeconds("whole.csv"));
+}
+
+TEST(Bench, SaysWhatIsWrong) {
+    const SceneDirectory directory;
+    directory.Write("others.csv", "someone,3.5\n");
+    directory.Write("lost.csv", "someone,3.5,lost.exr\n");
+    ExpectFailure(directory, "bench scene.pbrt --external others.csv",
+                  {"others.csv:1: ", "name,seconds,file.exr"});
+    ExpectFailure(directory, "bench scene.pbrt --external lost.csv", {"lost.exr"});
+    ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"});
+    EXPECT_EQ(RunLull(directory, "bench scene.pbrt --samplers halton").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "bench").exitCode, 2);
+}
+
+TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
+    const SceneDirectory directory;
+    const Outcome outcome =
+        RunLull(directory, std::string("render scene.pbrt") + kSize +
+                               "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(ReadBytes(directory.File("r.html")).starts_with("<!DOCTYPE html>"));
+    RunLull(directory, std::string("render scene.pbrt") + kSize +
+                           "--stop lnoise:2 --cap 200 -o j.exr --report r.json");
+    EXPECT_EQ(ReadBytes(directory.File("i.thresholds.csv")),
+              ReadBytes(directory.File("j.thresholds.csv")));
+    EXPECT_EQ(ReadBytes(directory.File("i.png")), ReadBytes(directory.File("j.png")));
+}
+
+}  // namespace
+}  // namespace lull
