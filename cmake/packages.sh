@@ -22,3 +22,19 @@ install_packages() {
     $sudo env DEBIAN_FRONTEND=noninteractive \
         apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
 }
+
+# install_browser: Chromium and Python for the test of the report pages, if they can be had within a
+# minute or so; CMake leaves the test out where they are not. Only the download has a limit, as an
+# installation that was cut off would leave the system broken.
+install_browser() {
+    command -v chromium >/dev/null && command -v python3 >/dev/null && return 0
+    command -v apt-get >/dev/null || return 0
+    local sudo=
+    ((EUID == 0)) || sudo=sudo
+    echo "Installing, if possible: chromium python3"
+    $sudo timeout 45 apt-get install -qq -y --no-install-recommends --download-only \
+        chromium python3 >/dev/null 2>&1 &&
+        $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends \
+            --no-download chromium python3 >/dev/null 2>&1 ||
+        echo "No Chromium: the report pages will not be tested" >&2
+}

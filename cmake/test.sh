@@ -7,6 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 exec </dev/null
 
 install_packages $build_packages $test_packages
+install_browser
 
 echo "== format"
 find renderer stopping tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror

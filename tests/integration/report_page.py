@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+"""Opens the pages that lull writes in a headless browser and uses them as a person would.
+
+report_page.py LULL CHROMIUM: exits with 0 if the pages open from disk without errors and without
+asking the network for anything, and if blocks that are clicked or reached by keys show their curves.
+"""
+import json
+import os
+import pathlib
+import select
+import subprocess
+import sys
+import tempfile
+import time
+
+SCENE = """LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "image" "integer xresolution" [120] "integer yresolution" [80]
+Sampler "random"
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Shape "sphere"
+WorldEnd
+"""
+
+
+class Browser:
+    """Speaks the DevTools protocol over a pipe: JSON texts that end with a zero."""
+
+    def __init__(self, program, profile):
+        to_browser, self.out = os.pipe()
+        self.inp, from_browser = os.pipe()
+        self.process = subprocess.Popen(
+            ["bash", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "--", program,
+             "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+             "--no-first-run", "--window-size=1400,1800", f"--user-data-dir={profile}",
+             "--remote-debugging-pipe"],
+            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.buffer, self.serial, self.session, self.problems = b"", 0, None, []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target,
+                                 flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(domain + ".enable")
+
+    def receive(self, seconds):
+        """Returns the next message; None if there is none for so long."""
+        end = time.monotonic() + seconds
+        while b"\0" not in self.buffer:
+            if not select.select([self.inp], [], [], max(0, end - time.monotonic()))[0]:
+                return None
+            data = os.read(self.inp, 1 << 20)
+            if not data:
+                raise SystemExit("the browser has ended")
+            self.buffer += data
+        text, self.buffer = self.buffer.split(b"\0", 1)
+        message = json.loads(text)
+        self.note(message)
+        return message
+
+    def note(self, message):
+        """Keeps what a page must not do."""
+        method, params = message.get("method"), message.get("params", {})
+        if method == "Runtime.exceptionThrown":
+            details = params["exceptionDetails"]
+            self.problems.append(details.get("exception", {}).get("description", details["text"]))
+        elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+            self.problems.append(params["entry"]["text"])
+        elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning"):
+            self.problems.append(str(params["args"]))
+        elif method == "Network.requestWillBeSent":
+            url = params["request"]["url"]
+            if not url.startswith(("file:", "data:")):
+                self.problems.append("asked for " + url[:80])
+
+    def call(self, method, **params):
+        self.serial += 1
+        message = {"id": self.serial, "method": method, "params": params}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.out, json.dumps(message).encode() + b"\0")
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            answer = self.receive(60)
+            if answer and answer.get("id") == self.serial:
+                if "error" in answer:
+                    raise SystemExit(f"{method}: {answer['error']}")
+                return answer["result"]
+        raise SystemExit(method + ": no answer from the browser")
+
+    def open(self, path):
+        self.call("Page.navigate", url=path.as_uri())
+        self.wait_for("document.readyState === 'complete' && document.title.length > 0")
+
+    def evaluate(self, expression):
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        if "exceptionDetails" in result:
+            raise SystemExit(f"{expression}: {result['exceptionDetails']}")
+        return result["result"].get("value")
+
+    def wait_for(self, expression):
+        for _ in range(300):
+            if self.evaluate(expression):
+                return
+            self.receive(0.1)
+        raise SystemExit("this has not come true: " + expression)
+
+    def click(self, selector):
+        x, y = self.evaluate(
+            f"(() => {{ const e = document.querySelector('{selector}');"
+            " e.scrollIntoView({block: 'center'}); const r = e.getBoundingClientRect();"
+            " return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def press(self, key, code):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code)
+
+    def close(self):
+        self.call("Browser.close")
+        self.process.wait(30)
+
+
+# Counts the charts in an element that have something drawn on them.
+DRAWN = """[...document.querySelectorAll('%s canvas')].filter(c => {
+    const p = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+    return p.some(v => v > 0); }).length"""
+
+
+def check(condition, what):
+    if not condition:
+        raise SystemExit("FAILED: " + what)
+    print("ok:", what)
+
+
+def check_blocks(browser, name, charts):
+    title = "document.getElementById('block-title').textContent"
+    check(browser.evaluate(title).startswith("Block 0 "), name + ": shows the first block")
+    browser.click("[data-block=\"4\"]")
+    check(browser.evaluate(title).startswith("Block 4 "), name + ": a click chooses a block")
+    check(browser.evaluate(DRAWN % "#block-charts") == charts, f"{name}: it has {charts} curves")
+    browser.evaluate("document.querySelector('.stage svg').focus()")
+    browser.press("ArrowRight", 39)
+    check(browser.evaluate(title).startswith("Block 5 "), name + ": arrow keys choose the next")
+    browser.press("ArrowUp", 38)
+    check(browser.evaluate(title).startswith("Block 2 "), name + ": and the one above")
+    check(browser.evaluate("[...document.images].filter(i => i.getAttribute('src'))"
+                           ".every(i => i.complete && i.naturalWidth === 120)"),
+          name + ": pictures are there")
+
+
+def choose(browser, label, value):
+    browser.evaluate(f"""(() => {{ const s = document.querySelector('[aria-label="{label}"]');
+        s.value = '{value}'; s.dispatchEvent(new Event('change')); }})()""")
+
+
+def main(lull, chromium):
+    with tempfile.TemporaryDirectory() as directory:
+        folder = pathlib.Path(directory)
+        (folder / "scene.pbrt").write_text(SCENE)
+        (folder / "human.csv").write_text("scene;20;40;60;80;20;40;\n")
+        for command in (
+                "render scene.pbrt --stop lnoise:1 --cap 80 --report render.html -o r.exr",
+                "compare scene.pbrt --stop lnoise:1 --human human.csv --snapshots --cap 80"
+                " --report compare.html",
+                "bench scene.pbrt --cap 60 --report bench.html"):
+            subprocess.run([lull, *command.split(), "--block", "40", "--quiet"], cwd=folder,
+                           check=True, stdout=subprocess.DEVNULL)
+
+        browser = Browser(chromium, folder / "profile")
+        browser.open(folder / "render.html")
+        check_blocks(browser, "render", 3)
+        browser.open(folder / "compare.html")
+        check_blocks(browser, "compare", 3)
+        for mode in ("swipe", "side", "one"):
+            choose(browser, "Show", mode)
+        choose(browser, "Over it", "spp:human")
+        check(browser.evaluate("document.querySelector('.stage svg').textContent.includes('80')"),
+              "compare: the map has the samples of each block")
+        check(browser.evaluate("document.querySelectorAll('#summary table tbody tr').length >= 3"),
+              "compare: the table has three images")
+        browser.open(folder / "bench.html")
+        check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: two charts are drawn")
+        choose(browser, "Error", "flip")
+        check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: and again for another error")
+        check(not browser.problems, "no errors, nothing from the network " +
+              "; ".join(browser.problems))
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:3])
