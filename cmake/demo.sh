@@ -9,7 +9,7 @@ exec </dev/null
 
 install_packages $build_packages
 
-cmake --preset release -DBUILD_TESTING=OFF
+cmake --preset release -DCMAKE_UNITY_BUILD=ON -DBUILD_TESTING=OFF
 cmake --build --preset release --target lull
 
 mkdir -p out

@@ -14,7 +14,7 @@ find renderer stopping tests -name '*.h' -o -name '*.cpp' | xargs clang-format -
 
 for preset in release sanitize; do
     echo "== $preset"
-    cmake --preset $preset
+    cmake --preset $preset -DCMAKE_UNITY_BUILD=ON  # compiles in half the time, from nothing
     cmake --build --preset $preset
     ctest --preset $preset -j"$(nproc)"
 done

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "renderer/base/thread_clock.h"
+#include "stopping/parallel.h"
 
 namespace lull {
 
@@ -81,6 +82,7 @@ class Executor {
             nextCheckpoint = Seconds() + options.checkpointInterval;
             Spawn(schedule.ReadyTiles());
             group.wait();
+            order.Enter();
             if (options.onCheckpoint && (!schedule.Done() || options.checkpointAtEnd))
                 options.onCheckpoint(State());
         } while (pausing && !IsCancelled());
@@ -93,7 +95,13 @@ class Executor {
 
   private:
     void Spawn(int count) {
-        for (int i = 0; i < count; ++i) group.run([this] { RunTile(); });
+        order.Leave();
+        for (int i = 0; i < count; ++i)
+            group.run([this] {
+                order.Enter();
+                RunTile();
+                order.Leave();
+            });
     }
 
     void RunTile() {
@@ -229,6 +237,7 @@ class Executor {
     double nextProgress = 0;
 
     tbb::enumerable_thread_specific<FilmView> views;
+    TaskOrder order;
     tbb::task_group group;
 };
 

@@ -9,7 +9,15 @@ namespace lull {
 
 void ForEachIndex(int count, const std::function<void(int)>& body) {
     if (count == 1) return body(0);
-    tbb::parallel_for(0, count, body, tbb::simple_partitioner());
+    TaskOrder order;
+    order.Leave();
+    const auto ordered = [&](int i) {
+        order.Enter();
+        body(i);
+        order.Leave();
+    };
+    tbb::parallel_for(0, count, ordered, tbb::simple_partitioner());
+    order.Enter();
 }
 
 void RunWithThreads(int threads, const std::function<void()>& body) {

@@ -14,12 +14,12 @@ namespace {
 constexpr int kMostLines = 10000;
 constexpr size_t kLongestLine = 4096;
 
-struct TypeName {
+struct PlyTypeName {
     std::string_view name;
     PlyType type;
 };
 
-constexpr TypeName kTypeNames[] = {
+constexpr PlyTypeName kPlyTypeNames[] = {
     {"char", PlyType::Int8},       {"int8", PlyType::Int8},       {"uchar", PlyType::Uint8},
     {"uint8", PlyType::Uint8},     {"short", PlyType::Int16},     {"int16", PlyType::Int16},
     {"ushort", PlyType::Uint16},   {"uint16", PlyType::Uint16},   {"int", PlyType::Int32},
@@ -29,8 +29,8 @@ constexpr TypeName kTypeNames[] = {
 };
 
 PlyType ParseType(std::string_view name, const FileLoc& loc) {
-    const auto* known = std::ranges::find(kTypeNames, name, &TypeName::name);
-    if (known == std::end(kTypeNames))
+    const auto* known = std::ranges::find(kPlyTypeNames, name, &PlyTypeName::name);
+    if (known == std::end(kPlyTypeNames))
         throw Error(loc, "unknown type '" + Printable(name) + "' in a PLY header");
     return known->type;
 }

@@ -5,7 +5,7 @@
 namespace lull {
 namespace {
 
-Roughness ReadRoughness(const MaterialReader& in) {
+Roughness MetalRoughness(const MaterialReader& in) {
     const FloatTexture both = in.Float("roughness", 0.01f);
     return {in, in.FloatOrNone("uroughness").value_or(both),
             in.FloatOrNone("vroughness").value_or(both)};
@@ -16,7 +16,7 @@ Roughness ReadRoughness(const MaterialReader& in) {
 Metal::Metal(const MaterialReader& in)
     : eta(in.textures.GetSpectrum(in.entity, "eta", CopperEta())),
       k(in.textures.GetSpectrum(in.entity, "k", CopperK())),
-      roughness(ReadRoughness(in)) {}
+      roughness(MetalRoughness(in)) {}
 
 void Metal::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     bsdf->Add(MicrofacetReflection<ConductorInterface>{Rgb(1, 1, 1), roughness.Evaluate(in),

@@ -3,7 +3,7 @@
 namespace lull {
 namespace {
 
-Roughness ReadRoughness(const MaterialReader& in) {
+Roughness UberRoughness(const MaterialReader& in) {
     const FloatTexture both = in.Float("roughness", 0.1f);
     const FloatTexture u = in.FloatOrNone("uroughness").value_or(both);
     return {in, u, in.FloatOrNone("vroughness").value_or(u)};
@@ -18,7 +18,7 @@ Uber::Uber(const MaterialReader& in)
       kt(in.Spectrum("Kt", 0)),
       opacity(in.Spectrum("opacity", 1)),
       eta(in.IndexOfRefraction()),
-      roughness(ReadRoughness(in)) {}
+      roughness(UberRoughness(in)) {}
 
 int Uber::MaxLobes() const {
     const bool isOpaque = opacity.IsConstant() && (opacity.constant >= 1).all();
