@@ -98,10 +98,8 @@ Job Prepare(const CompareOptions& options) {
     const RenderSettings& settings = options.render;
     Warnings warnings = MakePrintedWarnings();
     const Description description = LoadDescription(settings.scene, warnings);
-    Warnings unheard;  // Compile() will give them again
-    const FilmSettings film = MakeFilmSettings(description, settings.scene.compile.film, unheard);
+    const FilmSettings film = CheckedFilm(description, settings.scene);
     const PixelRect region{film.cropMin, film.cropMax};
-    CheckFilm(region);
 
     Job job;
     const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, region);

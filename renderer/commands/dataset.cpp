@@ -1,17 +1,15 @@
 // `lull dataset`: records what stopping rules can learn from.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
-#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/scene_options.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/output/file_io.h"
 #include "stopping/dataset.h"
@@ -23,23 +21,17 @@ namespace lull {
 namespace {
 
 struct Options {
-    SceneOptions scene;
+    RenderSettings render;
     std::string name, output, human;
     std::vector<int> blocks;  // empty: all
     double past = 0;          // 0: every block goes on to the cap
-    ScheduleOptions schedule;
-    SamplerKind sampler = SamplerKind::Random;
-    Estimator estimator = Estimator::PbrtV3;
-    uint64_t seed = 0;
-    double checkpointInterval = 60;
-    bool quiet = false, jsonProgress = false;
 };
 
 constexpr const char* kFooter =
-    R"(Renders as the human thresholds were measured, with pbrt-v3's noise per sample (--estimator
-pbrt-v3, --sampler random), and records SVD-entropies, lightness and noise of every block at all
-passes up to 400 spp and at every second one after. Thresholds are no part of the file: `lull train`
-and `lull evaluate` join them by the viewpoint's name.
+    R"(Renders as the human thresholds were measured, with pbrt-v3's random sampler and its noise per
+sample, and records SVD-entropies, lightness and noise of every block at all passes up to 400 spp and
+at every second one after. Thresholds are no part of the file: `lull train` and `lull evaluate` join
+them by the viewpoint's name.
 
 Blocks that the file has already are left out, so the same command can be given again. Interrupted,
 it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
@@ -52,7 +44,7 @@ Examples:
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
 void AddOptions(CLI::App& app, Options* o) {
-    AddSceneOptions(app, &o->scene);
+    AddSceneOptions(app, &o->render.scene);
     app.add_option("--name", o->name, "Name of the viewpoint, as in thresholds files")
         ->required()
         ->check([](const std::string& name) {
@@ -74,30 +66,33 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::Range(0.1, 100.0))
         ->type_name("X")
         ->needs(human);
-    app.add_option("--cap", o->schedule.cap, "Samples per pixel at which all recordings end")
+    app.add_option("--cap", o->render.schedule.cap, "Samples per pixel at which all recordings end")
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--seed", o->seed, "Another seed gives other, equally good, samples")
+    AddEstimatorOption(app, &o->render.estimator);
+    app.add_option("--seed", o->render.seed, "Another seed gives other, equally good, samples")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
+    app.add_option("--checkpoint-interval", o->render.checkpoint.interval,
+                   "Seconds between checkpoints")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
-    app.add_flag("--quiet", o->quiet, "Print only warnings and errors");
-    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors");
+    app.add_flag("--json-progress", o->render.jsonProgress,
+                 "Print progress as JSON, an object a line");
     app.footer(kFooter);
 }
 
 // Returns the spp at which each block's recording ends; 0 for blocks that are not to be recorded.
 std::vector<int> MakeLimits(const Options& options, size_t blockCount) {
-    std::vector<int> limits(blockCount, options.blocks.empty() ? options.schedule.cap : 0);
+    std::vector<int> limits(blockCount, options.blocks.empty() ? options.render.schedule.cap : 0);
     for (const int block : options.blocks) {
         if (size_t(block) >= blockCount)
             throw Error(fmt::format("--blocks: there is no block {}, the last of the image is {}",
                                     block, blockCount - 1));
-        limits[size_t(block)] = options.schedule.cap;
+        limits[size_t(block)] = options.render.schedule.cap;
     }
     if (options.past == 0) return limits;
 
@@ -118,22 +113,14 @@ std::vector<ViewpointRecording> ReadIfThere(const std::string& path) {
     return ReadDataset(path);
 }
 
-ProgressPrinter MakePrinter(const Options& options) {
-    const ProgressStyle style = options.jsonProgress    ? ProgressStyle::Json
-                                : options.quiet         ? ProgressStyle::Silent
-                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
-                                                        : ProgressStyle::Plain;
-    return ProgressPrinter(style, false, stderr);
-}
-
 // Describes the whole recording but for the blocks themselves.
 ViewpointRecording MakeViewpoint(const Options& options, const RenderIdentity& identity,
                                  size_t blockCount) {
     ViewpointRecording viewpoint;
     viewpoint.name = options.name;
     viewpoint.blockCount = int(blockCount);
-    viewpoint.cap = options.schedule.cap;
-    viewpoint.passSpp = options.schedule.passLength;
+    viewpoint.cap = options.render.schedule.cap;
+    viewpoint.passSpp = options.render.schedule.passLength;
     for (const auto& [key, value] : identity)
         if (key != "stop" && key != "model" && key != "cap" && key != "pass" && key != "version")
             viewpoint.provenance[key] = value;
@@ -157,19 +144,18 @@ std::string CheckpointName(const Options& options) {
 }
 
 ExitCode RunDataset(const Options& options) {
+    const RenderSettings& settings = options.render;
     Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(options.scene, warnings);
-    Warnings unheard;  // Compile() will give them again
-    const FilmSettings film = MakeFilmSettings(description, options.scene.compile.film, unheard);
+    const Description description = LoadDescription(settings.scene, warnings);
+    const FilmSettings film = CheckedFilm(description, settings.scene);
     const PixelRect region{film.cropMin, film.cropMax};
-    CheckFilm(region);
-    const std::vector<Block> blocks = MakeBlocks(region, options.schedule);
+    const std::vector<Block> blocks = MakeBlocks(region, options.render.schedule);
     for (const Block& block : blocks)
         if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
             throw Error(
                 fmt::format("blocks of less than {} pixels a side cannot be recorded; "
                             "choose a --resolution that is a multiple of {}",
-                            smallestVotingSide, options.schedule.blockSize));
+                            smallestVotingSide, options.render.schedule.blockSize));
 
     // Leave out what is there already.
     std::vector<int> limits = MakeLimits(options, blocks.size());
@@ -185,51 +171,34 @@ ExitCode RunDataset(const Options& options) {
     }
 
     const std::unique_ptr<const Scene> scene =
-        Compile(description, options.scene.compile, warnings);
+        Compile(description, settings.scene.compile, warnings);
     warnings.Summarize();
-    const Provenance provenance{.version = LULL_VERSION,
-                                .scene = options.scene.file,
-                                .seed = options.seed,
-                                .sampler = options.sampler,
-                                .estimator = options.estimator,
-                                .criterion = fmt::format("record:{}", fmt::join(limits, ",")),
-                                .checksum = "",
-                                .schedule = options.schedule,
-                                .maxDepth = scene->maxDepth,
-                                .threads = options.scene.compile.threads,
-                                .substitute = options.scene.compile.substitute,
-                                .resolution = film.resolution,
-                                .crop = region};
+    Provenance provenance = MakeProvenance(settings, *scene, film);
+    provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
     const RenderIdentity identity = IdentityOf(provenance, SceneHash(description));
     ViewpointRecording viewpoint = MakeViewpoint(options, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
     // Go on where an earlier run was interrupted.
     const CheckpointOptions checkpoint{.file = CheckpointName(options),
-                                       .interval = options.checkpointInterval,
+                                       .interval = settings.checkpoint.interval,
                                        .resume = std::filesystem::exists(CheckpointName(options))};
     Film pixels(region);
     const RenderState state =
         Resume(checkpoint, identity, &pixels).value_or(Beginning(blocks, limits));
 
     std::vector<BlockRecording> recordings(blocks.size());
-    ProgressPrinter printer = MakePrinter(options);
+    ProgressPrinter printer = MakePrinter(settings, false);
     CatchInterrupts();
-    RenderOptions render;
-    render.schedule = options.schedule;
-    render.sampler = options.sampler;
-    render.seed = options.seed;
-    render.threads = options.scene.compile.threads;
+    RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
     render.makeCriterion = [&](const BlockInfo& info) {
-        return std::make_unique<Recorder>(options.schedule.passLength, options.schedule.cap,
-                                          limits[size_t(info.index)],
+        return std::make_unique<Recorder>(options.render.schedule.passLength,
+                                          options.render.schedule.cap, limits[size_t(info.index)],
                                           &recordings[size_t(info.index)]);
     };
-    render.onProgress = [&](const RenderProgress& p) { printer.Print(p); };
-    render.isCancelled = Interrupted;
     WriteCheckpoints(checkpoint, identity, pixels, &render);
     const RenderResult result =
-        Render(SamplesOf(*scene, options.estimator), render, &pixels, &state);
+        Render(SamplesOf(*scene, settings.estimator), render, &pixels, &state);
     printer.Finish(result.progress);
     if (result.cancelled) {
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
@@ -257,6 +226,9 @@ void AddDatasetCommand(CLI::App& app, Command* command) {
     CLI::App* dataset = app.add_subcommand(
         "dataset", "Records what stopping rules can learn from, viewpoint by viewpoint.");
     auto options = std::make_shared<Options>();
+    // What people judged is pbrt-v3's own noise.
+    options->render.sampler = SamplerKind::Random;
+    options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());
     dataset->callback([=] { *command = [=] { return RunDataset(*options); }; });
 }

@@ -132,11 +132,8 @@ ExitCode RunRender(Options options) {
     // Check all that can be wrong before the work begins.
     Warnings warnings = MakePrintedWarnings();
     const Description description = LoadDescription(settings.scene, warnings);
-    Warnings unheard;  // Compile() will give them again
-    const FilmSettings filmSettings =
-        MakeFilmSettings(description, settings.scene.compile.film, unheard);
+    const FilmSettings filmSettings = CheckedFilm(description, settings.scene);
     const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
-    CheckFilm(region);
     const CriterionFactory factory = ReadRule(options, region, &settings);
     CheckBlocks(region, settings.schedule, warnings);
     const RenderFiles files =

@@ -11,6 +11,17 @@
 
 namespace lull {
 
+void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
+    const std::map<std::string, Estimator> estimators = {{"combined", Estimator::Combined},
+                                                         {"pbrt-v3", Estimator::PbrtV3}};
+    app.add_option_function<std::string>(
+           "--estimator", [=](const std::string& name) { *estimator = estimators.at(name); },
+           "combined: least noise for its time; pbrt-v3: the same noise as pbrt-v3's path")
+        ->check(CLI::IsMember(estimators))
+        ->type_name("combined|pbrt-v3")
+        ->default_str(*estimator == Estimator::Combined ? "combined" : "pbrt-v3");
+}
+
 void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Samples per pixel that no block exceeds [10000]")
@@ -33,14 +44,7 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
                "Where sample positions come from [as the scene says]")
             ->check(CLI::IsMember(samplers))
             ->type_name("random|sobol");
-    const std::map<std::string, Estimator> estimators = {{"combined", Estimator::Combined},
-                                                         {"pbrt-v3", Estimator::PbrtV3}};
-    app.add_option_function<std::string>(
-           "--estimator",
-           [s, estimators](const std::string& n) { s->estimator = estimators.at(n); },
-           "combined (default): least noise; pbrt-v3: the same noise as pbrt-v3's path")
-        ->check(CLI::IsMember(estimators))
-        ->type_name("combined|pbrt-v3");
+    AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Another seed gives other, equally good, samples")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")

@@ -21,6 +21,9 @@ struct RenderSettings {
 // --estimator, --seed, --quiet and --json-progress.
 void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler = true);
 
+// Adds --estimator, which stays as it is where the user says nothing.
+void AddEstimatorOption(CLI::App& app, Estimator* estimator);
+
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 

@@ -83,19 +83,23 @@ Warnings MakePrintedWarnings() {
     return Warnings([](const std::string& message) { fmt::print(stderr, "lull: {}\n", message); });
 }
 
-void CheckFilm(const PixelRect& region) {
-    // The sums, and at the end the means and counts as they are written.
-    constexpr int64_t kBytes = sizeof(FilmPixel) + 2 * 4 * sizeof(float) + 3;
-    CheckMemory(region.Area() * kBytes,
-                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
-                "render it in parts with --crop, or smaller with --resolution");
-}
-
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     const std::string extension = std::filesystem::path(options.file).extension().string();
     if (extension == ".gltf" || extension == ".glb")
         throw Error(options.file + ": is a glTF file; only pbrt-v3 scenes can be read");
     return ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
+}
+
+FilmSettings CheckedFilm(const Description& description, const SceneOptions& options) {
+    Warnings unheard;
+    const FilmSettings film = MakeFilmSettings(description, options.compile.film, unheard);
+    const PixelRect region{film.cropMin, film.cropMax};
+    // The sums, and at the end the means and counts as they are written.
+    constexpr int64_t kBytes = sizeof(FilmPixel) + 2 * 4 * sizeof(float) + 3;
+    CheckMemory(region.Area() * kBytes,
+                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
+                "render it in parts with --crop, or smaller with --resolution");
+    return film;
 }
 
 }  // namespace lull

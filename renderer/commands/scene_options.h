@@ -20,10 +20,11 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options);
 // Prints warnings on stderr as they occur.
 Warnings MakePrintedWarnings();
 
-// Throws Error if the memory cannot hold a film of this size.
-void CheckFilm(const PixelRect& region);
-
 // Reads the scene's file. Throws Error.
 Description LoadDescription(const SceneOptions&, Warnings&);
+
+// Returns the film as the options change it, before the scene is compiled, which will give the
+// film's warnings. Throws Error, also if the memory cannot hold such a film.
+FilmSettings CheckedFilm(const Description&, const SceneOptions&);
 
 }  // namespace lull
