@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <stdexcept>
 
@@ -82,7 +83,7 @@ class Executor {
             nextCheckpoint = Seconds() + options.checkpointInterval;
             Spawn(schedule.ReadyTiles());
             group.wait();
-            order.Enter();
+            task.order.Enter();
             if (options.onCheckpoint && (!schedule.Done() || options.checkpointAtEnd))
                 options.onCheckpoint(State());
         } while (pausing && !IsCancelled());
@@ -94,14 +95,21 @@ class Executor {
     }
 
   private:
+    // Is what all tasks do, and holds their order, so that the first thing they read is this.
+    struct Task {
+        Executor* executor;
+        TaskOrder order = {};
+
+        void operator()() {
+            order.Enter();
+            executor->RunTile();
+            order.Leave();
+        }
+    };
+
     void Spawn(int count) {
-        order.Leave();
-        for (int i = 0; i < count; ++i)
-            group.run([this] {
-                order.Enter();
-                RunTile();
-                order.Leave();
-            });
+        task.order.Leave();
+        for (int i = 0; i < count; ++i) group.run(std::ref(task));
     }
 
     void RunTile() {
@@ -237,7 +245,7 @@ class Executor {
     double nextProgress = 0;
 
     tbb::enumerable_thread_specific<FilmView> views;
-    TaskOrder order;
+    Task task{this};
     tbb::task_group group;
 };
 
