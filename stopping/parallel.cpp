@@ -7,17 +7,28 @@
 
 namespace lull {
 
-void ForEachIndex(int count, const std::function<void(int)>& body) {
-    if (count == 1) return body(0);
-    TaskOrder order;
-    order.Leave();
-    const auto ordered = [&](int i) {
+namespace {
+
+// Holds the order, so that the first thing that a task reads is this.
+struct OrderedBody {
+    const std::function<void(int)>& body;
+    TaskOrder order = {};
+
+    void operator()(int i) {
         order.Enter();
         body(i);
         order.Leave();
-    };
-    tbb::parallel_for(0, count, ordered, tbb::simple_partitioner());
-    order.Enter();
+    }
+};
+
+}  // namespace
+
+void ForEachIndex(int count, const std::function<void(int)>& body) {
+    if (count == 1) return body(0);
+    OrderedBody ordered{body};
+    ordered.order.Leave();
+    tbb::parallel_for(0, count, std::ref(ordered), tbb::simple_partitioner());
+    ordered.order.Enter();
 }
 
 void RunWithThreads(int threads, const std::function<void()>& body) {
