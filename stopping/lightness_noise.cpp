@@ -184,4 +184,11 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
     return result;
 }
 
+std::vector<double> StrongMaskedNoise(std::span<const float> noise,
+                                      std::span<const float> texture) {
+    std::vector<double> masked;
+    for (size_t i = 0; i < noise.size(); ++i) masked.push_back(noise[i] / (1 + double(texture[i])));
+    return masked;
+}
+
 }  // namespace lull

@@ -1,6 +1,7 @@
 // Estimates the noise that an observer can see in a block: in lightness, and masked by texture.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "stopping/criterion.h"
@@ -39,5 +40,9 @@ struct LightnessNoiseStatistics {
 };
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);
+
+// Returns noise / (1 + t) of sub-blocks, whose noise and texture have the same length: four times
+// the masking of maskedNoise, which comes closer to what people see (stopping/data/README.md).
+std::vector<double> StrongMaskedNoise(std::span<const float> noise, std::span<const float> texture);
 
 }  // namespace lull

@@ -13,7 +13,7 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 11> featureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 12> featureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<Feature, const char*>, 11> featureNames = {
      {Feature::NoiseMean, "noise_mean"},
      {Feature::MaskedNoise, "masked_noise"},
      {Feature::HalfNoise, "half_noise"},
+     {Feature::StrongMaskedNoise, "strong_masked_noise"},
      {Feature::LogSpp, "logspp"}}};
 
 Feature ParseFeature(const std::string& name) {

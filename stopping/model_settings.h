@@ -21,11 +21,13 @@ enum class Feature {
     NoiseMean,
     MaskedNoise,
     HalfNoise,
+    StrongMaskedNoise,
     LogSpp
 };
 
 // Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
-// "noise_mean", "masked_noise", "half_noise" and "logspp"; a list has commas between them.
+// "noise_mean", "masked_noise", "half_noise", "strong_masked_noise" and "logspp"; a list has commas
+// between them.
 // ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);

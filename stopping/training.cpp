@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -42,6 +43,24 @@ std::vector<std::vector<int>> MakeSymmetries(const ModelSettings& settings) {
     return symmetries;
 }
 
+std::vector<float> ClassWeights(const TrainingSamples& samples, double noisyShare) {
+    std::vector<float> weights;
+    for (char noisy : samples.noisy) weights.push_back(float(noisy ? 1 - noisyShare : noisyShare));
+    return weights;
+}
+
+// Gives each class of each viewpoint the same sum of weights; their mean is 1/2, as it is of class
+// weights if there are as many samples of both.
+std::vector<float> ViewpointWeights(const TrainingSamples& samples) {
+    std::map<std::pair<int, char>, int> counts;
+    for (size_t i = 0; i < samples.Count(); ++i) ++counts[{samples.viewpoint[i], samples.noisy[i]}];
+    const double sum = double(samples.Count()) / 2 / double(counts.size());
+    std::vector<float> weights;
+    for (size_t i = 0; i < samples.Count(); ++i)
+        weights.push_back(float(sum / counts[{samples.viewpoint[i], samples.noisy[i]}]));
+    return weights;
+}
+
 void Check(bool isRight, const char* message) {
     if (!isRight) throw std::invalid_argument(message);
 }
@@ -70,8 +89,8 @@ Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     Check(count > 0, "there are no samples to train on");
     Check(noisy > 0 && noisy < double(count),
           "the samples to train on are all noisy or all noiseless; there is nothing to learn");
-    noisyWeight = float(1 - noisy / double(count));
-    noiselessWeight = float(noisy / double(count));
+    sampleWeights = options.balanceViewpoints ? ViewpointWeights(samples)
+                                              : ClassWeights(samples, noisy / double(count));
     stepsPerEpoch = int64_t(count + size_t(options.batch) - 1) / options.batch;
     const size_t most = (std::min(count, size_t(options.batch)) + chunkSize - 1) / chunkSize;
     gradients.assign(most, optimizer.meanSquares);
@@ -104,8 +123,7 @@ void Trainer::FillChunk(int chunk, int begin, int end, int batchSize) {
             for (int i = 0; i < inputs; ++i)
                 batch.inputs(i, t * count + s) = window[t * inputs + sources[size_t(i)]];
         batch.targets[s] = samples.noisy[sample];
-        batch.weights[s] =
-            (samples.noisy[sample] ? noisyWeight : noiselessWeight) / float(batchSize);
+        batch.weights[s] = sampleWeights[sample] / float(batchSize);
     }
 
     batch.masks.resize(options.dropout > 0 ? weights.lstm.size() : 0);
@@ -179,6 +197,7 @@ uint32_t Trainer::Fingerprint() const {
     writer.Put(options.epochs);
     writer.Put(options.seed);
     writer.Put(options.augment);
+    writer.Put(options.balanceViewpoints);
     const std::string features =
         FeatureNames(samples.settings.features) + ":" + PoolNames(samples.settings.pools);
     put(features);

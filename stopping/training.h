@@ -23,6 +23,8 @@ struct TrainingOptions {
     // Shows every sample flipped and rotated at random, since it should not matter which sub-block
     // is where. Changes nothing where features are pooled.
     bool augment = false;
+    // Lets each viewpoint count the same, however many blocks of it there are.
+    bool balanceViewpoints = false;
 };
 
 struct TrainingProgress {
@@ -38,7 +40,8 @@ struct TrainingProgress {
 // of processor: not on threads (see RunWithThreads()) and interruptions.
 //
 // The loss of noisy samples is weighted by the share of those that are not, and the other way
-// round, so that both classes count the same.
+// round, so that both classes count the same; with balanceViewpoints the same holds within each
+// viewpoint.
 class Trainer {
   public:
     // The samples must outlive the trainer. Throws std::invalid_argument if an option is out of
@@ -71,7 +74,7 @@ class Trainer {
     const TrainingSamples& samples;
     TrainingOptions options;
     int64_t stepsPerEpoch;
-    float noisyWeight, noiselessWeight;
+    std::vector<float> sampleWeights;
     std::vector<std::vector<int>> symmetries;  // for each where the value of each input comes from
     NetworkWeights<float> weights;
     RmsProp optimizer;

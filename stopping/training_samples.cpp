@@ -1,9 +1,11 @@
 #include "stopping/training_samples.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
+#include "stopping/lightness_noise.h"
 #include "stopping/window.h"
 
 namespace lull {
@@ -27,6 +29,11 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     BlockMeasures measures{.spp = recording.spp[size_t(i)]};
     for (Feature feature : settings.features) {
         if (feature == Feature::LogSpp) continue;
+        if (feature == Feature::StrongMaskedNoise) {
+            measures.Of(feature) =
+                StrongMaskedNoise(recording.Values(i, "noise"), recording.Values(i, "texture"));
+            continue;
+        }
         // Other features have the names of their channels.
         const std::span<const float> values =
             recording.Values(i, IsEntropy(feature) ? EntropyChannel(feature, settings.m)
@@ -69,7 +76,10 @@ std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoint
 TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSettings& settings) {
     CheckSettings(settings);
     TrainingSamples samples{.settings = settings, .windowSize = settings.k * InputCount(settings)};
+    std::map<std::string, int> viewpoints;
     for (const JudgedBlock& block : blocks) {
+        const int viewpoint =
+            viewpoints.try_emplace(block.viewpoint, int(viewpoints.size())).first->second;
         const BlockRecording& recording = *block.recording;
         FeatureHistory history(settings);
         int expected = block.passSpp;  // the next spp of the grid
@@ -90,6 +100,7 @@ TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSett
             samples.windows.insert(samples.windows.end(), window->data(),
                                    window->data() + window->size());
             samples.noisy.push_back(block.human > spp);
+            samples.viewpoint.push_back(viewpoint);
         }
     }
     return samples;

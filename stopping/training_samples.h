@@ -39,6 +39,7 @@ struct TrainingSamples {
     int windowSize = 0;               // inputs * k
     std::vector<float> windows = {};  // each column-major as FeatureHistory::WindowAt() returns it
     std::vector<char> noisy = {};  // of each window, whether its spp is below the human threshold
+    std::vector<int> viewpoint = {};  // of each window, counted from 0
 
     size_t Count() const { return noisy.size(); }
 };

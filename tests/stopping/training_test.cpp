@@ -120,6 +120,32 @@ TEST(Trainer, LearnsWhatNoiseIs) {
     EXPECT_GT(AucOf(Train(data.samples, options), data.samples), 0.99);
 }
 
+TEST(Trainer, LetsEachViewpointCountTheSame) {
+    // Two viewpoints that contradict each other: the one with more blocks must not decide.
+    TrainingSamples samples{.settings = {.k = 1, .features = {Feature::LogSpp}}, .windowSize = 1};
+    auto add = [&](int viewpoint, char noisy, int count) {
+        for (int i = 0; i < count; ++i) {
+            samples.windows.push_back(viewpoint == 0 ? 1.f : -1.f);
+            samples.noisy.push_back(noisy);
+            samples.viewpoint.push_back(viewpoint);
+        }
+    };
+    add(0, 1, 300);
+    add(0, 0, 100);
+    add(1, 1, 5);
+    add(1, 0, 20);
+    TrainingOptions options = {
+        .units = {}, .dropout = 0, .learningRate = 0.01, .batch = 425, .epochs = 400};
+    const auto probability = [&](float input) {
+        return NoisyProbability(Train(samples, options), Eigen::MatrixXf::Constant(1, 1, input));
+    };
+    EXPECT_GT(probability(1), 0.51);
+    EXPECT_LT(probability(-1), 0.2);
+    options.balanceViewpoints = true;
+    EXPECT_NEAR(probability(1), 0.5, 0.02);
+    EXPECT_NEAR(probability(-1), 0.5, 0.02);
+}
+
 TEST(Trainer, RefusesWhatCannotBeLearned) {
     const Data data(SmallSettings());
     TrainingSamples same = data.samples;
