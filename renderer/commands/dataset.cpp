@@ -108,6 +108,18 @@ std::vector<int> MakeLimits(const Options& options, size_t blockCount) {
     return limits;
 }
 
+// Returns how many samples it takes to bring each block to the pass that reaches its limit.
+int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& blocks,
+                    const ScheduleOptions& schedule) {
+    int64_t samples = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const int pass = schedule.passLength;
+        const int spp = std::min((limits[i] + pass - 1) / pass * pass, schedule.cap);
+        samples += spp * blocks[i].pixels.Area();
+    }
+    return samples;
+}
+
 std::vector<ViewpointRecording> ReadIfThere(const std::string& path) {
     if (!std::filesystem::exists(path)) return {};
     return ReadDataset(path);
@@ -195,6 +207,11 @@ ExitCode RunDataset(const Options& options) {
         return std::make_unique<Recorder>(options.render.schedule.passLength,
                                           options.render.schedule.cap, limits[size_t(info.index)],
                                           &recordings[size_t(info.index)]);
+    };
+    const int64_t wanted = SamplesUpTo(limits, blocks, settings.schedule);
+    render.onProgress = [&](RenderProgress progress) {
+        progress.samplesToCap = wanted - progress.samples;
+        printer.Print(progress);
     };
     WriteCheckpoints(checkpoint, identity, pixels, &render);
     const RenderResult result =
