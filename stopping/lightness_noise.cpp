@@ -184,10 +184,15 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
     return result;
 }
 
-std::vector<double> StrongMaskedNoise(std::span<const float> noise,
+std::vector<double> DetailMaskedNoise(std::span<const float> noise,
+                                      std::span<const float> deviation,
                                       std::span<const float> texture) {
+    auto square = [](double x) { return x * x; };
     std::vector<double> masked;
-    for (size_t i = 0; i < noise.size(); ++i) masked.push_back(noise[i] / (1 + double(texture[i])));
+    for (size_t i = 0; i < noise.size(); ++i) {
+        const double detail = square(deviation[i]) - square(texture[i]) - square(noise[i]);
+        masked.push_back(noise[i] / (1 + std::sqrt(std::max(detail, 0.0)) / 4));
+    }
     return masked;
 }
 

@@ -41,8 +41,11 @@ struct LightnessNoiseStatistics {
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);
 
-// Returns noise / (1 + t) of sub-blocks, whose noise and texture have the same length: four times
-// the masking of maskedNoise, which comes closer to what people see (stopping/data/README.md).
-std::vector<double> StrongMaskedNoise(std::span<const float> noise, std::span<const float> texture);
+// Returns noise / (1 + d / 4) of sub-blocks, where d^2 = deviation^2 - t^2 - noise^2 (0 if below 0)
+// is what varies too finely to be in t: detail of the size of noise hides noise best. All three
+// have the same length.
+std::vector<double> DetailMaskedNoise(std::span<const float> noise,
+                                      std::span<const float> deviation,
+                                      std::span<const float> texture);
 
 }  // namespace lull

@@ -24,7 +24,7 @@ constexpr std::array<std::pair<Feature, const char*>, 12> featureNames = {
      {Feature::NoiseMean, "noise_mean"},
      {Feature::MaskedNoise, "masked_noise"},
      {Feature::HalfNoise, "half_noise"},
-     {Feature::StrongMaskedNoise, "strong_masked_noise"},
+     {Feature::DetailMaskedNoise, "detail_masked_noise"},
      {Feature::LogSpp, "logspp"}}};
 
 Feature ParseFeature(const std::string& name) {

@@ -21,12 +21,12 @@ enum class Feature {
     NoiseMean,
     MaskedNoise,
     HalfNoise,
-    StrongMaskedNoise,
+    DetailMaskedNoise,
     LogSpp
 };
 
 // Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
-// "noise_mean", "masked_noise", "half_noise", "strong_masked_noise" and "logspp"; a list has commas
+// "noise_mean", "masked_noise", "half_noise", "detail_masked_noise" and "logspp"; a list has commas
 // between them.
 // ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
 std::string FeatureNames(std::span<const Feature> features);

@@ -29,9 +29,10 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     BlockMeasures measures{.spp = recording.spp[size_t(i)]};
     for (Feature feature : settings.features) {
         if (feature == Feature::LogSpp) continue;
-        if (feature == Feature::StrongMaskedNoise) {
+        if (feature == Feature::DetailMaskedNoise) {
             measures.Of(feature) =
-                StrongMaskedNoise(recording.Values(i, "noise"), recording.Values(i, "texture"));
+                DetailMaskedNoise(recording.Values(i, "noise"), recording.Values(i, "deviation"),
+                                  recording.Values(i, "texture"));
             continue;
         }
         // Other features have the names of their channels.

@@ -15,7 +15,7 @@ Viewpoints are joined by their exact names; those without thresholds are left as
 
 Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
-  noise, noise_mean, masked_noise, strong_masked_noise, half_noise, lightness, deviation, texture
+  noise, noise_mean, masked_noise, detail_masked_noise, half_noise, lightness, deviation, texture
                      statistics of 10x10 sub-blocks, never normalised over the window
   logspp             the logarithm of the samples per pixel
 --pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,

@@ -17,7 +17,7 @@ namespace {
 TEST(ModelSettings, NameFeaturesAndPools) {
     const std::string features =
         "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,half_noise,"
-        "strong_masked_noise,logspp";
+        "detail_masked_noise,logspp";
     EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
     EXPECT_EQ(PoolNames(ParsePools("mean,rms,q0,q10,q100")), "mean,rms,q0,q10,q100");
     EXPECT_TRUE(ParsePools("").empty());
@@ -86,7 +86,7 @@ TEST(ModelInputs, AreThoseOfRecordings) {
         ModelSettings settings = {.m = m};
         settings.features = ParseFeatures(
             m == 100 ? "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,"
-                       "half_noise,strong_masked_noise,logspp"
+                       "half_noise,detail_masked_noise,logspp"
                      : "H,noise,logspp");
         BlockRecording recording;
         Recorder recorder(20, 100, 100, &recording);
