@@ -19,7 +19,7 @@ namespace lull {
 namespace {
 
 constexpr const char* ruleForms =
-    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise:T, thresholds:FILE[:NAME] and "
+    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise[:T], thresholds:FILE[:NAME] and "
     "learned[:MODEL.h5]";
 
 // Parses all of `text` as a number > 0, finite.
@@ -70,6 +70,13 @@ CriterionFactory LNoise(const std::string& argument) {
             .make = [threshold](const BlockInfo&) { return MakeLightnessNoise(threshold); }};
 }
 
+// Returns the rule with the threshold that it has where none is given.
+std::string WithThreshold(const std::string& rule) {
+    if (rule == "dammertz") return "dammertz:0.02";
+    if (rule == "lnoise") return "lnoise:0.7";
+    return rule;
+}
+
 // Chooses the row of a thresholds file: the one asked for, else the scene's, else the only one.
 const ThresholdsRow& ChooseRow(const std::vector<ThresholdsRow>& rows, const std::string& path,
                                const std::string& name, const std::string& sceneName) {
@@ -111,8 +118,9 @@ CriterionFactory Thresholds(const std::string& argument, const RuleContext& cont
 
 CriterionFactory Learned(const std::string& argument, const RuleContext& context) {
     const std::string path = argument.empty() ? context.defaultModel : argument;
-    if (path.empty())
-        throw std::invalid_argument("there is no model by default; name one, learned:MODEL.h5");
+    if (argument.empty() && !std::filesystem::exists(path))
+        throw std::runtime_error("the model of the rule `learned` is not at '" + path +
+                                 "'; name it, learned:MODEL.h5, or choose another rule");
     const auto model = std::make_shared<const Model>(ReadModel(path));
     // Make one now, so that a model that does not fit is an error before anything is rendered.
     try {
@@ -156,7 +164,7 @@ void Criterion::Restore(std::span<const std::byte> state) {
 }
 
 CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContext& context) {
-    const std::string rule = given == "dammertz" ? defaultRule : given;
+    const std::string rule = WithThreshold(given);
     const size_t colon = rule.find(':');
     const std::string kind = rule.substr(0, colon);
     const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);

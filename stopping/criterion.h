@@ -88,16 +88,17 @@ struct CriterionFactory {
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
 };
 
-// The rule where none is asked for, and what a bare `dammertz` means. In the middle greys an error
-// of 0.02 in square-root brightness is about two steps of an 8-bit display.
-inline constexpr const char* defaultRule = "dammertz:0.02";
+// The rule where none is asked for.
+inline constexpr const char* defaultRule = "learned";
 
 // Reads a stopping rule and the files it names:
 //     fixed:N                 stop at N samples per pixel
-//     dammertz[:T[:area]]     stop when the block's mean error is < T; without T: defaultRule
+//     dammertz[:T[:area]]     stop when the block's mean error is < T (0.02: in the middle greys
+//                             about two steps of an 8-bit display)
 //     cycles:T                stop when no pixel's error is >= T
 //     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
-//     lnoise:T                stop when the visible noise in lightness is < T three times in a row
+//     lnoise[:T]              stop when the visible noise in lightness is < T three times in a row
+//                             (0.7: where people stop to see it, see stopping/models/README.md)
 //     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
 //     learned[:MODEL.h5]      stop after noiseless votes of a recurrent network in a row
 // Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message

@@ -190,13 +190,14 @@ RuleOutcome SimulateStop(const JudgedBlock& block, int spp) {
     return outcome;
 }
 
-Simulator MakeSimulator(const std::string& given) {
+Simulator MakeSimulator(const std::string& given, const std::string& defaultModel) {
     const size_t colon = given.find(':');
     const std::string kind = given.substr(0, colon);
     const std::string argument = colon == std::string::npos ? "" : given.substr(colon + 1);
     if (kind == "thresholds" && !argument.empty()) return ThresholdsSimulator(argument);
-    const std::string rule = MakeCriterionFactory(given).rule;  // with its default, if it has one
-    if (kind == "learned") return LearnedSimulator(argument);
+    // With its default, if it has one.
+    const std::string rule = MakeCriterionFactory(given, {.defaultModel = defaultModel}).rule;
+    if (kind == "learned") return LearnedSimulator(argument.empty() ? defaultModel : argument);
 
     const double number = ParseNumber(rule.substr(rule.find(':') + 1), rule);
     if (kind == "dammertz") return ErrorSimulator(ErrorRule::Dammertz, number);

@@ -9,6 +9,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
 #include "renderer/commands/judged_blocks.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/output/file_io.h"
 #include "stopping/rivals.h"
 
@@ -29,9 +30,10 @@ constexpr const char* kFooter =
 have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
 
-Rules for --stop: dammertz:T, cycles:T, luxtile:T, lnoise:T, learned:MODEL.h5, fixed:N and
-thresholds:FILE. --rivals runs the first four, each with the one setting that is best on the other
-viewpoints (leave one out); "setting" says which, and for all what would be best on all of them.
+Rules for --stop: learned[:MODEL.h5], lnoise[:T], dammertz[:T], cycles:T, luxtile:T, fixed:N and
+thresholds:FILE. --rivals runs lnoise, dammertz, cycles and luxtile, each with the one setting that
+is best on the other viewpoints (leave one out); "setting" says which, and for all what would be
+best on all of them.
 
 Columns:
   views   how many viewpoints, and in them
@@ -166,7 +168,7 @@ std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const
             rules.push_back(
                 {rival.rule, fmt::format("{:.3g}", rival.bestOfAll), std::move(rival.viewpoints)});
     for (const std::string& rule : options.rules)
-        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule), "")});
+        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, DefaultModel()), "")});
     const bool anyShort = std::ranges::any_of(
         blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
     for (const std::string& path : options.predicted) {

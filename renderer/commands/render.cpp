@@ -23,11 +23,11 @@ struct Options {
 
 constexpr const char* kFooter =
     R"(Stopping rules (--stop):
-  dammertz[:T]            until a block's mean error in square-root brightness is below T
+  learned[:MODEL.h5]      until a network that was trained on human judgements sees no noise
+  lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.7)
+  dammertz[:T]            until a block's mean error in square-root brightness is below T (0.02)
   cycles:T                until every pixel of the block has an error below T
   luxtile:T               until the largest display error of the block is below T
-  lnoise:T                until the visible noise in lightness (of 0 to 100) is below T
-  learned[:MODEL.h5]      until a network that was trained on human judgements says so
   thresholds:FILE[:NAME]  until the spp that a thresholds file has for the block
   fixed:N                 until N samples per pixel
 
@@ -39,7 +39,7 @@ Files, beside each other:
 
 Examples:
   lull render scene.pbrt -o image.exr
-  lull render scene.pbrt --stop dammertz:0.01 --cap 2000 --report report.html
+  lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <filesystem>
 
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
@@ -60,13 +61,18 @@ int FixedSpp(const std::string& rule) {
     return spp;
 }
 
+std::string DefaultModel() {
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+    return (program.parent_path().parent_path() / "share/lull/models/learned.h5").string();
+}
+
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,
                           const RenderSettings& settings, const PixelRect& region) try {
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),
                               .sceneName = SceneName(settings.scene.file),
-                              .defaultModel = ""};
+                              .defaultModel = DefaultModel()};
     return MakeCriterionFactory(rule, context);
 } catch (const std::logic_error& e) {
     throw Error(option + ": " + e.what());

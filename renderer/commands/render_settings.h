@@ -27,6 +27,9 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 
+// Returns where the model of `learned` is installed: beside the program, wherever that is.
+std::string DefaultModel();
+
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
 // Error that a bad rule is.
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,

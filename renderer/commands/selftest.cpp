@@ -7,6 +7,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/output/progress.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/hard_cases/heavy_tails.h"
@@ -17,8 +18,8 @@ namespace {
 
 struct SelftestOptions {
     HardCaseOptions cases;
-    std::string only;   // a part of the names of those to run; empty: all
-    std::string model;  // a file; empty: learned rules are left out
+    std::string only;  // a part of the names of those to run; empty: all
+    std::string model = DefaultModel();
     bool markdown = false;
 };
 
@@ -86,12 +87,11 @@ void PrintHeavyTails(const SelftestOptions& options) {
         "missing: the image is too dark\nthen. 100 x 100 independent pixels of mean 0.25, passes "
         "of 20 spp, at most 10,000; the bias is that of the block's\nmean, known to 0.07 % or "
         "better at the cap, the error the relative RMS over the pixels; unseen is the share of "
-        "the\npixels that have not seen the rare light when the block stops.{}\n",
-        options.model.empty() ? " (The rule `learned` is added by `--model MODEL.h5`.)" : "");
+        "the\npixels that have not seen the rare light when the block stops.\n");
     std::vector<std::string> rules = UsualRules();
     for (const char* loose : {"dammertz:0.1", "cycles:0.1", "luxtile:0.1", "lnoise:2"})
         rules.push_back(loose);
-    if (!options.model.empty()) rules.push_back("learned:" + options.model);
+    rules.push_back("learned:" + options.model);
     for (const Tail& tail : HeavyTails()) {
         fmt::print(
             "\n{}:\n\n| rule | stops at spp | bias, % | error, % | unseen, % |\n"
@@ -99,7 +99,8 @@ void PrintHeavyTails(const SelftestOptions& options) {
             tail.name);
         const std::vector<StopOutcome> outcomes = StopBlocks(tail, rules, options.cases.seed);
         for (size_t i = 0; i < rules.size(); ++i)
-            fmt::print("| {} | {} | {:.2f} | {:.1f} | {} |\n", rules[i], outcomes[i].spp,
+            fmt::print("| {} | {} | {:.2f} | {:.1f} | {} |\n",
+                       rules[i].starts_with("learned") ? "learned" : rules[i], outcomes[i].spp,
                        100 * outcomes[i].bias, 100 * outcomes[i].error,
                        tail.rarity > 0 ? fmt::format("{:.1f}", 100 * outcomes[i].unseen) : "-");
     }
@@ -151,7 +152,8 @@ void AddSelftestCommand(CLI::App& app, Command* command) {
     selftest->add_flag("--markdown", options->markdown,
                        "Write the table as Markdown, and one of the bias of stopping rules");
     selftest
-        ->add_option("--model", options->model, "The model of a rule learned:MODEL for that table")
+        ->add_option("--model", options->model,
+                     "The model of `learned` for that table [the one that comes with lull]")
         ->type_name("MODEL.h5");
     selftest->footer(
         "A check passes if what lull computes is at most the tolerance from the answer. What is\n"

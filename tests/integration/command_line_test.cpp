@@ -1,5 +1,6 @@
 // Runs the program as its help describes it.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "renderer/output/image_io.h"
 #include "tests/integration/run_lull.h"
@@ -71,6 +72,16 @@ TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
     const Image png = ReadImage(directory.File("image.png"));
     EXPECT_EQ(png.width, 24);
     EXPECT_EQ(png.height, 16);
+}
+
+TEST(CommandLine, StopsAsPeopleWouldIfNothingElseIsAskedFor) {
+    const SceneDirectory directory;
+    const Outcome outcome = RunLull(
+        directory, "render scene.pbrt --resolution 48x48 --cap 100 --report r.json -o image.exr");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
+    EXPECT_EQ(report["provenance"]["criterion"], "learned");
+    EXPECT_NE(report["provenance"]["modelChecksum"], "");
 }
 
 TEST(CommandLine, TakesTheFileNameOfTheScene) {

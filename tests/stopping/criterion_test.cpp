@@ -47,7 +47,8 @@ TEST(Rule, MakesItsCriterion) {
         EXPECT_EQ(factory.smallestSide, smallestVotingSide);
         EXPECT_GT(StopSpp(factory.make({}).get()), 20) << rule;
     }
-    EXPECT_EQ(MakeCriterionFactory("dammertz").rule, defaultRule);
+    EXPECT_EQ(MakeCriterionFactory("dammertz").rule, "dammertz:0.02");
+    EXPECT_EQ(MakeCriterionFactory("lnoise").rule, "lnoise:0.7");
     // With the area factor a block that is a sixteenth of the image has a quarter of the error.
     const BlockImage block = NoisyBlock(40, 40, 0.2, 20, 1);
     const auto plain = MakeCriterionFactory("dammertz:0.05").make({.areaFraction = 0.0625});
@@ -79,12 +80,9 @@ TEST(Rule, SaysWhatIsWrongWithIt) {
                              "cycles:0x1",
                              "luxtile:6/256",
                              "luxtile",
-                             "lnoise",
                              "lnoise:0",
                              "thresholds",
                              "thresholds:",
-                             "learned",
-                             "learned:",
                              "Fixed:20",
                              "oracle:1"})
         EXPECT_NE(ErrorOf<Invalid>(rule).find("stopping rule '"), std::string::npos) << rule;
@@ -139,6 +137,7 @@ TEST(Rule, LoadsAModel) {
     EXPECT_NE(ErrorOf<Failed>("learned:" + file.path, {.passSpp = 16}).find("16 spp"),
               std::string::npos);
     EXPECT_NE(ErrorOf<Failed>("learned:/no/such/model.h5"), "");
+    EXPECT_NE(ErrorOf<Failed>("learned").find("learned:MODEL.h5"), std::string::npos);
 }
 
 TEST(Rule, GoesOnFromSavedState) {

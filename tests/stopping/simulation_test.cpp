@@ -139,11 +139,12 @@ TEST(Simulation, TakesTheRecordedStopsOfCycles) {
 TEST(Simulation, RefusesWhatCannotBeSimulated) {
     const BlockRecording recording = EmptyRecording(500), empty;
     const JudgedBlock block = MakeBlock(recording);
-    for (const char* rule : {"", "oracle:1", "lnoise", "dammertz:0.1:area", "fixed:x", "cycles:-1",
-                             "thresholds:", "learned"})
+    for (const char* rule :
+         {"", "oracle:1", "luxtile", "dammertz:0.1:area", "fixed:x", "cycles:-1", "thresholds:"})
         EXPECT_THROW(MakeSimulator(rule), std::invalid_argument) << rule;
     EXPECT_THROW(MakeSimulator("thresholds:/no/such/file.csv"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("learned:/no/such/model.h5"), std::runtime_error);
+    EXPECT_THROW(MakeSimulator("learned"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("fixed:20")(MakeBlock(empty)), std::invalid_argument);
 
     const ScratchFile file(".csv", "crown;100;150;\nkitchen;100;\n");
