@@ -98,7 +98,7 @@ inline constexpr const char* defaultRule = "learned";
 //     cycles:T                stop when no pixel's error is >= T
 //     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
 //     lnoise[:T]              stop when the visible noise in lightness is < T three times in a row
-//                             (0.7: where people stop to see it, see stopping/models/README.md)
+//                             (0.9: where people stop to see it, see stopping/models/README.md)
 //     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
 //     learned[:MODEL.h5]      stop after noiseless votes of a recurrent network in a row
 // Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message

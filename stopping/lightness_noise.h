@@ -41,10 +41,10 @@ struct LightnessNoiseStatistics {
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);
 
-// Returns noise / (1 + d / 4) of sub-blocks, where d^2 = deviation^2 - t^2 - noise^2 (0 if below 0)
-// is what varies too finely to be in t: detail of the size of noise hides noise best. All three
-// have the same length.
-std::vector<double> DetailMaskedNoise(std::span<const float> noise,
+// Returns h / (1 + d / 4) of sub-blocks, where h is halfNoise, which sees fireflies that saturate
+// the display, and d^2 = deviation^2 - t^2 - h^2 (0 if below 0) is what varies too finely to be in
+// t: detail of the size of noise hides noise best. All three have the same length.
+std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
                                       std::span<const float> deviation,
                                       std::span<const float> texture);
 

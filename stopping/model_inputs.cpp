@@ -53,7 +53,8 @@ void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
     put(Feature::NoiseMean, s.noiseMean);
     put(Feature::MaskedNoise, s.maskedNoise);
     put(Feature::HalfNoise, s.halfNoise);
-    measures->Of(Feature::DetailMaskedNoise) = DetailMaskedNoise(s.noise, s.deviation, s.texture);
+    measures->Of(Feature::DetailMaskedNoise) =
+        DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
 }
 
 int SubBlocks(const ModelSettings& settings, Feature feature) {

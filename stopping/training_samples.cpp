@@ -31,8 +31,8 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
         if (feature == Feature::LogSpp) continue;
         if (feature == Feature::DetailMaskedNoise) {
             measures.Of(feature) =
-                DetailMaskedNoise(recording.Values(i, "noise"), recording.Values(i, "deviation"),
-                                  recording.Values(i, "texture"));
+                DetailMaskedNoise(recording.Values(i, "half_noise"),
+                                  recording.Values(i, "deviation"), recording.Values(i, "texture"));
             continue;
         }
         // Other features have the names of their channels.
