@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -27,11 +28,11 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(One render to the cap with each sampler gives the images of all fixed numbers of samples and of all
-stopping rules over a range of their settings, and what each would have cost: the measured seconds
-of processors, divided by the number of threads. The errors are against --reference, or else
-against the image of the first sampler at the cap; that one has the samples of its sampler's other
-images in it, so that their error is understated near the cap.
+    R"(One render to the cap with each sampler gives the images of all fixed numbers of samples, of
+`learned`, and of the other stopping rules over a range of their settings, and what each would have
+cost: the measured seconds of processors, divided by the number of threads. The errors are against
+--reference, or else against the image of the first sampler at the cap; that one has the samples of
+its sampler's other images in it, so that their error is understated near the cap.
 
 Images of other renderers join in from a CSV with lines "name,seconds,file.exr".
 
@@ -42,7 +43,7 @@ Files:
 
 Examples:
   lull bench scene.pbrt --resolution 400x400 --block 100 --cap 2000 -o room --report room.html
-  lull bench scene.pbrt --rule learned:model.h5 --external others.csv -o room
+  lull bench scene.pbrt --rule learned:other.h5 --external others.csv -o room
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -75,7 +76,9 @@ void AddOptions(CLI::App& app, Options* o) {
 std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& region) {
     const ScheduleOptions& schedule = options.render.schedule;
     std::vector<std::string> texts = BenchRules(schedule.passLength, schedule.cap);
-    texts.insert(texts.end(), options.rules.begin(), options.rules.end());
+    texts.push_back("learned");
+    for (const std::string& rule : options.rules)
+        if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
     std::vector<ObservedRule> rules;
     for (const std::string& text : texts) {
         const CriterionFactory factory = ReadRule("--rule", text, options.render, region);
@@ -106,27 +109,25 @@ RgbImage ReadPicture(const std::string& file, const PixelRect& region, ComparedF
 
 Job Prepare(const Options& options) {
     const RenderSettings& settings = options.render;
-    Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(settings.scene, warnings);
-    const FilmSettings film = CheckedFilm(description, settings.scene);
-    const PixelRect region{film.cropMin, film.cropMax};
+    SceneInput input(settings.scene);
     Job job;
-    job.rules = MakeRules(options, region);
+    job.rules = MakeRules(options, input.region);
     ComparedFile file;
-    if (!options.reference.empty()) job.reference = ReadPicture(options.reference, region, &file);
+    if (!options.reference.empty())
+        job.reference = ReadPicture(options.reference, input.region, &file);
     if (!options.external.empty())
         for (const ExternalImage& external : ReadExternalImages(options.external)) {
-            ReadPicture(external.file, region, &file);
+            ReadPicture(external.file, input.region, &file);
             file.image.name = external.name;
             job.external.push_back(file);
             job.externalSeconds.push_back(external.seconds);
         }
     CheckWritable(options.output + ".csv");
     if (!options.report.empty()) CheckWritable(options.report);
-    job.scene = Compile(description, settings.scene.compile, warnings);
-    warnings.Summarize();
-    job.sceneHash = SceneHash(description);
-    job.provenance = MakeProvenance(settings, *job.scene, film);
+    job.scene = Compile(input.description, settings.scene.compile, input.warnings);
+    input.warnings.Summarize();
+    job.sceneHash = SceneHash(input.description);
+    job.provenance = MakeProvenance(settings, *job.scene, input.film);
     return job;
 }
 

@@ -96,30 +96,27 @@ ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) 
 // Loads the scene and checks all that can be wrong before the work begins.
 Job Prepare(const CompareOptions& options) {
     const RenderSettings& settings = options.render;
-    Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(settings.scene, warnings);
-    const FilmSettings film = CheckedFilm(description, settings.scene);
-    const PixelRect region{film.cropMin, film.cropMax};
+    SceneInput input(settings.scene);
 
     Job job;
-    const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, region);
+    const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);
     job.rules.push_back(MakeRule("automatic", automatic));
     std::string humanChecksum = "none";
     if (!options.human.empty() && !IsImage(options.human)) {
         const CriterionFactory human =
-            ReadRule("--human", "thresholds:" + options.human, settings, region);
+            ReadRule("--human", "thresholds:" + options.human, settings, input.region);
         job.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
     }
     CheckOutputs(options);
     CheckCheckpoint(settings.checkpoint);
-    job.scene = Compile(description, settings.scene.compile, warnings);
-    warnings.Summarize();
-    job.warnings = warnings.Counts();
-    job.provenance = MakeProvenance(settings, *job.scene, film);
+    job.scene = Compile(input.description, settings.scene.compile, input.warnings);
+    input.warnings.Summarize();
+    job.warnings = input.warnings.Counts();
+    job.provenance = MakeProvenance(settings, *job.scene, input.film);
     job.provenance.criterion = automatic.rule;
     job.provenance.checksum = automatic.checksum;
-    job.identity = IdentityOf(job.provenance, SceneHash(description));
+    job.identity = IdentityOf(job.provenance, SceneHash(input.description));
     job.identity["human"] = humanChecksum;
     job.identity["snapshots"] = options.snapshots ? "yes" : "no";
     job.identity["curves"] = options.report.empty() ? "no" : "yes";

@@ -157,17 +157,15 @@ std::string CheckpointName(const Options& options) {
 
 ExitCode RunDataset(const Options& options) {
     const RenderSettings& settings = options.render;
-    Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(settings.scene, warnings);
-    const FilmSettings film = CheckedFilm(description, settings.scene);
-    const PixelRect region{film.cropMin, film.cropMax};
-    const std::vector<Block> blocks = MakeBlocks(region, options.render.schedule);
+    SceneInput input(settings.scene);
+    const PixelRect& region = input.region;
+    const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
     for (const Block& block : blocks)
         if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
             throw Error(
                 fmt::format("blocks of less than {} pixels a side cannot be recorded; "
                             "choose a --resolution that is a multiple of {}",
-                            smallestVotingSide, options.render.schedule.blockSize));
+                            smallestVotingSide, settings.schedule.blockSize));
 
     // Leave out what is there already.
     std::vector<int> limits = MakeLimits(options, blocks.size());
@@ -183,11 +181,11 @@ ExitCode RunDataset(const Options& options) {
     }
 
     const std::unique_ptr<const Scene> scene =
-        Compile(description, settings.scene.compile, warnings);
-    warnings.Summarize();
-    Provenance provenance = MakeProvenance(settings, *scene, film);
+        Compile(input.description, settings.scene.compile, input.warnings);
+    input.warnings.Summarize();
+    Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
-    const RenderIdentity identity = IdentityOf(provenance, SceneHash(description));
+    const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
     ViewpointRecording viewpoint = MakeViewpoint(options, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
@@ -204,8 +202,8 @@ ExitCode RunDataset(const Options& options) {
     CatchInterrupts();
     RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
     render.makeCriterion = [&](const BlockInfo& info) {
-        return std::make_unique<Recorder>(options.render.schedule.passLength,
-                                          options.render.schedule.cap, limits[size_t(info.index)],
+        return std::make_unique<Recorder>(settings.schedule.passLength, settings.schedule.cap,
+                                          limits[size_t(info.index)],
                                           &recordings[size_t(info.index)]);
     };
     const int64_t wanted = SamplesUpTo(limits, blocks, settings.schedule);

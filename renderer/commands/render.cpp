@@ -130,28 +130,26 @@ ExitCode RunRender(Options options) {
     RenderSettings& settings = options.render;
 
     // Check all that can be wrong before the work begins.
-    Warnings warnings = MakePrintedWarnings();
-    const Description description = LoadDescription(settings.scene, warnings);
-    const FilmSettings filmSettings = CheckedFilm(description, settings.scene);
-    const PixelRect region{filmSettings.cropMin, filmSettings.cropMax};
+    SceneInput input(settings.scene);
+    const PixelRect& region = input.region;
     const CriterionFactory factory = ReadRule(options, region, &settings);
-    CheckBlocks(region, settings.schedule, warnings);
+    CheckBlocks(region, settings.schedule, input.warnings);
     const RenderFiles files =
-        NameFiles(options.output.empty() ? filmSettings.filename : options.output, options.report);
+        NameFiles(options.output.empty() ? input.film.filename : options.output, options.report);
     CheckWritable(files, settings.scene.file);
     CheckCheckpoint(settings.checkpoint);
 
     const std::unique_ptr<const Scene> scene =
-        Compile(description, settings.scene.compile, warnings);
-    warnings.Summarize();
+        Compile(input.description, settings.scene.compile, input.warnings);
+    input.warnings.Summarize();
 
-    Provenance provenance = MakeProvenance(settings, *scene, filmSettings);
+    Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = factory.rule;
     provenance.checksum = factory.checksum;
     const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
     if (!settings.checkpoint.file.empty()) {
-        identity = IdentityOf(provenance, SceneHash(description));
+        identity = IdentityOf(provenance, SceneHash(input.description));
         identity["curves"] = withCurves ? "yes" : "no";
     }
     Film film(region);
@@ -170,7 +168,7 @@ ExitCode RunRender(Options options) {
     if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 
-    WriteFiles(files, *scene, film, provenance, result, warnings, histories);
+    WriteFiles(files, *scene, film, provenance, result, input.warnings, histories);
     PrintFiles(files, result);
     if (!result.cancelled && !settings.checkpoint.file.empty())
         std::filesystem::remove(settings.checkpoint.file);

@@ -90,16 +90,25 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     return ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
 }
 
-FilmSettings CheckedFilm(const Description& description, const SceneOptions& options) {
+namespace {
+
+FilmSettings SilentFilmSettings(const Description& description, const SceneOptions& options) {
     Warnings unheard;
-    const FilmSettings film = MakeFilmSettings(description, options.compile.film, unheard);
-    const PixelRect region{film.cropMin, film.cropMax};
+    return MakeFilmSettings(description, options.compile.film, unheard);
+}
+
+}  // namespace
+
+SceneInput::SceneInput(const SceneOptions& options)
+    : warnings(MakePrintedWarnings()),
+      description(LoadDescription(options, warnings)),
+      film(SilentFilmSettings(description, options)),
+      region{film.cropMin, film.cropMax} {
     // The sums, and at the end the means and counts as they are written.
     constexpr int64_t kBytes = sizeof(FilmPixel) + 2 * 4 * sizeof(float) + 3;
     CheckMemory(region.Area() * kBytes,
                 fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
                 "render it in parts with --crop, or smaller with --resolution");
-    return film;
 }
 
 }  // namespace lull

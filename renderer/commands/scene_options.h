@@ -23,8 +23,16 @@ Warnings MakePrintedWarnings();
 // Reads the scene's file. Throws Error.
 Description LoadDescription(const SceneOptions&, Warnings&);
 
-// Returns the film as the options change it, before the scene is compiled, which will give the
-// film's warnings. Throws Error, also if the memory cannot hold such a film.
-FilmSettings CheckedFilm(const Description&, const SceneOptions&);
+// Holds a scene that has been read, and its film as the options change it, before it is compiled,
+// which will give the film's warnings.
+struct SceneInput {
+    // Throws Error, also if the memory cannot hold such a film.
+    explicit SceneInput(const SceneOptions&);
+
+    Warnings warnings;  // printed as they occur
+    Description description;
+    FilmSettings film;
+    PixelRect region;  // the film's crop
+};
 
 }  // namespace lull

@@ -146,10 +146,10 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
     const std::string csv = ReadBytes(directory.File("room.csv"));
     for (const char* part :
          {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,", "\nlnoise,0.5,random,",
-          "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
+          "\nlearned,,sobol,", "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
         EXPECT_TRUE(Contains(csv, part)) << part << csv;
-    // Fixed, 4 sweeps of 8 and the extra rule, for both samplers, and the line of names.
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 32 + 1) + 1);
+    // Fixed, 4 sweeps of 8, learned and the extra rule, for both samplers, and the line of names.
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 32 + 2) + 1);
     for (const auto& entry : std::filesystem::directory_iterator(directory.path))
         EXPECT_FALSE(Contains(entry.path().string(), "checkpoint")) << entry.path();
 }
