@@ -63,10 +63,11 @@ int SubBlocks(const ModelSettings& settings, Feature feature) {
 
 double Pooled(const Pool& pool, std::vector<double> values) {
     const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
-    if (pool.kind == Pool::Mean) return v.mean();
-    if (pool.kind == Pool::Rms) return std::sqrt(v.square().mean());
+    if (pool.kind == Pool::PowerMean)
+        return pool.number == 1 ? v.mean()
+                                : std::pow(v.abs().pow(pool.number).mean(), 1.0 / pool.number);
     std::sort(values.begin(), values.end());
-    const double place = pool.percent / 100.0 * double(values.size() - 1);
+    const double place = pool.number / 100.0 * double(values.size() - 1);
     const size_t below = size_t(place), above = std::min(below + 1, values.size() - 1);
     return values[below] + (place - double(below)) * (values[above] - values[below]);
 }

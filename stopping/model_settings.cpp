@@ -39,23 +39,25 @@ Feature ParseFeature(const std::string& name) {
 std::string FeatureName(Feature feature) { return featureNames[size_t(feature)].second; }
 
 Pool ParsePool(const std::string& name) {
-    if (name == "mean") return {Pool::Mean};
-    if (name == "rms") return {Pool::Rms};
-    Pool pool{Pool::Quantile};
+    if (name == "mean") return {Pool::PowerMean, 1};
+    if (name == "rms") return {Pool::PowerMean, 2};
     const char* const end = name.data() + name.size();
-    if (name.size() > 1 && name[0] == 'q') {
-        const auto [at, error] = std::from_chars(name.data() + 1, end, pool.percent);
-        if (error == std::errc() && at == end && pool.percent >= 0 && pool.percent <= 100)
+    if (name.size() > 1 && (name[0] == 'p' || name[0] == 'q')) {
+        Pool pool{name[0] == 'p' ? Pool::PowerMean : Pool::Quantile};
+        const auto [at, error] = std::from_chars(name.data() + 1, end, pool.number);
+        const int least = name[0] == 'p' ? 3 : 0, most = name[0] == 'p' ? 9 : 100;
+        if (error == std::errc() && at == end && pool.number >= least && pool.number <= most)
             return pool;
     }
     throw std::invalid_argument("pooling '" + name +
-                                "' is not known; there are mean, rms and q0 to q100");
+                                "' is not known; there are mean, rms, p3 to p9 and q0 to q100");
 }
 
 std::string PoolName(const Pool& pool) {
-    if (pool.kind == Pool::Mean) return "mean";
-    if (pool.kind == Pool::Rms) return "rms";
-    return std::string("q").append(std::to_string(pool.percent));
+    if (pool == Pool{Pool::PowerMean, 1}) return "mean";
+    if (pool == Pool{Pool::PowerMean, 2}) return "rms";
+    return std::string(pool.kind == Pool::PowerMean ? "p" : "q")
+        .append(std::to_string(pool.number));
 }
 
 template <typename T>

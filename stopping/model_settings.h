@@ -35,16 +35,20 @@ inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 
 // Summarises the values of all sub-blocks in one number.
 struct Pool {
-    enum Kind { Mean, Rms, Quantile };
+    enum Kind { PowerMean, Quantile };
 
-    Kind kind = Mean;
-    int percent = 0;  // of a quantile: the least value at 0, the largest at 100
+    Kind kind = PowerMean;
+    // Of a power mean, its exponent: with 1 the mean, with 2 the root mean square. What is seen
+    // anywhere in a picture adds up with 3 to 4 (probability summation; Quick 1974, Watson 1979).
+    // Of a quantile, per cent: the least value at 0, the largest at 100.
+    int number = 1;
 
     bool operator==(const Pool&) const = default;
 };
 
-// Convert to and from names: "mean", "rms" and "q0" to "q100"; a list has commas between them and
-// may be empty. ParsePools() throws std::invalid_argument as ParseFeatures() does.
+// Convert to and from names: "mean", "rms", "p3" to "p9" for power means with those exponents, "q0"
+// to "q100"; a list has commas between them and may be empty. ParsePools() throws
+// std::invalid_argument as ParseFeatures() does.
 std::string PoolNames(std::span<const Pool> pools);
 std::vector<Pool> ParsePools(const std::string& names);
 

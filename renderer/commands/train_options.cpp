@@ -19,7 +19,7 @@ Features for --features (also --channels), a list with commas:
                      statistics of 10x10 sub-blocks, never normalised over the window
   logspp             the logarithm of the samples per pixel
 --pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
-rms, or qN for the quantile at N %.
+rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %.
 
 --units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
 

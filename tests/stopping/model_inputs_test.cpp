@@ -19,11 +19,12 @@ TEST(ModelSettings, NameFeaturesAndPools) {
         "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,half_noise,"
         "detail_masked_noise,logspp";
     EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
-    EXPECT_EQ(PoolNames(ParsePools("mean,rms,q0,q10,q100")), "mean,rms,q0,q10,q100");
+    EXPECT_EQ(PoolNames(ParsePools("mean,rms,p3,p9,q0,q10,q100")), "mean,rms,p3,p9,q0,q10,q100");
     EXPECT_TRUE(ParsePools("").empty());
     for (const char* bad : {"", "H3", "H,", ",H", "H,H", "h", "H noise"})
         EXPECT_THROW(ParseFeatures(bad), std::invalid_argument) << bad;
-    for (const char* bad : {"q", "q101", "q-1", "q5x", "mean,mean", "median", "rms,"})
+    for (const char* bad :
+         {"q", "q101", "q-1", "q5x", "p2", "p10", "p", "mean,mean", "median", "rms,"})
         EXPECT_THROW(ParsePools(bad), std::invalid_argument) << bad;
 }
 
@@ -47,6 +48,18 @@ TEST(InputVector, PoolsBeforeItScales) {
     EXPECT_NEAR(x[5], 1, 1e-12);
     EXPECT_NEAR(x[10], std::log1p(99 / 4.0) / 2, 1e-12);
     EXPECT_NEAR(x[11], 0.5, 1e-12);
+}
+
+TEST(InputVector, PoolsByPowerMeans) {
+    BlockMeasures measures{.spp = 20};
+    measures.Of(Feature::Noise).assign(100, 0.1);
+    measures.Of(Feature::Noise)[7] = 2;
+    const std::vector<double> x =
+        InputVector(measures, {.features = {Feature::Noise}, .pools = ParsePools("mean,rms,p4")});
+    ASSERT_EQ(x.size(), 3u);
+    EXPECT_NEAR(x[0], std::log(0.119 + 0.001), 1e-12);
+    EXPECT_NEAR(x[1], std::log(std::sqrt((4 + 99 * 0.01) / 100) + 0.001), 1e-12);
+    EXPECT_NEAR(x[2], std::log(std::pow((16 + 99 * 1e-4) / 100, 0.25) + 0.001), 1e-12);
 }
 
 TEST(InputVector, GivesEachSubBlock) {
