@@ -32,13 +32,12 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::byte>;
 
 constexpr uint32_t checkpointTag = 0x3143524c;  // "LRC1"
-constexpr std::chrono::seconds checkpointInterval(60);
 
 // Keeps the states of the trainings of one command, finished ones first, in a file.
 class Checkpoint {
   public:
-    // An empty path stands for no file.
-    explicit Checkpoint(const std::string& path) : path(path) {}
+    // An empty path stands for no file; `interval` seconds are between two writings of it.
+    Checkpoint(const std::string& path, double interval) : path(path), interval(interval) {}
 
     void Read() {
         std::ifstream file(path, std::ios::binary);
@@ -59,7 +58,7 @@ class Checkpoint {
     const Bytes* Find(size_t training) const {
         return training < states.size() ? &states[training] : nullptr;
     }
-    bool IsDue() const { return !path.empty() && Clock::now() > written + checkpointInterval; }
+    bool IsDue() const { return !path.empty() && Clock::now() > written + interval; }
     void Write() {
         if (path.empty()) return;
         StateWriter writer;
@@ -78,6 +77,7 @@ class Checkpoint {
 
   private:
     std::string path;
+    std::chrono::duration<double> interval;
     std::vector<Bytes> states;
     Clock::time_point written = Clock::now();
 };
@@ -210,7 +210,8 @@ ExitCode RunTrain(const TrainOptions& options) {
         ReadJudgedBlocks(viewpoints, options.human, options.without);
     CheckSpacing(options.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(options, blocks);
-    Checkpoint checkpoint(options.output.empty() ? "" : options.output + ".checkpoint");
+    Checkpoint checkpoint(options.output.empty() ? "" : options.output + ".checkpoint",
+                          options.checkpointInterval);
     if (options.resume) checkpoint.Read();
     TrainingPrinter printer(options.jsonProgress    ? ProgressStyle::Json
                             : options.quiet         ? ProgressStyle::Silent

@@ -169,6 +169,9 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
         ->type_name("paper:FILE");
     app.add_flag("--cross-validate", o->crossValidate, "Leave each viewpoint out in turn");
     app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
+    app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
     app.add_option("--csv", o->csv, "Write the judgement to a CSV file")->type_name("F.csv");
     AddNumber(app, "--threads", &o->threads, 0, 4096, "Threads; 0: one for each core");
     app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the judgement");

@@ -15,6 +15,7 @@ struct TrainOptions {
     std::string split;                           // a file of blocks to train on; empty: all
     std::vector<std::string> leaveOut, without;  // names of viewpoints
     bool crossValidate = false, resume = false;
+    double checkpointInterval = 60;  // s
     ModelSettings settings;
     TrainingOptions training;
     int threads = 0;

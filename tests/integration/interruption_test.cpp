@@ -20,16 +20,6 @@ std::string RenderCommand(const std::string& more) {
     return fmt::format("LULL render {} {}", kOptions, more);
 }
 
-// Runs `command`, which keeps its state in the file `checkpoint`, and sends it a signal `delay`
-// seconds after that file is there.
-Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
-                     const std::string& signal, const std::string& checkpoint, double delay = 0) {
-    return RunShell(
-        directory, fmt::format("{} & p=$!; while kill -0 $p && [ ! -e '{}' ]; do sleep 0.02; done; "
-                               "sleep {:.3f}; kill -{} $p; wait $p",
-                               command, checkpoint, delay, signal));
-}
-
 // Returns the image, the thresholds and the map as one text.
 std::string Results(const TemporaryDirectory& directory, const std::string& name) {
     return ReadBytes(directory.File(name + ".png")) +

@@ -1,6 +1,7 @@
 // Runs the program as a user would.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -27,6 +28,17 @@ inline Outcome RunShell(const TemporaryDirectory& directory, std::string command
 
 inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& arguments) {
     return RunShell(directory, "LULL " + arguments);
+}
+
+// Runs `command`, which keeps its state in the file `checkpoint`, and sends it a signal `delay`
+// seconds after that file is there.
+inline Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
+                            const std::string& signal, const std::string& checkpoint,
+                            double delay = 0) {
+    return RunShell(
+        directory, fmt::format("{} & p=$!; while kill -0 $p && [ ! -e '{}' ]; do sleep 0.02; done; "
+                               "sleep {:.3f}; kill -{} $p; wait $p",
+                               command, checkpoint, delay, signal));
 }
 
 // A small scene that renders at once; `world` is what is in it.
