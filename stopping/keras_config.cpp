@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int mostUnits = 16384;  // a bound on what a damaged file can ask for
+constexpr int mostCount = 16384;  // a bound on what a damaged file can ask for
 
 const std::array<std::pair<const char*, Activation>, 4> activationNames = {
     {{"linear", Activation::Linear},
@@ -27,6 +27,14 @@ const char* ActivationName(Activation activation) {
 
 [[noreturn]] void Refuse(const std::string& layer, const std::string& what) {
     throw std::runtime_error("layer '" + layer + "': " + what);
+}
+
+// Reads a whole number from 0 to `mostCount`. (JSON has numbers that no int can hold.)
+int ParseCount(const Json& value, const std::string& what) {
+    if (!value.is_number_integer() || value < 0 || value > mostCount)
+        throw std::runtime_error(what + " " + value.dump() + " is not a whole number up to " +
+                                 std::to_string(mostCount));
+    return value.get<int>();
 }
 
 Activation ParseActivation(const Json& config, const char* key, const char* standard,
@@ -47,11 +55,9 @@ KerasLayer ParseLayer(const Json& config, bool isLstm, const std::string& versio
     KerasLayer layer;
     layer.name = config.at("name").get<std::string>();
     layer.isLstm = isLstm;
-    layer.units = config.at("units").get<int>();
+    layer.units = ParseCount(config.at("units"), "layer '" + layer.name + "': units");
     layer.useBias = config.value("use_bias", true);
-    if (layer.units < 1 || layer.units > mostUnits)
-        Refuse(layer.name, std::to_string(layer.units) + " units are not in [1, " +
-                               std::to_string(mostUnits) + "]");
+    if (layer.units == 0) Refuse(layer.name, "0 units are too few");
     layer.activation =
         ParseActivation(config, "activation", isLstm ? "tanh" : "linear", layer.name, version);
     if (!isLstm) return layer;
@@ -76,8 +82,8 @@ void ParseShape(const Json& config, KerasModel* model) {
         if (!shape.is_array() || shape.size() != 3)
             throw std::runtime_error(std::string(key) + " " + shape.dump() +
                                      " is not [null, time steps, values]");
-        model->timeSteps = shape[1].is_null() ? 0 : shape[1].get<int>();
-        model->inputs = shape[2].is_null() ? 0 : shape[2].get<int>();
+        model->timeSteps = shape[1].is_null() ? 0 : ParseCount(shape[1], key);
+        model->inputs = shape[2].is_null() ? 0 : ParseCount(shape[2], key);
     }
 }
 
@@ -95,6 +101,8 @@ KerasModel Parse(const Json& json, const std::string& version) {
         const std::string kind = entry.at("class_name").get<std::string>();
         const Json& config = entry.at("config");
         const std::string name = config.at("name").get<std::string>();
+        if (kind == "InputLayer" && (model.isFlat || !model.layers.empty()))
+            Refuse(name, "InputLayer is modelled at the start");
         if (kind == "LSTM" || kind == "InputLayer" || kind == "Flatten") ParseShape(config, &model);
         if (kind == "Dropout" || kind == "InputLayer") continue;  // nothing to do when not training
         if (kind == "Flatten") {

@@ -83,16 +83,30 @@ TEST(KerasConfig, NamesWhatIsNotModelled) {
     ExpectError(good, "hard_sigmoid of Keras 3.1.0", "3.1.0");
 }
 
+TEST(KerasConfig, TakesNoShapeAfterTheFirstLayer) {
+    const std::string flatten = R"({"class_name": "Flatten", "config": {"name": "f",
+        "batch_input_shape": [null, 8, 100]}})";
+    const std::string input = R"({"class_name": "InputLayer", "config": {"name": "i",
+        "batch_input_shape": [null, null, 25]}})";
+    EXPECT_EQ(ParseKerasConfig(Sequential(flatten + "," + denseLayer), "2.4.0").timeSteps, 8);
+    ExpectError(Sequential(flatten + "," + input + "," + denseLayer), "layer 'i': InputLayer");
+    ExpectError(Sequential(lstmLayer + "," + input + "," + denseLayer), "layer 'i': InputLayer");
+}
+
 TEST(KerasConfig, RefusesDamagedText) {
     const std::string good = Sequential(lstmLayer + "," + denseLayer);
     ExpectError("", "not what Keras writes");
     ExpectError("[]", "not what Keras writes");
     ExpectError(good.substr(0, good.size() / 2), "not what Keras writes");
     ExpectError(Sequential(""), "no layers");
-    ExpectError(Replace(good, "\"units\": 4", "\"units\": \"four\""), "not what Keras writes");
+    ExpectError(Replace(good, "\"units\": 4", "\"units\": \"four\""), "not a whole number");
     ExpectError(Replace(good, "\"units\": 4", "\"units\": 0"), "0 units");
     ExpectError(Replace(good, "\"units\": 4", "\"units\": 1000000000"), "units");
+    ExpectError(Replace(good, "\"units\": 4", "\"units\": 4.5"), "units 4.5 is not a whole number");
+    ExpectError(Replace(good, "\"units\": 4", "\"units\": 4294967300"), "units 4294967300 is not");
     ExpectError(Replace(good, "[null, 8, 100]", "[null, 100]"), "batch_input_shape");
+    ExpectError(Replace(good, "[null, 8, 100]", "[null, 3e117, 100]"), "not a whole number");
+    ExpectError(Replace(good, "[null, 8, 100]", "[null, -8, 100]"), "not a whole number");
     ExpectError(Replace(good, R"("recurrent_activation": "hard_sigmoid", )", ""),
                 "recurrent_activation is missing");
 }
