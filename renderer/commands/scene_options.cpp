@@ -50,6 +50,12 @@ auto Checked(bool (*parse)(const std::string&, T*), T* value, const std::string&
     };
 }
 
+// The film's warnings come when the scene is compiled.
+FilmSettings SilentFilmSettings(const Description& description, const SceneOptions& options) {
+    Warnings unheard;
+    return MakeFilmSettings(description, options.compile.film, unheard);
+}
+
 }  // namespace
 
 void AddSceneOptions(CLI::App& app, SceneOptions* options) {
@@ -89,15 +95,6 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
         throw Error(options.file + ": is a glTF file; only pbrt-v3 scenes can be read");
     return ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
 }
-
-namespace {
-
-FilmSettings SilentFilmSettings(const Description& description, const SceneOptions& options) {
-    Warnings unheard;
-    return MakeFilmSettings(description, options.compile.film, unheard);
-}
-
-}  // namespace
 
 SceneInput::SceneInput(const SceneOptions& options)
     : warnings(MakePrintedWarnings()),
