@@ -49,16 +49,24 @@ std::vector<float> ClassWeights(const TrainingSamples& samples, double noisyShar
     return weights;
 }
 
-// Gives each class of each viewpoint the same sum of weights; their mean is 1/2, as it is of class
-// weights if there are as many samples of both.
-std::vector<float> ViewpointWeights(const TrainingSamples& samples) {
+// Gives each viewpoint the same sum of weights, and each class within it if they are balanced;
+// their mean is 1/2, as it is of class weights if there are as many samples of both.
+std::vector<float> ViewpointWeights(const TrainingSamples& samples, bool balanceClasses) {
+    auto group = [&](size_t i) {
+        return std::pair(samples.viewpoint[i], balanceClasses ? samples.noisy[i] : char(0));
+    };
     std::map<std::pair<int, char>, int> counts;
-    for (size_t i = 0; i < samples.Count(); ++i) ++counts[{samples.viewpoint[i], samples.noisy[i]}];
+    for (size_t i = 0; i < samples.Count(); ++i) ++counts[group(i)];
     const double sum = double(samples.Count()) / 2 / double(counts.size());
     std::vector<float> weights;
-    for (size_t i = 0; i < samples.Count(); ++i)
-        weights.push_back(float(sum / counts[{samples.viewpoint[i], samples.noisy[i]}]));
+    for (size_t i = 0; i < samples.Count(); ++i) weights.push_back(float(sum / counts[group(i)]));
     return weights;
+}
+
+std::vector<float> SampleWeights(const TrainingSamples& samples, const TrainingOptions& options,
+                                 double noisyShare) {
+    if (options.balanceViewpoints) return ViewpointWeights(samples, options.balanceClasses);
+    return ClassWeights(samples, options.balanceClasses ? noisyShare : 0.5);
 }
 
 void Check(bool isRight, const char* message) {
@@ -89,8 +97,7 @@ Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     Check(count > 0, "there are no samples to train on");
     Check(noisy > 0 && noisy < double(count),
           "the samples to train on are all noisy or all noiseless; there is nothing to learn");
-    sampleWeights = options.balanceViewpoints ? ViewpointWeights(samples)
-                                              : ClassWeights(samples, noisy / double(count));
+    sampleWeights = SampleWeights(samples, options, noisy / double(count));
     stepsPerEpoch = int64_t(count + size_t(options.batch) - 1) / options.batch;
     const size_t most = (std::min(count, size_t(options.batch)) + chunkSize - 1) / chunkSize;
     gradients.assign(most, optimizer.meanSquares);
@@ -198,6 +205,7 @@ uint32_t Trainer::Fingerprint() const {
     writer.Put(options.seed);
     writer.Put(options.augment);
     writer.Put(options.balanceViewpoints);
+    writer.Put(options.balanceClasses);
     const std::string features =
         FeatureNames(samples.settings.features) + ":" + PoolNames(samples.settings.pools);
     put(features);

@@ -25,6 +25,9 @@ struct TrainingOptions {
     bool augment = false;
     // Lets each viewpoint count the same, however many blocks of it there are.
     bool balanceViewpoints = false;
+    // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
+    // spp do in the critical error.
+    bool balanceClasses = true;
 };
 
 struct TrainingProgress {
@@ -39,9 +42,9 @@ struct TrainingProgress {
 // Trains a network step by step. The weights depend on nothing but samples, options and the kind
 // of processor: not on threads (see RunWithThreads()) and interruptions.
 //
-// The loss of noisy samples is weighted by the share of those that are not, and the other way
-// round, so that both classes count the same; with balanceViewpoints the same holds within each
-// viewpoint.
+// With balanceClasses the loss of noisy samples is weighted by the share of those that are not, and
+// the other way round, so that both classes count the same; with balanceViewpoints as well the same
+// holds within each viewpoint.
 class Trainer {
   public:
     // The samples must outlive the trainer. Throws std::invalid_argument if an option is out of

@@ -199,7 +199,8 @@ std::map<std::string, std::string> MakeRecord(const TrainOptions& options,
             {"epochs", fmt::format("{}", t.epochs)},
             {"seed", fmt::format("{}", t.seed)},
             {"augment", t.augment ? "1" : "0"},
-            {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"}};
+            {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"},
+            {"balance_classes", t.balanceClasses ? "1" : "0"}};
 }
 
 ExitCode RunTrain(const TrainOptions& options) {

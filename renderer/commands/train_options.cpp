@@ -132,6 +132,8 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
     app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
     app.add_flag("--balance-viewpoints", t->balanceViewpoints,
                  "Let each viewpoint count the same, however many blocks of it there are");
+    app.add_flag("--class-weights,!--no-class-weights", t->balanceClasses,
+                 "Let noisy and noiseless samples count the same, as in the paper [the default]");
 }
 
 void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,

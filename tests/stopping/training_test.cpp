@@ -144,6 +144,12 @@ TEST(Trainer, LetsEachViewpointCountTheSame) {
     options.balanceViewpoints = true;
     EXPECT_NEAR(probability(1), 0.5, 0.02);
     EXPECT_NEAR(probability(-1), 0.5, 0.02);
+    // With one viewpoint an input, what is learned are then the shares of their noisy samples.
+    options.balanceClasses = false;
+    EXPECT_NEAR(probability(1), 0.75, 0.02);
+    EXPECT_NEAR(probability(-1), 0.2, 0.02);
+    options.balanceViewpoints = false;
+    EXPECT_NEAR(probability(1), 0.75, 0.02);
 }
 
 TEST(Trainer, RefusesWhatCannotBeLearned) {
