@@ -73,7 +73,7 @@ CriterionFactory LNoise(const std::string& argument) {
 // Returns the rule with the threshold that it has where none is given.
 std::string WithThreshold(const std::string& rule) {
     if (rule == "dammertz") return "dammertz:0.02";
-    if (rule == "lnoise") return "lnoise:0.9";
+    if (rule == "lnoise") return "lnoise:0.65";
     return rule;
 }
 

@@ -24,7 +24,7 @@ struct Options {
 constexpr const char* kFooter =
     R"(Stopping rules (--stop):
   learned[:MODEL.h5]      until a network that was trained on human judgements sees no noise
-  lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.9)
+  lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.65)
   dammertz[:T]            until a block's mean error in square-root brightness is below T (0.02)
   cycles:T                until every pixel of the block has an error below T
   luxtile:T               until the largest display error of the block is below T

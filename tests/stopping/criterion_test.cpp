@@ -48,7 +48,7 @@ TEST(Rule, MakesItsCriterion) {
         EXPECT_GT(StopSpp(factory.make({}).get()), 20) << rule;
     }
     EXPECT_EQ(MakeCriterionFactory("dammertz").rule, "dammertz:0.02");
-    EXPECT_EQ(MakeCriterionFactory("lnoise").rule, "lnoise:0.9");
+    EXPECT_EQ(MakeCriterionFactory("lnoise").rule, "lnoise:0.65");
     // With the area factor a block that is a sixteenth of the image has a quarter of the error.
     const BlockImage block = NoisyBlock(40, 40, 0.2, 20, 1);
     const auto plain = MakeCriterionFactory("dammertz:0.05").make({.areaFraction = 0.0625});
