@@ -36,7 +36,7 @@ TEST_F(Directives, EmptyWorldHasDefaults) {
     EXPECT_EQ(d.integrator.name, "path");
     EXPECT_EQ(d.cameraFromWorld, Mat4d::Identity());
     EXPECT_TRUE(d.shapes.empty() && d.lights.empty() && d.materials.empty());
-    EXPECT_EQ(d.directory + "/", folder.Path(""));
+    EXPECT_EQ(d.directory + "/", folder.File(""));
 }
 
 TEST_F(Directives, OptionsKeepNameParametersAndPlace) {
@@ -52,7 +52,7 @@ TEST_F(Directives, OptionsKeepNameParametersAndPlace) {
     EXPECT_EQ(d.camera.parameters.GetFloat("fov", 0), 39);
     EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 40);
     EXPECT_EQ(d.film.loc.line, 2);
-    EXPECT_EQ(d.film.loc.Prefix(), folder.Path("scene.pbrt") + ":2: ");
+    EXPECT_EQ(d.film.loc.Prefix(), folder.File("scene.pbrt") + ":2: ");
     EXPECT_EQ(d.sampler.name, "random");
     EXPECT_EQ(d.filter.name, "gaussian");
     EXPECT_EQ(d.integrator.parameters.GetInt("maxdepth", 0), 3);
@@ -304,11 +304,11 @@ TEST_F(Directives, IncludeStartsAtTheScenesFolder) {
         "\"float radius\" 3 Shape \"cone\"");
     ASSERT_EQ(d.shapes.size(), 4u);
     EXPECT_EQ(d.shapes[0].name, "sphere");
-    EXPECT_EQ(d.shapes[0].loc.Prefix(), folder.Path("parts/a.pbrt") + ":2: ");
+    EXPECT_EQ(d.shapes[0].loc.Prefix(), folder.File("parts/a.pbrt") + ":2: ");
     EXPECT_EQ(d.shapes[1].name, "disk");
     // Parameters may follow from the includer, as in pbrt-v3.
     EXPECT_EQ(d.shapes[2].parameters.GetFloat("radius", 0), 3);
-    EXPECT_EQ(d.shapes[3].loc.Prefix(), folder.Path("scene.pbrt") + ":1: ");
+    EXPECT_EQ(d.shapes[3].loc.Prefix(), folder.File("scene.pbrt") + ":1: ");
 }
 
 TEST_F(Directives, MediaAreIgnoredByThePathIntegrator) {

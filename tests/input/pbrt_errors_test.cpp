@@ -200,12 +200,12 @@ TEST_F(PbrtErrors, Refusals) {
 TEST_F(PbrtErrors, Files) {
     Warnings warnings;
     const auto parse = [&](const std::string& name) {
-        return folder.MessageOf([&] { ParsePbrt(folder.Path(name), {}, warnings); });
+        return folder.MessageOf([&] { ParsePbrt(folder.File(name), {}, warnings); });
     };
     EXPECT_EQ(parse("none.pbrt"), "cannot read 'none.pbrt': No such file or directory");
-    std::filesystem::create_directory(folder.Path("room"));
+    std::filesystem::create_directory(folder.File("room"));
     EXPECT_EQ(parse("room"), "cannot read 'room': it is a directory; name a file in it");
-    ASSERT_EQ(mkfifo(folder.Path("pipe").c_str(), 0600), 0);
+    ASSERT_EQ(mkfifo(folder.File("pipe").c_str(), 0600), 0);
     EXPECT_EQ(parse("pipe"), "cannot read 'pipe': it is not a regular file");
     ExpectInWorld("Include \"none.pbrt\"", "cannot read 'none.pbrt': No such file or directory");
     ExpectInWorld("Include \"room\"", "cannot read 'room': it is a directory");

@@ -318,7 +318,7 @@ TEST_F(Ply, BadValues) {
 
 TEST_F(Ply, FilesThatCannotBeRead) {
     const FileLoc loc{std::make_shared<const std::string>("scene.pbrt"), 7};
-    EXPECT_EQ(folder.MessageOf([&] { LoadPly(folder.Path("none.ply"), warnings, loc); }),
+    EXPECT_EQ(folder.MessageOf([&] { LoadPly(folder.File("none.ply"), warnings, loc); }),
               "scene.pbrt:7: cannot read 'none.ply': No such file or directory");
 }
 

@@ -5,44 +5,16 @@
 #include <stdlib.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
-#include "renderer/base/error.h"
 #include "renderer/input/pbrt_parser.h"
+#include "tests/output/test_files.h"
 
 namespace lull {
 
-// Makes a folder that lives as long as the object.
-class TestFolder {
-  public:
-    TestFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lull-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw Error("cannot make a folder for the test");
-        folder = name;
-    }
-    ~TestFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder, ignored);
-    }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-
-    std::string Path(const std::string& name) const { return (folder / name).string(); }
-
-    // Writes a file and returns its path.
-    std::string Write(const std::string& name, std::string_view contents) const {
-        std::filesystem::create_directories((folder / name).parent_path());
-        // A new file, for some file systems wait for the disk when an old one is cut to nothing.
-        std::filesystem::remove(folder / name);
-        std::ofstream out(folder / name, std::ios::binary);
-        out.write(contents.data(), std::streamsize(contents.size()));
-        out.close();
-        if (!out) throw Error("cannot write " + Path(name));
-        return Path(name);
-    }
-
+// Gives a test that parses scenes a directory of its own.
+struct TestFolder : TemporaryDirectory {
     Description Parse(std::string_view text, Warnings* warnings = nullptr,
                       const ParseOptions& options = {}) const {
         Warnings ignored;
@@ -61,20 +33,12 @@ class TestFolder {
 
     template <typename Function>
     std::string MessageOf(const Function& function) const {
-        try {
-            function();
-        } catch (const Error& error) {
-            std::string message = error.what();
-            const std::string prefix = folder.string() + "/";
-            for (size_t at; (at = message.find(prefix)) != std::string::npos;)
-                message.erase(at, prefix.size());
-            return message;
-        }
-        return "";
+        std::string message = lull::ErrorOf(function);
+        const std::string prefix = path.string() + "/";
+        for (size_t at; (at = message.find(prefix)) != std::string::npos;)
+            message.erase(at, prefix.size());
+        return message;
     }
-
-  private:
-    std::filesystem::path folder;
 };
 
 // Returns the folder with the shared data; it need not be there.

@@ -101,7 +101,7 @@ TEST(WriteFileAtomically, KeepsOldFileWhenTheDiskIsFull) {
 TEST(WriteFileAtomically, WritesDevicesDirectly) {
     EXPECT_NO_THROW(CheckWritable("/dev/null"));
     EXPECT_NO_THROW(WriteFileAtomically("/dev/null", "x"));
-    if (!fs::exists("/dev/full")) GTEST_SKIP();
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
     EXPECT_TRUE(Contains(ErrorOf([] { WriteFileAtomically("/dev/full", "x"); }), "No space left"));
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }

@@ -20,7 +20,8 @@ struct TemporaryDirectory {
 
     TemporaryDirectory() {
         std::string name = (std::filesystem::temp_directory_path() / "lull_test_XXXXXX").string();
-        path = mkdtemp(name.data());
+        if (!mkdtemp(name.data())) throw Error("cannot make a directory for the test");
+        path = name;
     }
     TemporaryDirectory(const TemporaryDirectory&) = delete;
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
@@ -31,9 +32,15 @@ struct TemporaryDirectory {
 
     std::string File(const std::string& name) const { return (path / name).string(); }
 
-    // Writes a file and returns its path.
+    // Writes a file, with the directories that its name has, and returns its path.
     std::string Write(const std::string& name, std::string_view bytes) const {
-        std::ofstream(File(name), std::ios::binary).write(bytes.data(), bytes.size());
+        std::filesystem::create_directories((path / name).parent_path());
+        // A new file, for some file systems wait for the disk when an old one is cut to nothing.
+        std::filesystem::remove(path / name);
+        std::ofstream out(path / name, std::ios::binary);
+        out.write(bytes.data(), std::streamsize(bytes.size()));
+        out.close();
+        if (!out) throw Error("cannot write " + File(name));
         return File(name);
     }
 
