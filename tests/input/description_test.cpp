@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/input/test_files.h"
-
 namespace lull {
 namespace {
 

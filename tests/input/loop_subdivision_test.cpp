@@ -3,6 +3,7 @@
 #include <set>
 
 #include "tests/input/test_files.h"
+#include "tests/shared_folder.h"
 
 namespace lull {
 namespace {

@@ -1,10 +1,12 @@
 // Tests that the shared real scenes are read as their inventory says.
+#include <gtest/gtest.h>
+
 #include <map>
 
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
-#include "tests/input/test_files.h"
+#include "tests/shared_folder.h"
 
 namespace lull {
 namespace {

@@ -1,7 +1,9 @@
 #include "renderer/input/spectrum.h"
 
+#include <gtest/gtest.h>
+
 #include "renderer/input/cie_table.h"
-#include "tests/input/test_files.h"
+#include "tests/shared_folder.h"
 
 namespace lull {
 namespace {

@@ -1,10 +1,8 @@
-// Gives input tests files of their own, and finds the shared scenes.
+// Gives input tests files of their own.
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -40,11 +38,5 @@ struct TestFolder : TemporaryDirectory {
         return message;
     }
 };
-
-// Returns the folder with the shared data; it need not be there.
-inline std::filesystem::path SharedFolder() {
-    const char* set = getenv("LULL_SHARED");
-    return set && *set ? set : LULL_SHARED_DIR;
-}
 
 }  // namespace lull

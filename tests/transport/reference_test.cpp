@@ -9,15 +9,11 @@
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/output/image_io.h"
 #include "renderer/scene/compile.h"
+#include "tests/shared_folder.h"
 #include "tests/transport/pixel_statistics.h"
 
 namespace lull {
 namespace {
-
-std::filesystem::path SharedFolder() {
-    const char* folder = std::getenv("LULL_SHARED");
-    return folder ? folder : LULL_SHARED_DIR;
-}
 
 // Reads a positive number from the environment, for longer runs than a test run affords.
 int FromEnvironment(const char* name, int otherwise) {
