@@ -6,13 +6,13 @@
 #include <chrono>
 #include <filesystem>
 
-#include "renderer/bench.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/compared_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/bench.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/bench_page.h"
 

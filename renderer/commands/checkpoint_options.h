@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <optional>
 
-#include "renderer/checkpoint.h"
+#include "renderer/render/checkpoint.h"
 
 namespace lull {
 

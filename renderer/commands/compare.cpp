@@ -13,7 +13,7 @@
 #include "renderer/commands/render_files.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/output/file_io.h"
-#include "stopping/thresholds.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 

@@ -1,7 +1,7 @@
 // Reads images rendered before, to be compared.
 #pragma once
 
-#include "renderer/comparison.h"
+#include "renderer/measure/comparison.h"
 
 namespace lull {
 

@@ -12,9 +12,9 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/output/file_io.h"
-#include "stopping/dataset.h"
-#include "stopping/small_blocks.h"
-#include "stopping/thresholds.h"
+#include "stopping/learning/dataset.h"
+#include "stopping/rules/small_blocks.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 

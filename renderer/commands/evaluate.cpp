@@ -11,7 +11,7 @@
 #include "renderer/commands/judged_blocks.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/output/file_io.h"
-#include "stopping/rivals.h"
+#include "stopping/learning/rivals.h"
 
 namespace lull {
 

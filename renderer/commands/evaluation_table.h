@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/evaluation.h"
+#include "stopping/learning/evaluation.h"
 
 namespace lull {
 

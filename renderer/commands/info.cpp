@@ -7,8 +7,8 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/scene_options.h"
+#include "renderer/measure/report.h"
 #include "renderer/output/progress.h"
-#include "renderer/report.h"
 
 namespace lull {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/training_samples.h"
+#include "stopping/learning/training_samples.h"
 
 namespace lull {
 

@@ -7,7 +7,7 @@
 #include "renderer/output/image_io.h"
 #include "renderer/output/spp_map.h"
 #include "renderer/pages/html_page.h"
-#include "stopping/thresholds.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 

@@ -1,9 +1,9 @@
 // Writes the files of a render.
 #pragma once
 
-#include "renderer/compare/block_observer.h"
-#include "renderer/compare/image_error.h"
-#include "renderer/report.h"
+#include "renderer/measure/block_observer.h"
+#include "renderer/measure/image_error.h"
+#include "renderer/measure/report.h"
 
 namespace lull {
 

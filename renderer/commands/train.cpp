@@ -18,11 +18,11 @@
 #include "renderer/commands/train_options.h"
 #include "renderer/commands/training_printer.h"
 #include "renderer/output/file_io.h"
-#include "stopping/block_split.h"
-#include "stopping/checksum.h"
-#include "stopping/parallel.h"
-#include "stopping/simulation.h"
-#include "stopping/state.h"
+#include "stopping/base/checksum.h"
+#include "stopping/base/parallel.h"
+#include "stopping/base/state.h"
+#include "stopping/learning/block_split.h"
+#include "stopping/learning/simulation.h"
 
 namespace lull {
 

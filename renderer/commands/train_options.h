@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/training.h"
+#include "stopping/learning/training.h"
 
 namespace lull {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "renderer/output/progress.h"
-#include "stopping/training.h"
+#include "stopping/learning/training.h"
 
 namespace lull {
 

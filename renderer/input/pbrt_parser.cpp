@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "renderer/input/pbrt_builder.h"
+#include "renderer/input/pbrt/pbrt_builder.h"
 
 namespace lull {
 namespace {

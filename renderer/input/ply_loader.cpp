@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "renderer/input/inflate.h"
-#include "renderer/input/ply_cursor.h"
-#include "renderer/input/ply_header.h"
+#include "renderer/input/ply/ply_cursor.h"
+#include "renderer/input/ply/ply_header.h"
 
 namespace lull {
 namespace {

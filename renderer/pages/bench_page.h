@@ -1,8 +1,8 @@
 // Writes the page of a bench.
 #pragma once
 
-#include "renderer/bench.h"
-#include "renderer/report.h"
+#include "renderer/measure/bench.h"
+#include "renderer/measure/report.h"
 
 namespace lull {
 

@@ -1,8 +1,8 @@
 // Writes reports for people: one HTML file with everything in it, which opens from disk.
 #pragma once
 
-#include "renderer/comparison.h"
-#include "renderer/report_json.h"
+#include "renderer/measure/comparison.h"
+#include "renderer/measure/report_json.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-// Finds what a ray meets. The only place that knows Embree.
+// Finds what a ray meets. With accelerator_internal.h the only place that knows Embree.
 #pragma once
 
 #include <memory>
@@ -24,8 +24,11 @@ class Accelerator {
     // Says whether anything lies in (0, ray.tMax); shadow alpha counts too.
     bool Occluded(const Ray& ray) const;
 
-  private:
+    // For programs that measure Embree itself, see accelerator_internal.h.
     struct Implementation;
+    const Implementation& Internals() const { return *implementation; }
+
+  private:
     std::unique_ptr<Implementation> implementation;
 };
 

@@ -5,10 +5,10 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
-#include "stopping/keras_config.h"
-#include "stopping/model_file.h"
-#include "stopping/thresholds.h"
-#include "tests/output/test_files.h"
+#include "stopping/network/keras_config.h"
+#include "stopping/network/model_file.h"
+#include "stopping/rules/thresholds.h"
+#include "tests/renderer/output/test_files.h"
 
 namespace lull {
 

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "renderer/output/film.h"
-#include "tests/bsdf/sphere_statistics.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
 

@@ -9,10 +9,10 @@
 
 #include "renderer/output/film.h"
 #include "renderer/scene/image_lookup.h"
-#include "stopping/learned.h"
-#include "stopping/lightness.h"
-#include "stopping/svd_entropy.h"
-#include "tests/stopping/random_network.h"
+#include "stopping/rules/learned.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/svd_entropy.h"
+#include "tests/stopping/network/random_network.h"
 
 namespace lull {
 namespace {

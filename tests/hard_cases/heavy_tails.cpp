@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "renderer/output/film.h"
-#include "stopping/criterion.h"
-#include "tests/bsdf/sphere_statistics.h"
+#include "stopping/rules/criterion.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
 

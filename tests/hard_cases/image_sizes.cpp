@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "renderer/render.h"
+#include "renderer/render/render.h"
 #include "tests/hard_cases/hard_case.h"
 
 namespace lull {

@@ -7,8 +7,8 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
-#include "tests/output/test_files.h"
-#include "tests/transport/pixel_statistics.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {
 

@@ -6,9 +6,9 @@
 #include "renderer/base/sampling.h"
 #include "renderer/scene/shapes/mesh.h"
 #include "renderer/scene/shapes/quadric.h"
-#include "tests/bsdf/lobe_examples.h"
-#include "tests/bsdf/sphere_statistics.h"
 #include "tests/hard_cases/known_scene.h"
+#include "tests/renderer/bsdf/lobe_examples.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
 

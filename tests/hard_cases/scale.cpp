@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "tests/bsdf/sphere_statistics.h"
 #include "tests/hard_cases/known_scene.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
 

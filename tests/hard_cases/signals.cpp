@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <limits>
 
-#include "stopping/criterion.h"
-#include "stopping/learned.h"
-#include "stopping/svd_entropy.h"
-#include "stopping/window.h"
-#include "tests/bsdf/sphere_statistics.h"
+#include "stopping/network/window.h"
+#include "stopping/rules/criterion.h"
+#include "stopping/rules/learned.h"
+#include "stopping/signals/svd_entropy.h"
 #include "tests/hard_cases/hard_case.h"
-#include "tests/output/test_files.h"
-#include "tests/stopping/block_images.h"
-#include "tests/stopping/random_network.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/signals/block_images.h"
 
 namespace lull {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "renderer/output/file_io.h"
-#include "stopping/dataset.h"
+#include "stopping/learning/dataset.h"
 #include "tests/integration/run_lull.h"
-#include "tests/stopping/channel_recordings.h"
+#include "tests/stopping/learning/channel_recordings.h"
 #include "tests/stopping/shared_data.h"
 
 namespace lull {

@@ -1,8 +1,8 @@
 // Trains models as a user would.
 #include "renderer/output/file_io.h"
-#include "stopping/model_file.h"
+#include "stopping/network/model_file.h"
 #include "tests/integration/run_lull.h"
-#include "tests/stopping/made_up_recordings.h"
+#include "tests/stopping/learning/made_up_recordings.h"
 
 namespace lull {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "stopping/baselines.h"
-#include "stopping/learned.h"
-#include "stopping/lightness.h"
-#include "stopping/lightness_noise.h"
-#include "tests/stopping/block_images.h"
-#include "tests/stopping/random_network.h"
+#include "stopping/rules/baselines.h"
+#include "stopping/rules/learned.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/signals/block_images.h"
 
 namespace lull {
 namespace {

@@ -1,0 +1,24 @@
+# A room is a folder with a library of its own, lull_<folder>. Nothing but the rooms that it links, and
+# those that they link, can be included in it: the folder of the project is on nobody's include path.
+# Instead each room has a folder in the build tree with nothing in it but a link to its own.
+
+# lull_room_headers(TARGET FOLDER): lets those who link the target include FOLDER/..., which is given
+# relative to the project.
+function(lull_room_headers target folder)
+  set(view ${PROJECT_BINARY_DIR}/rooms/${target})
+  get_filename_component(parent ${view}/${folder} DIRECTORY)
+  file(MAKE_DIRECTORY ${parent})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${view})
+endfunction()
+
+# lull_room(TARGET FOLDER LINKED...): makes a library of all that is in FOLDER, seen from the calling
+# CMakeLists.txt, on top of other targets. Headers in folders within it, or named *_internal.h, are
+# for the room alone (tests/rooms_test.cpp checks that).
+function(lull_room target folder)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  add_library(${target} STATIC ${sources})
+  file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+  lull_room_headers(${target} ${path})
+  target_link_libraries(${target} PUBLIC lull_options ${ARGN})
+endfunction()

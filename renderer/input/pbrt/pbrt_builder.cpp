@@ -1,0 +1,268 @@
+#include "renderer/input/pbrt/pbrt_builder.h"
+
+#include <Eigen/LU>
+#include <filesystem>
+#include <utility>
+
+namespace lull {
+namespace {
+
+// Bounds what an area light may hold, since every shape it lights gets a copy.
+constexpr size_t kMostAreaLightValues = 1000;
+
+size_t CountValues(const Parameters& parameters) {
+    size_t count = 0;
+    for (const Parameter& parameter : parameters.All())
+        count += parameter.name.size() +
+                 std::visit([](const auto& values) { return values.size(); }, parameter.values);
+    return count;
+}
+
+const char* ScopeName(int kind) {
+    constexpr const char* kNames[] = {"Attribute", "Transform", "Object"};
+    return kNames[kind];
+}
+
+}  // namespace
+
+PbrtBuilder::PbrtBuilder(const std::string& file, const ParseOptions& options, Warnings& warnings)
+    : lexer(file), warnings(warnings), options(options) {
+    description.directory = std::filesystem::path(file).parent_path().string();
+    context.directory = description.directory;
+}
+
+Description PbrtBuilder::Finish(const FileLoc& end) {
+    if (stage == Stage::Options)
+        throw Error(end, "the file ends without WorldBegin: it describes no scene");
+    if (stage == Stage::World)
+        throw Error(end, "the file ends without WorldEnd for the WorldBegin of line " +
+                             std::to_string(worldBegin.line));
+    return std::move(description);
+}
+
+// Stops at what is not modelled, or lets the caller leave it out where the user asked for that.
+void PbrtBuilder::Refuse(const std::string& what, const std::string& remedy) {
+    if (!options.substitute) throw Error(loc, what + " not modelled; " + remedy);
+    warnings.Add(loc, what + " not modelled and left out");
+}
+
+void PbrtBuilder::Include() {
+    const std::string name = ReadString("the name of a file");
+    lexer.Include(ResolvePath(description, name), loc);
+}
+
+// Scopes.
+
+void PbrtBuilder::Begin(ScopeKind kind) {
+    state.floatTextureMark = context.floatTextures.Mark();
+    state.spectrumTextureMark = context.spectrumTextures.Mark();
+    state.materialMark = materials.Mark();
+    scopes.push_back({kind, loc, state});
+}
+
+void PbrtBuilder::End(ScopeKind kind) {
+    const std::string name = ScopeName(int(kind));
+    if (scopes.empty()) throw Error(loc, name + "End without " + name + "Begin");
+    Scope& scope = scopes.back();
+    if (scope.kind != kind)
+        throw Error(loc, name + "End where the " + ScopeName(int(scope.kind)) + "Begin of line " +
+                             std::to_string(scope.loc.line) + " is still open");
+    if (kind == ScopeKind::Transform) {
+        state.ctm = scope.saved.ctm;
+        state.active = scope.saved.active;
+    } else {
+        state = std::move(scope.saved);
+        context.floatTextures.Restore(state.floatTextureMark);
+        context.spectrumTextures.Restore(state.spectrumTextureMark);
+        materials.Restore(state.materialMark);
+    }
+    scopes.pop_back();
+}
+
+void PbrtBuilder::AttributeBegin() { Begin(ScopeKind::Attribute); }
+void PbrtBuilder::AttributeEnd() { End(ScopeKind::Attribute); }
+void PbrtBuilder::TransformBegin() { Begin(ScopeKind::Transform); }
+void PbrtBuilder::TransformEnd() { End(ScopeKind::Transform); }
+
+void PbrtBuilder::WorldBegin() {
+    stage = Stage::World;
+    worldBegin = loc;
+    state.ctm = {};
+    state.active = kAllTimes;
+    coordinateSystems["world"] = state.ctm;
+    if (earlyMedium) {
+        loc = earlyMedium->second;
+        LeaveOutMedium(earlyMedium->first);
+    }
+}
+
+void PbrtBuilder::WorldEnd() {
+    if (!scopes.empty())
+        throw Error(loc, std::string("WorldEnd where the ") + ScopeName(int(scopes.back().kind)) +
+                             "Begin of line " + std::to_string(scopes.back().loc.line) +
+                             " is still open");
+    stage = Stage::Done;
+}
+
+void PbrtBuilder::ObjectBegin() {
+    const std::string name = ReadString("the name of an object");
+    if (currentObject >= 0)
+        throw Error(loc, "ObjectBegin inside the object of line " +
+                             std::to_string(description.objects[currentObject].loc.line));
+    Begin(ScopeKind::Object);
+    currentObject = int(description.objects.size());
+    description.objects.push_back({name, loc, {}});
+    if (!objects.insert_or_assign(name, currentObject).second)
+        warnings.Add(loc, "object redefined", "\"" + Printable(name) + "\"");
+}
+
+void PbrtBuilder::ObjectEnd() {
+    End(ScopeKind::Object);
+    currentObject = -1;
+}
+
+void PbrtBuilder::ObjectInstance() {
+    const std::string name = ReadString("the name of an object");
+    if (currentObject >= 0)
+        throw Error(loc, "ObjectInstance inside an object definition; objects do not nest");
+    const auto it = objects.find(name);
+    if (it == objects.end())
+        throw Error(loc, "ObjectInstance of \"" + Printable(name) +
+                             "\", which no ObjectBegin before it defines");
+    description.instances.push_back({it->second, StaticTransform("ObjectInstance"), loc});
+}
+
+// The scene.
+
+void PbrtBuilder::AreaLightSource() {
+    Entity entity = ReadEntity();
+    if (CountValues(entity.parameters) > kMostAreaLightValues)
+        throw Error(loc, "AreaLightSource has more than " + std::to_string(kMostAreaLightValues) +
+                             " values; its parameters are single numbers and spectra");
+    // An empty name switches area lights off again.
+    state.areaLight = entity.name.empty() ? nullptr : std::make_shared<Entity>(std::move(entity));
+}
+
+void PbrtBuilder::LightSource() {
+    auto light = ReadAs<LightEntity>();
+    light.worldFromLight = StaticTransform("LightSource");
+    description.lights.push_back(std::move(light));
+}
+
+void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.reverseOrientation; }
+
+void PbrtBuilder::Shape() {
+    auto shape = ReadAs<ShapeEntity>();
+    shape.worldFromObject = StaticTransform("Shape");
+    shape.reverseOrientation = state.reverseOrientation;
+    shape.material = CurrentMaterial();
+    if (currentObject < 0) {
+        if (state.areaLight) shape.areaLight = *state.areaLight;
+        description.shapes.push_back(std::move(shape));
+        return;
+    }
+    if (state.areaLight)
+        warnings.Add(loc, "area light ignored in an object definition",
+                     "shapes of instanced objects cannot emit light");
+    description.objects[currentObject].shapes.push_back(std::move(shape));
+}
+
+void PbrtBuilder::Texture() {
+    const std::string name = ReadString("the name of a texture");
+    const std::string kind = ReadString("\"float\" or \"spectrum\"");
+    auto texture = ReadAs<TextureEntity>();
+    texture.textureName = name;
+    texture.isSpectrum = kind == "spectrum" || kind == "color";
+    if (!texture.isSpectrum && kind != "float")
+        throw Error(loc, "texture kind \"" + Printable(kind) +
+                             "\" is unknown; write \"float\" or "
+                             "\"spectrum\"");
+    texture.worldFromTexture = StaticTransform("Texture");
+    ScopedNames& names = texture.isSpectrum ? context.spectrumTextures : context.floatTextures;
+    if (names.Find(name) >= 0)
+        warnings.Add(loc, "texture redefined", "\"" + Printable(name) + "\"");
+    names.Define(name, int(description.textures.size()));
+    description.textures.push_back(std::move(texture));
+}
+
+// Materials.
+
+int PbrtBuilder::AddMaterial(MaterialEntity material) {
+    if (material.name == "mix")
+        for (int i : {0, 1})
+            material.operands[i] = materials.Find(
+                material.parameters.GetString(i == 0 ? "namedmaterial1" : "namedmaterial2", ""));
+    description.materials.push_back(std::move(material));
+    return int(description.materials.size()) - 1;
+}
+
+int PbrtBuilder::CurrentMaterial() {
+    if (state.material >= 0) return state.material;
+    if (defaultMaterial < 0) {
+        MaterialEntity matte;
+        matte.name = "matte";
+        matte.loc = loc;
+        defaultMaterial = AddMaterial(std::move(matte));
+    }
+    return defaultMaterial;
+}
+
+void PbrtBuilder::Material() { state.material = AddMaterial(ReadAs<MaterialEntity>()); }
+
+void PbrtBuilder::MakeNamedMaterial() {
+    auto material = ReadAs<MaterialEntity>();
+    material.materialName = std::exchange(material.name, {});
+    const Parameter* type = material.parameters.Find(ParameterType::String, "type");
+    if (!type)
+        throw Error(loc, "MakeNamedMaterial \"" + Printable(material.materialName) +
+                             "\" has no \"string type\"; add one, such as \"matte\"");
+    material.name = material.parameters.GetString("type", "");
+    const std::string name = material.materialName;
+    if (materials.Find(name) >= 0)
+        warnings.Add(loc, "named material redefined", "\"" + Printable(name) + "\"");
+    materials.Define(name, AddMaterial(std::move(material)));
+}
+
+void PbrtBuilder::NamedMaterial() {
+    const std::string name = ReadString("the name of a material");
+    state.material = materials.Find(name);
+    if (state.material < 0)
+        throw Error(loc, "NamedMaterial \"" + Printable(name) +
+                             "\": no MakeNamedMaterial in force defines it");
+}
+
+// Media.
+
+void PbrtBuilder::MakeNamedMedium() {
+    ReadEntity();
+    LeaveOutMedium("MakeNamedMedium");
+}
+
+void PbrtBuilder::MediumInterface() {
+    const std::string inside = ReadString("the name of a medium");
+    const bool hasOutside = lexer.Peek().kind == TokenKind::String;
+    const std::string outside = hasOutside ? lexer.Take().text : inside;
+    // Vacuum on both sides is what there is anyway.
+    if (!inside.empty() || !outside.empty()) LeaveOutMedium("MediumInterface");
+}
+
+// Leaves media out where pbrt-v3 does so itself: of its integrators only three look at them, and
+// it warns of media with the others. The integrator is known from WorldBegin on.
+void PbrtBuilder::LeaveOutMedium(const std::string& directive) {
+    if (stage == Stage::Options) {
+        if (!earlyMedium) earlyMedium = {directive, loc};
+        return;
+    }
+    const std::string& integrator = description.integrator.name;
+    if (integrator != "volpath" && integrator != "bdpt" && integrator != "mlt")
+        warnings.Add(loc, "participating medium ignored",
+                     directive +
+                         " has no effect with "
+                         "Integrator \"" +
+                         Printable(integrator) + "\", in pbrt-v3 as well");
+    else
+        Refuse("participating media (" + directive + ") are",
+               "use Integrator \"path\", which ignores them, or --substitute");
+}
+
+}  // namespace lull

@@ -1,0 +1,122 @@
+// Builds a Description from the directives of a pbrt-v3 file: one function a directive.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "renderer/input/description.h"
+#include "renderer/input/pbrt/pbrt_lexer.h"
+#include "renderer/input/pbrt/pbrt_parameters.h"
+#include "renderer/input/pbrt/pbrt_state.h"
+#include "renderer/input/pbrt_parser.h"
+
+namespace lull {
+
+class PbrtBuilder {
+  public:
+    enum class Stage { Options, World, Done };
+
+    PbrtBuilder(const std::string& file, const ParseOptions& options, Warnings& warnings);
+
+    // Each reads what follows its name and acts on it; `loc` is the place of that name.
+    void Accelerator();
+    void ActiveTransform();
+    void AreaLightSource();
+    void AttributeBegin();
+    void AttributeEnd();
+    void Camera();
+    void ConcatTransform();
+    void CoordSysTransform();
+    void CoordinateSystem();
+    void Film();
+    void Identity();
+    void Include();
+    void Integrator();
+    void LightSource();
+    void LookAt();
+    void MakeNamedMaterial();
+    void MakeNamedMedium();
+    void Material();
+    void MediumInterface();
+    void NamedMaterial();
+    void ObjectBegin();
+    void ObjectEnd();
+    void ObjectInstance();
+    void PixelFilter();
+    void ReverseOrientation();
+    void Rotate();
+    void Sampler();
+    void Scale();
+    void Shape();
+    void Texture();
+    void Transform();
+    void TransformBegin();
+    void TransformEnd();
+    void TransformTimes();
+    void Translate();
+    void WorldBegin();
+    void WorldEnd();
+
+    Stage CurrentStage() const { return stage; }
+    // Returns the description; throws Error at `end` if the world was not closed.
+    Description Finish(const FileLoc& end);
+
+    PbrtLexer lexer;
+    FileLoc loc;  // of the directive in work
+
+  private:
+    enum class ScopeKind { Attribute, Transform, Object };
+    struct Scope {
+        ScopeKind kind;
+        FileLoc loc;
+        GraphicsState saved;
+    };
+
+    std::string ReadString(const char* what);
+    double ReadNumber();
+    template <size_t N>
+    std::array<double, N> ReadNumbers();
+    Mat4d ReadMatrix();
+    Entity ReadEntity();
+    template <typename T>
+    T ReadAs() {
+        T entity;
+        static_cast<Entity&>(entity) = ReadEntity();
+        return entity;
+    }
+    void ReadOption(Entity* entity, const char* directive);
+
+    void Apply(const Mat4d& m);
+    void Check();
+    const Mat4d& StaticTransform(const char* owner);
+    void Begin(ScopeKind kind);
+    void End(ScopeKind kind);
+    void Refuse(const std::string& what, const std::string& remedy);
+    void LeaveOutMedium(const std::string& directive);
+    int AddMaterial(MaterialEntity material);
+    int CurrentMaterial();
+
+    Warnings& warnings;
+    ParseOptions options;
+    Description description;
+    Stage stage = Stage::Options;
+    FileLoc worldBegin;
+    GraphicsState state;
+    std::vector<Scope> scopes;
+    ParameterContext context;
+    ScopedNames materials;
+    int defaultMaterial = -1;
+    std::unordered_map<std::string, int> objects;
+    int currentObject = -1;  // the one being defined, into Description::objects
+    std::map<std::string, TransformPair> coordinateSystems;
+    std::map<std::string, FileLoc> optionsSeen;
+    std::optional<std::pair<std::string, FileLoc>> earlyMedium;  // the first before WorldBegin
+};
+
+}  // namespace lull

@@ -1,0 +1,150 @@
+// Holds PbrtBuilder's readers, and the directives that set transforms and rendering options.
+
+#include <Eigen/LU>
+#include <utility>
+
+#include "renderer/input/pbrt/pbrt_builder.h"
+
+namespace lull {
+
+std::string PbrtBuilder::ReadString(const char* what) {
+    const Token token = lexer.Take();
+    if (token.kind != TokenKind::String)
+        throw Error(token.loc, std::string("expected ") + what + " in quotes, but there is " +
+                                   Describe(token));
+    return token.text;
+}
+
+double PbrtBuilder::ReadNumber() {
+    double value;
+    if (lexer.TakeNumber(&value)) return value;
+    const Token token = lexer.Take();
+    throw Error(token.loc, "expected a number, but there is " + Describe(token));
+}
+
+template <size_t N>
+std::array<double, N> PbrtBuilder::ReadNumbers() {
+    std::array<double, N> values;
+    for (double& value : values) value = ReadNumber();
+    return values;
+}
+
+Mat4d PbrtBuilder::ReadMatrix() {
+    const Token open = lexer.Take();
+    if (open.kind != TokenKind::Open)
+        throw Error(open.loc, "expected 16 numbers in brackets, but there is " + Describe(open));
+    const std::array<double, 16> numbers = ReadNumbers<16>();
+    const Token close = lexer.Take();
+    if (close.kind != TokenKind::Close)
+        throw Error(close.loc, "expected ']' after 16 numbers, but there is " + Describe(close));
+    return ColumnsMatrix(numbers, loc);
+}
+
+Entity PbrtBuilder::ReadEntity() {
+    std::string name = ReadString("a name");
+    return {std::move(name), ReadParameters(lexer, context, warnings), loc};
+}
+
+void PbrtBuilder::ReadOption(Entity* entity, const char* directive) {
+    *entity = ReadEntity();
+    if (!optionsSeen.emplace(directive, loc).second)
+        warnings.Add(loc, std::string(directive) + " given again; the later one counts");
+}
+
+void PbrtBuilder::Film() { ReadOption(&description.film, "Film"); }
+void PbrtBuilder::Integrator() { ReadOption(&description.integrator, "Integrator"); }
+void PbrtBuilder::PixelFilter() { ReadOption(&description.filter, "PixelFilter"); }
+void PbrtBuilder::Sampler() { ReadOption(&description.sampler, "Sampler"); }
+void PbrtBuilder::Accelerator() { ReadEntity(); }         // Embree builds its own
+void PbrtBuilder::TransformTimes() { ReadNumbers<2>(); }  // matters to moving things only
+
+void PbrtBuilder::Camera() {
+    ReadOption(&description.camera, "Camera");
+    description.cameraFromWorld = StaticTransform("Camera");
+    TransformPair worldFromCamera = state.ctm;
+    for (Mat4d& m : worldFromCamera.at) m = Mat4d(m.inverse());
+    coordinateSystems["camera"] = worldFromCamera;
+}
+
+// Transforms.
+
+void PbrtBuilder::Check() {
+    for (const Mat4d& m : state.ctm.at) CheckInvertible(m, loc);
+}
+
+void PbrtBuilder::Apply(const Mat4d& m) {
+    for (int i : {0, 1})
+        if (state.active & (1 << i)) state.ctm.at[i] *= m;
+    Check();
+}
+
+// Returns the current transform for something that cannot move.
+const Mat4d& PbrtBuilder::StaticTransform(const char* owner) {
+    if (state.ctm.IsAnimated())
+        Refuse(std::string("moving transforms (ActiveTransform) of ") + owner + " are",
+               "give the same transform for StartTime and EndTime or use --substitute");
+    return state.ctm.at[0];
+}
+
+void PbrtBuilder::ActiveTransform() {
+    const Token token = lexer.Take();
+    if (token.kind == TokenKind::Word && token.text == "All")
+        state.active = kAllTimes;
+    else if (token.kind == TokenKind::Word && token.text == "StartTime")
+        state.active = kStartTime;
+    else if (token.kind == TokenKind::Word && token.text == "EndTime")
+        state.active = kEndTime;
+    else
+        throw Error(token.loc,
+                    "ActiveTransform takes All, StartTime or EndTime, not " + Describe(token));
+}
+
+void PbrtBuilder::Identity() {
+    for (int i : {0, 1})
+        if (state.active & (1 << i)) state.ctm.at[i].setIdentity();
+}
+
+void PbrtBuilder::Translate() {
+    const auto [x, y, z] = ReadNumbers<3>();
+    Apply(TranslateMatrix(x, y, z));
+}
+
+void PbrtBuilder::Scale() {
+    const auto [x, y, z] = ReadNumbers<3>();
+    Apply(ScaleMatrix(x, y, z, loc));
+}
+
+void PbrtBuilder::Rotate() {
+    const auto [degrees, x, y, z] = ReadNumbers<4>();
+    Apply(RotateMatrix(degrees, {x, y, z}, loc));
+}
+
+void PbrtBuilder::LookAt() {
+    const auto v = ReadNumbers<9>();
+    Apply(LookAtMatrix({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, loc));
+}
+
+void PbrtBuilder::ConcatTransform() { Apply(ReadMatrix()); }
+
+void PbrtBuilder::Transform() {
+    const Mat4d m = ReadMatrix();
+    for (int i : {0, 1})
+        if (state.active & (1 << i)) state.ctm.at[i] = m;
+    Check();
+}
+
+void PbrtBuilder::CoordinateSystem() {
+    const std::string name = ReadString("the name of a coordinate system");
+    coordinateSystems[name] = state.ctm;
+}
+
+void PbrtBuilder::CoordSysTransform() {
+    const std::string name = ReadString("the name of a coordinate system");
+    const auto it = coordinateSystems.find(name);
+    if (it == coordinateSystems.end())
+        throw Error(loc, "coordinate system \"" + Printable(name) +
+                             "\" is unknown; name it with CoordinateSystem before");
+    state.ctm = it->second;
+}
+
+}  // namespace lull

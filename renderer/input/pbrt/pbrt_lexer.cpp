@@ -1,0 +1,245 @@
+#include "renderer/input/pbrt/pbrt_lexer.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+namespace lull {
+namespace {
+
+// Bounds what files included again and again may come to: deep nesting of doubled includes grows
+// without end from a few lines. Every inclusion counts as kLeastBytes at least.
+constexpr size_t kMostRepeatedBytes = size_t(1) << 30;
+constexpr size_t kLeastBytes = size_t(1) << 14;
+// Bounds the length of a string; file names are shorter everywhere.
+constexpr ptrdiff_t kLongestString = 4096;
+
+std::string Quoted(std::string_view text, char quote) {
+    std::string result(1, quote);
+    result += Printable(text);
+    result += quote;
+    return result;
+}
+
+bool IsSpace(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
+
+bool IsDelimiter(char c) { return IsSpace(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
+
+char Unescape(char c, const FileLoc& loc) {
+    switch (c) {
+        case 'b':
+            return '\b';
+        case 'f':
+            return '\f';
+        case 'n':
+            return '\n';
+        case 'r':
+            return '\r';
+        case 't':
+            return '\t';
+        case '\\':
+        case '\'':
+        case '"':
+            return c;
+        default:
+            throw Error(loc, "unknown escape '\\" + Printable({&c, 1}) +
+                                 "' in a string; write a backslash as '\\\\'");
+    }
+}
+
+}  // namespace
+
+std::string Describe(const Token& token) {
+    switch (token.kind) {
+        case TokenKind::End:
+            return "the end of the file";
+        case TokenKind::Open:
+            return "'['";
+        case TokenKind::Close:
+            return "']'";
+        case TokenKind::String:
+            return Quoted(token.text, '"');
+        default:
+            return Quoted(token.text, '\'');
+    }
+}
+
+PbrtLexer::PbrtLexer(const std::string& file) { Open(file, {}); }
+
+void PbrtLexer::Include(const std::string& file, const FileLoc& loc) { Open(file, loc); }
+
+void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
+    Source source;
+    source.name = std::make_shared<const std::string>(file);
+    source.contents = ReadFile(file, loc);
+    std::error_code ignored;
+    source.canonical = std::filesystem::canonical(file, ignored).string();
+    for (const Source& open : sources)
+        if (open.canonical == source.canonical)
+            throw Error(loc, "'" + Printable(file) + "' includes itself; remove this Include");
+    if (inclusions[source.canonical]++ > 0)
+        repeatedBytes += std::max(source.contents.size, kLeastBytes);
+    if (repeatedBytes > kMostRepeatedBytes)
+        throw Error(loc,
+                    "files included again and again come to more than 1 GiB of text; use "
+                    "ObjectInstance to repeat geometry");
+    std::string_view text = source.contents.View();
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte-order mark
+    source.pos = text.data();
+    source.end = text.data() + text.size();
+    sources.push_back(std::move(source));
+}
+
+FileLoc PbrtLexer::Loc() const { return {sources.back().name, sources.back().line}; }
+
+bool PbrtLexer::SkipSpace() {
+    Source& s = sources.back();
+    for (; s.pos < s.end; ++s.pos) {
+        if (*s.pos == '\n')
+            ++s.line;
+        else if (*s.pos == '#') {
+            while (s.pos < s.end && *s.pos != '\n' && *s.pos != '\r') ++s.pos;
+            --s.pos;
+        } else if (!IsSpace(*s.pos))
+            return true;
+    }
+    return false;
+}
+
+std::string_view PbrtLexer::WordAt(const char* pos) const {
+    const char* end = std::find_if(pos, sources.back().end, IsDelimiter);
+    return {pos, size_t(end - pos)};
+}
+
+const Token& PbrtLexer::Peek() {
+    if (!hasPeeked) peeked = Take();
+    hasPeeked = true;
+    return peeked;
+}
+
+Token PbrtLexer::Take() {
+    if (hasPeeked) {
+        hasPeeked = false;
+        return std::move(peeked);
+    }
+    while (!SkipSpace()) {
+        if (sources.size() == 1) return {TokenKind::End, "", Loc()};
+        sources.pop_back();
+    }
+    Source& s = sources.back();
+    Token token{TokenKind::Word, "", Loc()};
+    if (*s.pos == '[' || *s.pos == ']') {
+        token.kind = *s.pos++ == '[' ? TokenKind::Open : TokenKind::Close;
+    } else if (*s.pos == '"') {
+        ReadString(&token);
+    } else {
+        const std::string_view word = WordAt(s.pos);
+        for (const char c : word)
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+                throw Error(token.loc, "control character in '" + Printable(word) +
+                                           "': this is no pbrt scene file");
+        s.pos += word.size();
+        token.text = word;
+    }
+    return token;
+}
+
+void PbrtLexer::ReadString(Token* token) {
+    Source& s = sources.back();
+    token->kind = TokenKind::String;
+    const char* const begin = ++s.pos;
+    for (;; ++s.pos) {
+        if (s.pos == s.end || *s.pos == '\n')
+            throw Error(token->loc,
+                        "the string that begins with \"" +
+                            Printable({begin, size_t(std::min<ptrdiff_t>(s.pos - begin, 40))}) +
+                            "\" has no closing quote on its line");
+        if (s.pos - begin > kLongestString)
+            throw Error(token->loc, "a string is longer than " + std::to_string(kLongestString) +
+                                        " characters; is a quote missing?");
+        if (*s.pos == '"') break;
+        if (*s.pos == '\\' && s.pos + 1 < s.end && s.pos[1] != '\n')
+            token->text += Unescape(*++s.pos, token->loc);
+        else
+            token->text += *s.pos;
+    }
+    ++s.pos;
+}
+
+bool PbrtLexer::NextIsText() {
+    if (hasPeeked) return peeked.kind == TokenKind::String;
+    Source& s = sources.back();
+    const char* const pos = s.pos;
+    const int line = s.line;
+    bool more = SkipSpace();
+    if (more && *s.pos == '[') {
+        ++s.pos;
+        more = SkipSpace();
+    }
+    const bool isText = more && *s.pos == '"';
+    s.pos = pos;
+    s.line = line;
+    return isText;
+}
+
+bool PbrtLexer::AtNumber() {
+    if (hasPeeked || !SkipSpace()) return false;
+    const char c = *sources.back().pos;
+    return (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '+';
+}
+
+template <typename T>
+T PbrtLexer::ParseNumber() {
+    Source& s = sources.back();
+    // Accept a plus sign, which from_chars does not.
+    const char* begin = *s.pos == '+' && s.pos + 1 < s.end && s.pos[1] != '-' ? s.pos + 1 : s.pos;
+    T value = 0;
+    auto [end, status] = std::from_chars(begin, s.end, value);
+    if (status == std::errc::invalid_argument || (end < s.end && !IsDelimiter(*end)))
+        throw Error(Loc(), "'" + Printable(WordAt(s.pos)) + "' is not a number");
+    if (status == std::errc::result_out_of_range) {
+        // Below the range is zero or nearly so; above it is an error.
+        const double wide = std::strtod(std::string(begin, end).c_str(), nullptr);
+        value = std::abs(wide) < 1 ? T(wide) : std::numeric_limits<T>::infinity();
+    }
+    if (!std::isfinite(value))
+        throw Error(Loc(), "'" + Printable(WordAt(s.pos)) +
+                               "' is not a number that can be used: it must be finite and within "
+                               "the range of its type");
+    s.pos = end;
+    return value;
+}
+
+bool PbrtLexer::TakeNumber(float* value) {
+    if (!AtNumber()) return false;
+    *value = ParseNumber<float>();
+    return true;
+}
+
+bool PbrtLexer::TakeNumber(double* value) {
+    if (!AtNumber()) return false;
+    *value = ParseNumber<double>();
+    return true;
+}
+
+bool PbrtLexer::TakeNumber(int* value, bool* cut) {
+    if (!AtNumber()) return false;
+    Source& s = sources.back();
+    const auto [end, status] = std::from_chars(s.pos, s.end, *value);
+    if (status == std::errc() && (end == s.end || IsDelimiter(*end))) {
+        s.pos = end;
+        return true;
+    }
+    const char* const begin = s.pos;
+    const double wide = ParseNumber<double>();
+    if (std::abs(wide) > double(std::numeric_limits<int>::max()))
+        throw Error(Loc(), "'" + Printable(WordAt(begin)) + "' is beyond the range of an integer");
+    *value = int(wide);
+    *cut |= *value != wide;
+    return true;
+}
+
+}  // namespace lull

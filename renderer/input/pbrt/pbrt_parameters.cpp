@@ -1,0 +1,228 @@
+#include "renderer/input/pbrt/pbrt_parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "renderer/input/spectrum.h"
+
+namespace lull {
+namespace {
+
+// Bounds the parameters of a directive: each is compared with all others, and real ones have a
+// few dozen at most.
+constexpr size_t kMostParameters = 1000;
+
+enum class Encoding { Plain, Rgb, Xyz, Blackbody, Sampled };
+
+struct TypeName {
+    std::string_view name;
+    ParameterType type;
+    int multiple;  // the count of numbers must be one of these
+    Encoding encoding = Encoding::Plain;
+};
+
+constexpr std::array<TypeName, 17> kTypes = {{
+    {"integer", ParameterType::Integer, 1},
+    {"float", ParameterType::Float, 1},
+    {"bool", ParameterType::Bool, 1},
+    {"string", ParameterType::String, 1},
+    {"texture", ParameterType::Texture, 1},
+    {"point2", ParameterType::Point2, 2},
+    {"vector2", ParameterType::Vector2, 2},
+    {"point", ParameterType::Point3, 3},
+    {"point3", ParameterType::Point3, 3},
+    {"vector", ParameterType::Vector3, 3},
+    {"vector3", ParameterType::Vector3, 3},
+    {"normal", ParameterType::Normal, 3},
+    {"rgb", ParameterType::Spectrum, 3, Encoding::Rgb},
+    {"color", ParameterType::Spectrum, 3, Encoding::Rgb},
+    {"xyz", ParameterType::Spectrum, 3, Encoding::Xyz},
+    {"blackbody", ParameterType::Spectrum, 2, Encoding::Blackbody},
+    {"spectrum", ParameterType::Spectrum, 2, Encoding::Sampled},
+}};
+
+struct Declaration {
+    const TypeName* type;
+    std::string name;
+};
+
+// Splits "type name", where blanks may stand before, between and after.
+Declaration ReadDeclaration(const Token& token) {
+    std::string_view rest = token.text;
+    const auto takeWord = [&rest] {
+        rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+        const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+        rest.remove_prefix(word.size());
+        return word;
+    };
+    const std::string_view type = takeWord(), name = takeWord();
+    if (name.empty() || !takeWord().empty())
+        throw Error(token.loc, Describe(token) + " declares no parameter; write \"type name\"");
+    const auto* known = std::ranges::find(kTypes, type, &TypeName::name);
+    if (known == kTypes.end())
+        throw Error(token.loc,
+                    "unknown parameter type '" + Printable(type) + "' in " + Describe(token));
+    return {known, std::string(name)};
+}
+
+// Reads one value, or many in brackets, into `values`; take(T*) reads one if it is there.
+template <typename T, typename Take>
+void ReadValues(PbrtLexer& lexer, const Token& owner, const char* what, std::vector<T>* values,
+                const Take& take) {
+    const auto fail = [&](const Token& found) {
+        throw Error(found.loc, "parameter " + Describe(owner) + " expects " + what +
+                                   ", but there is " + Describe(found));
+    };
+    T value;
+    if (take(&value)) {
+        values->push_back(std::move(value));
+        return;
+    }
+    const Token open = lexer.Take();
+    if (open.kind != TokenKind::Open) fail(open);
+    while (take(&value)) values->push_back(std::move(value));
+    const Token close = lexer.Take();
+    if (close.kind != TokenKind::Close) fail(close);
+}
+
+std::vector<float> ReadFloats(PbrtLexer& lexer, const Token& owner) {
+    std::vector<float> values;
+    ReadValues(lexer, owner, "numbers", &values, [&](float* v) { return lexer.TakeNumber(v); });
+    return values;
+}
+
+std::vector<int> ReadInts(PbrtLexer& lexer, const Token& owner, Warnings& warnings) {
+    std::vector<int> values;
+    bool cut = false;
+    ReadValues(lexer, owner, "integers", &values,
+               [&](int* v) { return lexer.TakeNumber(v, &cut); });
+    if (cut) warnings.Add(owner.loc, "integer with a fraction, which is cut off", Describe(owner));
+    return values;
+}
+
+std::vector<std::string> ReadStrings(PbrtLexer& lexer, const Token& owner) {
+    std::vector<std::string> values;
+    ReadValues(lexer, owner, "quoted strings", &values, [&](std::string* v) {
+        if (lexer.Peek().kind != TokenKind::String) return false;
+        *v = lexer.Take().text;
+        return true;
+    });
+    return values;
+}
+
+// Reads booleans as pbrt-v3 writes them, quoted, or bare.
+std::vector<int> ReadBools(PbrtLexer& lexer, const Token& owner) {
+    std::vector<int> values;
+    ReadValues(lexer, owner, "true or false", &values, [&](int* v) {
+        const Token& next = lexer.Peek();
+        const bool isText = next.kind == TokenKind::String || next.kind == TokenKind::Word;
+        if (!isText || (next.text != "true" && next.text != "false")) return false;
+        *v = lexer.Take().text == "true";
+        return true;
+    });
+    return values;
+}
+
+std::vector<TextureRef> ReadTexture(PbrtLexer& lexer, const Token& owner,
+                                    const ParameterContext& context) {
+    const std::vector<std::string> names = ReadStrings(lexer, owner);
+    if (names.size() != 1)
+        throw Error(owner.loc, "parameter " + Describe(owner) + " must name one texture");
+    return {
+        {names[0], context.floatTextures.Find(names[0]), context.spectrumTextures.Find(names[0])}};
+}
+
+void Append(const Rgb& rgb, std::vector<float>* values) {
+    values->insert(values->end(), {rgb.x(), rgb.y(), rgb.z()});
+}
+
+std::vector<float> ReadSpectrumFiles(PbrtLexer& lexer, const Token& owner,
+                                     ParameterContext& context) {
+    std::vector<float> values;
+    for (const std::string& name : ReadStrings(lexer, owner)) {
+        const std::string path = (std::filesystem::path(context.directory) / name).string();
+        auto known = context.spectra.find(path);
+        if (known == context.spectra.end())
+            known = context.spectra.emplace(path, LoadSpectrum(path, owner.loc)).first;
+        Append(known->second, &values);
+    }
+    return values;
+}
+
+// Turns the numbers of a spectrum parameter into RGB triplets.
+std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding,
+                                   const Token& owner) {
+    std::vector<float> values;
+    switch (encoding) {
+        case Encoding::Xyz:
+            for (size_t i = 0; i < given.size(); i += 3)
+                Append(RgbFromXyz(given[i], given[i + 1], given[i + 2]), &values);
+            break;
+        case Encoding::Blackbody:
+            for (size_t i = 0; i < given.size(); i += 2)
+                Append(RgbFromBlackbody(given[i], owner.loc) * given[i + 1], &values);
+            break;
+        case Encoding::Sampled:
+            Append(RgbFromSamples(given, owner.loc), &values);
+            break;
+        default:
+            values = std::move(given);
+    }
+    if (!std::ranges::all_of(values, [](float v) { return std::isfinite(v); }))
+        throw Error(owner.loc, "the values of " + Describe(owner) + " are too large");
+    return values;
+}
+
+std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const Token& owner) {
+    std::vector<float> values = ReadFloats(lexer, owner);
+    if (values.size() % type.multiple != 0)
+        throw Error(owner.loc, "parameter " + Describe(owner) + " has " +
+                                   std::to_string(values.size()) + " numbers, no multiple of " +
+                                   std::to_string(type.multiple));
+    return values;
+}
+
+}  // namespace
+
+Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings& warnings) {
+    Parameters parameters;
+    while (lexer.Peek().kind == TokenKind::String) {
+        const Token owner = lexer.Take();
+        Declaration declaration = ReadDeclaration(owner);
+        const TypeName& type = *declaration.type;
+        Parameter parameter{type.type, std::move(declaration.name), owner.loc, {}};
+        switch (type.type) {
+            case ParameterType::Integer:
+                parameter.values = ReadInts(lexer, owner, warnings);
+                break;
+            case ParameterType::Bool:
+                parameter.values = ReadBools(lexer, owner);
+                break;
+            case ParameterType::String:
+                parameter.values = ReadStrings(lexer, owner);
+                break;
+            case ParameterType::Texture:
+                parameter.values = ReadTexture(lexer, owner, context);
+                break;
+            case ParameterType::Spectrum:
+                if (type.encoding == Encoding::Sampled && lexer.NextIsText())
+                    parameter.values = ReadSpectrumFiles(lexer, owner, context);
+                else
+                    parameter.values =
+                        ConvertSpectrum(ReadFloatsOf(type, lexer, owner), type.encoding, owner);
+                break;
+            default:
+                parameter.values = ReadFloatsOf(type, lexer, owner);
+        }
+        if (parameters.All().size() == kMostParameters)
+            throw Error(owner.loc, "a directive has more than " + std::to_string(kMostParameters) +
+                                       " parameters");
+        parameters.Add(std::move(parameter));
+    }
+    return parameters;
+}
+
+}  // namespace lull

@@ -1,0 +1,24 @@
+// Reads the parameter lists of pbrt-v3 directives.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "renderer/input/description.h"
+#include "renderer/input/pbrt/pbrt_lexer.h"
+#include "renderer/input/pbrt/pbrt_state.h"
+
+namespace lull {
+
+// Holds what a parameter's meaning depends on: the textures as named so far, spectrum files.
+struct ParameterContext {
+    ScopedNames floatTextures, spectrumTextures;
+    std::string directory;               // where the names of spectrum files start
+    std::map<std::string, Rgb> spectra;  // already read, by path
+};
+
+// Reads `"type name" value` and `"type name" [values]` until something else comes. Throws Error
+// at the place of whatever is wrong; warns of integers with a fraction, which is cut off.
+Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings& warnings);
+
+}  // namespace lull

@@ -1,0 +1,118 @@
+#include "renderer/input/ply/ply_header.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <utility>
+
+#include "renderer/input/file_contents.h"
+
+namespace lull {
+namespace {
+
+// Bound what is kept of a header; real ones have a dozen lines.
+constexpr int kMostLines = 10000;
+constexpr size_t kLongestLine = 4096;
+
+struct PlyTypeName {
+    std::string_view name;
+    PlyType type;
+};
+
+constexpr PlyTypeName kPlyTypeNames[] = {
+    {"char", PlyType::Int8},       {"int8", PlyType::Int8},       {"uchar", PlyType::Uint8},
+    {"uint8", PlyType::Uint8},     {"short", PlyType::Int16},     {"int16", PlyType::Int16},
+    {"ushort", PlyType::Uint16},   {"uint16", PlyType::Uint16},   {"int", PlyType::Int32},
+    {"int32", PlyType::Int32},     {"uint", PlyType::Uint32},     {"uint32", PlyType::Uint32},
+    {"float", PlyType::Float32},   {"float32", PlyType::Float32}, {"double", PlyType::Float64},
+    {"float64", PlyType::Float64},
+};
+
+PlyType ParseType(std::string_view name, const FileLoc& loc) {
+    const auto* known = std::ranges::find(kPlyTypeNames, name, &PlyTypeName::name);
+    if (known == std::end(kPlyTypeNames))
+        throw Error(loc, "unknown type '" + Printable(name) + "' in a PLY header");
+    return known->type;
+}
+
+std::vector<std::string_view> SplitWords(std::string_view line) {
+    std::vector<std::string_view> words;
+    while (true) {
+        line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+        if (line.empty()) return words;
+        words.push_back(line.substr(0, line.find_first_of(" \t\r")));
+        line.remove_prefix(words.back().size());
+    }
+}
+
+PlyFormat ParseFormat(std::string_view name, const FileLoc& loc) {
+    if (name == "ascii") return PlyFormat::Ascii;
+    if (name == "binary_little_endian") return PlyFormat::LittleEndian;
+    if (name == "binary_big_endian") return PlyFormat::BigEndian;
+    throw Error(loc, "unknown PLY format '" + Printable(name) + "'");
+}
+
+PlyElement ParseElement(const std::vector<std::string_view>& words, const FileLoc& loc) {
+    PlyElement element{std::string(words[1]), 0, {}};
+    const std::string_view text = words[2];
+    const auto [end, status] =
+        std::from_chars(text.data(), text.data() + text.size(), element.count);
+    if (status != std::errc() || end != text.data() + text.size() || element.count < 0)
+        throw Error(loc, "'" + Printable(text) + "' cannot be the count of PLY element '" +
+                             Printable(element.name) + "'");
+    return element;
+}
+
+PlyProperty ParseProperty(const std::vector<std::string_view>& words, const FileLoc& loc) {
+    if (words.size() == 3)
+        return {std::string(words[2]), ParseType(words[1], loc), false, PlyType::Uint8};
+    if (words.size() != 5 || words[1] != "list")
+        throw Error(loc,
+                    "a PLY property is written 'property TYPE NAME' or "
+                    "'property list TYPE TYPE NAME'");
+    const PlyType countType = ParseType(words[2], loc);
+    if (countType == PlyType::Float32 || countType == PlyType::Float64)
+        throw Error(loc, "the counts of a PLY list must be of an integer type");
+    return {std::string(words[4]), ParseType(words[3], loc), true, countType};
+}
+
+}  // namespace
+
+PlyHeader ParsePlyHeader(std::string_view file, FileLoc loc) {
+    PlyHeader header;
+    bool hasFormat = false;
+    for (loc.line = 1;; ++loc.line) {
+        const std::string_view rest = file.substr(header.bytes);
+        const size_t length = rest.substr(0, kLongestLine).find('\n');
+        if (length == std::string_view::npos || loc.line > kMostLines)
+            throw Error(loc, loc.line == 1 ? "not a PLY file: its first line must be 'ply'"
+                                           : "the PLY header has no end_header");
+        header.bytes += length + 1;
+        const std::vector<std::string_view> words = SplitWords(rest.substr(0, length));
+        if (loc.line == 1) {
+            if (words.size() != 1 || words[0] != "ply")
+                throw Error(loc, "not a PLY file: its first line must be 'ply'");
+        } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+            continue;
+        } else if (words[0] == "format" && words.size() >= 2) {
+            header.format = ParseFormat(words[1], loc);
+            hasFormat = true;
+        } else if (words[0] == "element" && words.size() == 3) {
+            header.elements.push_back(ParseElement(words, loc));
+        } else if (words[0] == "property") {
+            if (header.elements.empty())
+                throw Error(loc, "a PLY property must come after an element");
+            header.elements.back().properties.push_back(ParseProperty(words, loc));
+        } else if (words[0] == "end_header") {
+            break;
+        } else {
+            throw Error(
+                loc, "'" + Printable(rest.substr(0, length)) + "' does not belong in a PLY header");
+        }
+    }
+    if (!hasFormat) throw Error(loc, "the PLY header names no format");
+    header.lines = loc.line;
+    return header;
+}
+
+}  // namespace lull

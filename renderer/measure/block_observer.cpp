@@ -1,0 +1,156 @@
+#include "renderer/measure/block_observer.h"
+
+#include <algorithm>
+
+#include "renderer/base/thread_clock.h"
+#include "stopping/base/state.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t observerTag = 0x3153424f;  // "OBS1"
+constexpr int curveSubBlocks = 100;
+constexpr int smallestCurveSide = 10;  // pixels: one to each row of sub-blocks
+
+double MeanEntropy(const BlockView& view) {
+    std::vector<uint8_t> srgb(view.mean.size());
+    EncodeSrgb8(view.mean, srgb);
+    std::vector<double> lightness(view.mean.size() / 3);
+    Lightness(srgb, lightness);
+    double sum = 0;
+    for (const SvdEntropy& e :
+         SubBlockEntropies(lightness, view.width, view.height, curveSubBlocks))
+        sum += e.h;
+    return sum / curveSubBlocks;
+}
+
+Snapshot TakeSnapshot(const BlockView& view, bool withNoise) {
+    Snapshot snapshot{.mean = {view.mean.begin(), view.mean.end()}, .noise = {}};
+    if (withNoise) snapshot.noise = ComputeLightnessNoise(view).noise;
+    return snapshot;
+}
+
+template <typename T>
+void PutVector(StateWriter& writer, const std::vector<T>& values) {
+    writer.Put(uint64_t(values.size()));
+    writer.PutAll(std::span(values));
+}
+
+template <typename T>
+std::vector<T> GetVector(StateReader& reader) {
+    const auto size = reader.Get<uint64_t>();
+    if (size > reader.Left() / sizeof(T))
+        throw std::runtime_error("the saved observations are damaged");
+    std::vector<T> values(size);
+    reader.GetAll(std::span(values));
+    return values;
+}
+
+}  // namespace
+
+BlockObserver::BlockObserver(std::vector<std::unique_ptr<Criterion>> rules,
+                             const ObserverOptions& options, BlockHistory* history)
+    : rules(std::move(rules)), options(options), history(history) {
+    *history = {};
+    history->stops.resize(this->rules.size());
+}
+
+ViewNeed BlockObserver::Need(int spp) const {
+    if (options.curves || (options.snapshots && options.noise)) return ViewNeed::MeanAndHalf;
+    // A rule that only counts needs no view, but where it stops, the snapshot does.
+    ViewNeed need = options.snapshots ? ViewNeed::Mean : ViewNeed::Nothing;
+    for (const std::unique_ptr<Criterion>& rule : rules)
+        if (rule) need = std::max(need, rule->Need(spp));
+    return need;
+}
+
+Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
+    const double start = ThreadSeconds();
+    const bool needsView = rules[i]->Need(view.spp) != ViewNeed::Nothing;
+    const Decision decision = rules[i]->Observe(view);
+    RuleStop& stop = history->stops[i];
+    stop.ruleSeconds += ThreadSeconds() - start + (needsView ? view.viewSeconds : 0);
+    if (!decision.stop) return decision;
+
+    stop.spp = view.spp;
+    stop.seconds = view.seconds;
+    rules[i].reset();
+    if (options.snapshots && !history->snapshots.contains(view.spp))
+        history->snapshots[view.spp] = TakeSnapshot(view, options.noise);
+    return decision;
+}
+
+void BlockObserver::AddToCurves(const BlockView& view) {
+    BlockCurves& curves = history->curves;
+    const bool isDue = curves.spp.empty() || view.spp >= 1.07 * curves.spp.back();
+    if (!isDue || std::min(view.width, view.height) < smallestCurveSide) return;
+    curves.spp.push_back(view.spp);
+    curves.entropy.push_back(float(MeanEntropy(view)));
+    curves.noise.push_back(float(VisibleNoise(view)));
+}
+
+Decision BlockObserver::Observe(const BlockView& view) {
+    Decision first;
+    for (size_t i = 0; i < rules.size(); ++i) {
+        if (!rules[i]) continue;
+        const Decision decision = ObserveRule(i, view);
+        if (i == 0) first = decision;
+    }
+    if (options.curves) AddToCurves(view);
+    first.stop =
+        !options.goesOn && std::ranges::none_of(rules, [](const auto& rule) { return bool(rule); });
+    return first;
+}
+
+std::vector<std::byte> BlockObserver::Save() const {
+    StateWriter writer;
+    writer.Put(observerTag);
+    PutVector(writer, history->stops);
+    for (const std::unique_ptr<Criterion>& rule : rules)
+        PutVector(writer, rule ? rule->Save() : std::vector<std::byte>());
+    writer.Put(uint64_t(history->snapshots.size()));
+    for (const auto& [spp, snapshot] : history->snapshots) {
+        writer.Put(int32_t(spp));
+        PutVector(writer, snapshot.mean);
+        PutVector(writer, snapshot.noise);
+    }
+    PutVector(writer, history->curves.spp);
+    PutVector(writer, history->curves.entropy);
+    PutVector(writer, history->curves.noise);
+    return std::move(writer.bytes);
+}
+
+void BlockObserver::Restore(std::span<const std::byte> state) {
+    StateReader reader(state);
+    reader.Expect(observerTag);
+    history->stops = GetVector<RuleStop>(reader);
+    if (history->stops.size() != rules.size())
+        throw std::runtime_error("the saved observations are of other rules");
+    for (size_t i = 0; i < rules.size(); ++i) {
+        const auto bytes = GetVector<std::byte>(reader);
+        if (history->stops[i].spp > 0)
+            rules[i].reset();
+        else if (rules[i])
+            rules[i]->Restore(bytes);
+    }
+    history->snapshots.clear();
+    for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
+        Snapshot& snapshot = history->snapshots[reader.Get<int32_t>()];
+        snapshot.mean = GetVector<float>(reader);
+        snapshot.noise = GetVector<float>(reader);
+    }
+    history->curves.spp = GetVector<int>(reader);
+    history->curves.entropy = GetVector<float>(reader);
+    history->curves.noise = GetVector<float>(reader);
+    if (history->curves.entropy.size() != history->curves.spp.size() ||
+        history->curves.noise.size() != history->curves.spp.size())
+        throw std::runtime_error("the saved observations are damaged");
+    reader.Finish();
+}
+
+}  // namespace lull

@@ -1,0 +1,67 @@
+// Watches a block through a render: where rules would have stopped it, how it looked there, and how
+// its noise went.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Says where a rule stopped a block, and at what cost, in seconds of processors.
+struct RuleStop {
+    int spp = 0;             // 0: it has not
+    double seconds = 0;      // that the samples took until then; 0 if it has not stopped
+    double ruleSeconds = 0;  // spent on the rule so far, and on what it was shown
+};
+
+// Holds the pixels of a block, row by row.
+struct Snapshot {
+    std::vector<float> mean;   // linear, R, G, B a pixel
+    std::vector<float> noise;  // of the lightness (LightnessNoise::noise); empty unless asked for
+};
+
+// Holds numbers by spp, about ten to each doubling: the mean SVD-entropy of 100 sub-blocks, and the
+// noise in lightness that is visible (VisibleNoise()).
+struct BlockCurves {
+    std::vector<int> spp;
+    std::vector<float> entropy, noise;
+};
+
+struct BlockHistory {
+    std::vector<RuleStop> stops;        // of each rule
+    std::map<int, Snapshot> snapshots;  // by spp
+    BlockCurves curves;
+};
+
+struct ObserverOptions {
+    bool snapshots = false;  // where rules stop the block
+    bool noise = false;      // in the snapshots
+    bool curves = false;     // for blocks of at least 10 pixels a side
+    bool goesOn = false;     // to the cap, rather than until all rules have stopped the block
+};
+
+// Runs several rules over one block; the decisions it gives are those of the first, while it lasts.
+class BlockObserver final : public Criterion {
+  public:
+    // A null rule has no say about the block. `history` must outlive the observer.
+    BlockObserver(std::vector<std::unique_ptr<Criterion>> rules, const ObserverOptions& options,
+                  BlockHistory* history);
+
+    ViewNeed Need(int spp) const override;
+    Decision Observe(const BlockView& view) override;
+    std::vector<std::byte> Save() const override;
+    void Restore(std::span<const std::byte> state) override;
+
+  private:
+    Decision ObserveRule(size_t rule, const BlockView& view);
+    void AddToCurves(const BlockView& view);
+
+    std::vector<std::unique_ptr<Criterion>> rules;  // null once they have stopped the block
+    ObserverOptions options;
+    BlockHistory* history;
+};
+
+}  // namespace lull

@@ -1,0 +1,114 @@
+#include "renderer/measure/report.h"
+
+#include "renderer/measure/report_json.h"
+
+namespace lull {
+
+namespace {
+
+const char* EndOf(const Block& block) {
+    return !block.stopped ? "interrupted" : block.stoppedByVote ? "stopped" : "cap";
+}
+
+Json BlockJson(const BlockResult& result, int cap) {
+    const Block& block = result.block;
+    Json json = RectJson(block.pixels);
+    json["spp"] = block.spp;
+    json["threshold"] = block.stoppedByVote ? block.spp : cap;
+    json["end"] = EndOf(block);
+    if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
+    json["seconds"] = result.seconds;
+    json["criterionSeconds"] = result.criterionSeconds;
+    if (!result.decisions.empty()) json["decisions"] = DecisionsJson(result.decisions);
+    return json;
+}
+
+Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
+    const Savings savings = ComputeSavings(result, provenance.schedule.cap);
+    return {{"blocks", result.blocks.size()},
+            {"stoppedBlocks", result.progress.stoppedBlocks},
+            {"medianSpp", result.progress.medianSpp},
+            {"seconds", result.progress.seconds},
+            {"samples", savings.samples},
+            {"samplesAtCap", savings.samplesAtCap},
+            {"samplesSaved", savings.SampleShare()},
+            {"threadSeconds", savings.seconds},
+            {"threadSecondsAtCap", savings.secondsAtCap},
+            {"secondsSaved", savings.SecondShare()},
+            {"criterionSeconds", savings.criterionSeconds},
+            {"rejectedSamples", rejected},
+            {"interrupted", result.cancelled}};
+}
+
+}  // namespace
+
+Savings ComputeSavings(const RenderResult& result, int cap) {
+    Savings savings;
+    savings.samples = result.progress.samples;
+    for (const BlockResult& b : result.blocks) {
+        savings.samplesAtCap += b.block.pixels.Area() * cap;
+        savings.criterionSeconds += b.criterionSeconds;
+        savings.seconds += b.seconds + b.criterionSeconds;
+        if (b.block.spp > 0) savings.secondsAtCap += b.seconds / b.block.spp * cap;
+    }
+    return savings;
+}
+
+Json RectJson(const PixelRect& r) {
+    return {{"x", r.min.x()}, {"y", r.min.y()}, {"width", r.Width()}, {"height", r.Height()}};
+}
+
+Json ProvenanceJson(const Provenance& p) {
+    return {{"renderer", "lull"},
+            {"version", p.version},
+            {"scene", p.scene},
+            {"seed", p.seed},
+            {"sampler", NameOf(p.sampler)},
+            {"estimator", NameOf(p.estimator)},
+            {"criterion", p.criterion},
+            {"modelChecksum", p.checksum},
+            {"cap", p.schedule.cap},
+            {"pass", p.schedule.passLength},
+            {"blockSize", p.schedule.blockSize},
+            {"maxDepth", p.maxDepth},
+            {"threads", p.threads},
+            {"substitute", p.substitute},
+            {"resolution", {p.resolution.x(), p.resolution.y()}},
+            {"crop", RectJson(p.crop)}};
+}
+
+Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
+    Json spp = Json::array(), value = Json::array(), votes = Json::array();
+    for (const DecisionRecord& record : decisions) {
+        spp.push_back(record.spp);
+        value.push_back(record.decision.value);
+        votes.push_back(record.decision.votes);
+    }
+    return {{"threshold", decisions.empty() ? 0 : decisions.back().decision.threshold},
+            {"spp", spp},
+            {"value", value},
+            {"votes", votes}};
+}
+
+Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_t rejectedSamples,
+                const std::map<std::string, int>& warnings) {
+    Json report;
+    report["provenance"] = ProvenanceJson(provenance);
+    report["totals"] = TotalsJson(provenance, result, rejectedSamples);
+    report["blocks"] = Json::array();
+    for (const BlockResult& block : result.blocks)
+        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap));
+    report["warnings"] = warnings;
+    return report;
+}
+
+std::string Dump(const Json& json) {
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string MakeReport(const Provenance& provenance, const RenderResult& result,
+                       int64_t rejectedSamples, const std::map<std::string, int>& warnings) {
+    return Dump(ReportJson(provenance, result, rejectedSamples, warnings));
+}
+
+}  // namespace lull

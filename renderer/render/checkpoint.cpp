@@ -1,0 +1,202 @@
+#include "renderer/render/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include "renderer/output/file_io.h"
+#include "stopping/base/hdf5_file.h"
+#include "stopping/base/state.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFormat = "lull checkpoint 1";
+
+std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
+
+// Packs the block's books: where it is, what it cost, and what its criterion said.
+std::vector<std::byte> PackBooks(const BlockResult& result) {
+    StateWriter writer;
+    const PixelRect& r = result.block.pixels;
+    writer.Put(std::array<int32_t, 4>{r.min.x(), r.min.y(), r.max.x(), r.max.y()});
+    writer.Put(int32_t(result.block.spp));
+    writer.Put(uint8_t(result.block.stopped));
+    writer.Put(uint8_t(result.block.stoppedByVote));
+    writer.Put(result.seconds);
+    writer.Put(result.criterionSeconds);
+    writer.Put(uint32_t(result.decisions.size()));
+    for (const auto& [spp, d] : result.decisions) {
+        writer.Put(int32_t(spp));
+        writer.Put(uint8_t(d.stop));
+        writer.Put(d.value);
+        writer.Put(d.threshold);
+        writer.Put(int32_t(d.votes));
+    }
+    return std::move(writer.bytes);
+}
+
+BlockResult UnpackBooks(std::span<const std::byte> bytes) {
+    StateReader reader(bytes);
+    BlockResult result;
+    const auto r = reader.Get<std::array<int32_t, 4>>();
+    result.block.pixels = {{r[0], r[1]}, {r[2], r[3]}};
+    result.block.spp = reader.Get<int32_t>();
+    result.block.stopped = reader.Get<uint8_t>();
+    result.block.stoppedByVote = reader.Get<uint8_t>();
+    result.seconds = reader.Get<double>();
+    result.criterionSeconds = reader.Get<double>();
+    for (uint32_t left = reader.Get<uint32_t>(); left > 0; --left) {
+        DecisionRecord record{reader.Get<int32_t>(), {}};
+        record.decision.judged = true;
+        record.decision.stop = reader.Get<uint8_t>();
+        record.decision.value = reader.Get<double>();
+        record.decision.threshold = reader.Get<double>();
+        record.decision.votes = reader.Get<int32_t>();
+        result.decisions.push_back(record);
+    }
+    reader.Finish();
+    return result;
+}
+
+// Calls visit(pixel) for the pixels of a rectangle, row by row.
+template <typename Film, typename Visit>
+void ForEachPixel(Film& film, const PixelRect& rect, Visit visit) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x) visit(film.At({x, y}));
+}
+
+void WritePixels(Hdf5Group& group, const PixelRect& rect, const Film& film) {
+    std::vector<double> sums, halfSums;
+    std::vector<int32_t> counts, rejected;
+    ForEachPixel(film, rect, [&](const FilmPixel& pixel) {
+        sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
+        halfSums.insert(halfSums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
+        counts.push_back(int32_t(pixel.count));
+        rejected.push_back(int32_t(pixel.rejected));
+    });
+    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
+    group.AddArray<double>("sum", shape, sums);
+    group.AddArray<double>("half_sum", shape, halfSums);
+    group.AddArray<int32_t>("count", std::span(shape).first(2), counts);
+    group.AddArray<int32_t>("rejected", std::span(shape).first(2), rejected);
+}
+
+void ReadPixels(const Hdf5Group& group, const PixelRect& rect, Film* film) {
+    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
+    const auto sums = group.Array<double>("sum", shape);
+    const auto halfSums = group.Array<double>("half_sum", shape);
+    const auto counts = group.Array<int32_t>("count", std::span(shape).first(2));
+    const auto rejected = group.Array<int32_t>("rejected", std::span(shape).first(2));
+    size_t i = 0;
+    ForEachPixel(*film, rect, [&](FilmPixel& pixel) {
+        std::copy_n(&sums[3 * i], 3, pixel.sum.begin());
+        std::copy_n(&halfSums[3 * i], 3, pixel.halfSum.begin());
+        if (counts[i] < 0 || rejected[i] < 0 || rejected[i] > counts[i])
+            throw Error("it has impossible counts of samples");
+        pixel.count = uint32_t(counts[i]);
+        pixel.rejected = uint32_t(rejected[i]);
+        ++i;
+    });
+}
+
+bool HasSamples(const Film& film, const PixelRect& rect) {
+    bool any = false;
+    ForEachPixel(film, rect, [&](const FilmPixel& pixel) { any |= pixel.count > 0; });
+    return any;
+}
+
+std::vector<std::string> Lines(const RenderIdentity& identity) {
+    std::vector<std::string> lines;
+    for (const auto& [key, value] : identity) lines.push_back(key + "=" + value);
+    return lines;
+}
+
+// Throws Error naming the first thing that is not the same.
+void CheckIdentity(const std::vector<std::string>& lines, const RenderIdentity& wanted) {
+    RenderIdentity found;
+    for (const std::string& line : lines) {
+        const size_t equals = std::min(line.find('='), line.size());
+        found[line.substr(0, equals)] = line.substr(std::min(equals + 1, line.size()));
+    }
+    for (const auto& [key, value] : wanted)
+        if (!found.contains(key) || found.at(key) != value)
+            throw Error(fmt::format(
+                "it belongs to a render with another {} ({} there, {} here); go on with the same, "
+                "or remove the file to begin anew",
+                key, found.contains(key) ? found.at(key) : "none", value));
+}
+
+}  // namespace
+
+RenderIdentity IdentityOf(const Provenance& p, const std::string& sceneHash) {
+    const PixelRect& crop = p.crop;
+    return {{"version", p.version},
+            {"scene", sceneHash},
+            {"resolution", fmt::format("{}x{}", p.resolution.x(), p.resolution.y())},
+            {"crop",
+             fmt::format("{},{},{},{}", crop.min.x(), crop.max.x(), crop.min.y(), crop.max.y())},
+            {"sampler", NameOf(p.sampler)},
+            {"estimator", NameOf(p.estimator)},
+            {"seed", fmt::to_string(p.seed)},
+            {"maxdepth", fmt::to_string(p.maxDepth)},
+            {"substitute", p.substitute ? "yes" : "no"},
+            {"stop", p.criterion},
+            {"model", p.checksum.empty() ? "none" : p.checksum},
+            {"block", fmt::to_string(p.schedule.blockSize)},
+            {"pass", fmt::to_string(p.schedule.passLength)},
+            {"cap", fmt::to_string(p.schedule.cap)}};
+}
+
+void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
+                     const RenderState& state, const Film& film) try {
+    Hdf5Group root = Hdf5Group::CreateInMemory();
+    root.SetString("format", kFormat);
+    root.SetStrings("identity", Lines(identity));
+    root.AddArray<double>("seconds", std::array<int64_t, 1>{1}, std::array{state.seconds});
+    for (size_t i = 0; i < state.blocks.size(); ++i) {
+        Hdf5Group group = root.MakeGroup(GroupName(i));
+        const auto addBytes = [&](const char* name, const std::vector<std::byte>& bytes) {
+            group.AddArray<std::byte>(name, std::array{int64_t(bytes.size())}, bytes);
+        };
+        addBytes("books", PackBooks(state.blocks[i]));
+        addBytes("criterion", state.criteria[i]);
+        const PixelRect& rect = state.blocks[i].block.pixels;
+        if (!HasSamples(film, rect)) continue;
+        Hdf5Group pixels = group.MakeGroup("pixels");
+        WritePixels(pixels, rect, film);
+    }
+    WriteFileAtomically(path, root.Image());
+} catch (const Error&) {
+    throw;
+} catch (const std::runtime_error& e) {
+    throw Error(path + ": " + e.what());
+}
+
+RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity,
+                           Film* film) try {
+    const Hdf5Group root = Hdf5Group::Open(path);
+    if (!root.HasAttribute("format") || root.String("format") != kFormat)
+        throw Error("it is no checkpoint of this version of the program");
+    CheckIdentity(root.Strings("identity"), identity);
+    RenderState state;
+    state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
+    for (size_t i = 0; root.HasGroup(GroupName(i)); ++i) {
+        const Hdf5Group group = root.Group(GroupName(i));
+        const auto bytes = [&](const char* name) {
+            return group.Array<std::byte>(name, group.Shape(name));
+        };
+        state.blocks.push_back(UnpackBooks(bytes("books")));
+        state.criteria.push_back(bytes("criterion"));
+        if (!group.HasGroup("pixels")) continue;
+        const PixelRect &rect = state.blocks.back().block.pixels, &all = film->Region();
+        if ((rect.min.array() < all.min.array()).any() ||
+            (rect.max.array() > all.max.array()).any())
+            throw Error("it has pixels outside the image");
+        ReadPixels(group.Group("pixels"), rect, film);
+    }
+    return state;
+} catch (const std::runtime_error& e) {
+    throw Error(path + ": " + e.what());
+}
+
+}  // namespace lull

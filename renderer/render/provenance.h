@@ -1,0 +1,29 @@
+// Says from what an image was made, for headers, reports and checkpoints.
+#pragma once
+
+#include <string>
+
+#include "renderer/render/schedule.h"
+#include "renderer/transport/path_tracer.h"
+
+namespace lull {
+
+struct Provenance {
+    std::string version;
+    std::string scene;  // the file, as given
+    uint64_t seed = 0;
+    SamplerKind sampler = SamplerKind::Sobol;
+    Estimator estimator = Estimator::Combined;
+    std::string criterion, checksum;  // the stopping rule and that of its file, if any
+    ScheduleOptions schedule;
+    int maxDepth = 0;
+    int threads = 0;  // 0: all
+    bool substitute = false;
+    Vec2i resolution = {0, 0};
+    PixelRect crop;
+};
+
+std::string NameOf(SamplerKind);
+std::string NameOf(Estimator);
+
+}  // namespace lull

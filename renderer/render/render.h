@@ -1,0 +1,77 @@
+// Renders blocks pass by pass, each until its own stopping criterion says that it is done.
+#pragma once
+
+#include <functional>
+
+#include "renderer/output/progress.h"
+#include "renderer/render/schedule.h"
+#include "renderer/transport/path_tracer.h"
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Records what a criterion said of a block.
+struct DecisionRecord {
+    int spp;
+    Decision decision;
+};
+
+struct BlockResult {
+    Block block;
+    double seconds = 0;           // of processors, spent on its samples
+    double criterionSeconds = 0;  // spent on its criterion, the view of the pixels included
+    std::vector<DecisionRecord> decisions;  // those for which the block was looked at
+};
+
+// Holds, together with the film, all that is needed to go on with a render: the pixels will be the
+// same bits as without the interruption. A pass may be under way, for some of its pixels.
+struct RenderState {
+    std::vector<BlockResult> blocks;
+    std::vector<std::vector<std::byte>> criteria;  // of each block, as Criterion::Save() has it
+    double seconds = 0;                            // since the start of the first run
+};
+
+struct RenderOptions {
+    ScheduleOptions schedule;
+    SamplerKind sampler = SamplerKind::Sobol;
+    uint64_t seed = 0;
+    int threads = 0;  // 0: all
+
+    // Makes each block's own stopping criterion; empty: all go on to the cap.
+    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
+    // Is told how far things are, by one thread at a time, about every `progressInterval` seconds
+    // and at the end. Can be empty.
+    std::function<void(const RenderProgress&)> onProgress;
+    double progressInterval = 0.25;
+    // Is shown the state of things, with no thread at work, every `checkpointInterval` seconds and
+    // when the render is cancelled. Can be empty.
+    std::function<void(const RenderState&)> onCheckpoint;
+    double checkpointInterval = 60;
+    bool checkpointAtEnd = false;  // also when every block has stopped
+    // Is asked before every tile; true ends the render after the tiles under way. Can be empty.
+    std::function<bool()> isCancelled;
+};
+
+struct RenderResult {
+    std::vector<BlockResult> blocks;
+    RenderProgress progress;  // at the end
+    bool cancelled = false;   // before every block had stopped
+    int threads = 0;          // that it could use
+};
+
+// Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
+using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index)>;
+
+// Renders the film's region, from the start or from where an interrupted render left film and
+// state. The pixels are the same bits for any
+// number of threads and, at equal samples per pixel, for any size of blocks and length of passes.
+// Passes on what criteria and callbacks throw.
+//
+// A block whose `stopped` is set in a state without samples is left out.
+RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
+                    const RenderState* interrupted = nullptr);
+
+// Returns the scene as a source of samples; it must outlive the source.
+SampleSource SamplesOf(const Scene&, Estimator);
+
+}  // namespace lull

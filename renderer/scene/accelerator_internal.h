@@ -1,0 +1,105 @@
+// What the accelerator is made of: for its own sources, and for programs that measure Embree
+// itself.
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "renderer/scene/accelerator.h"
+
+namespace lull {
+
+struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+// Holds what Embree's callbacks get to see of a shape.
+struct ShapeUser {
+    const ShapeTable* shapes;
+    const TextureTable* textures;
+    int shape;
+};
+
+// Callbacks of Embree, called with one ray at a time, as rays are traced one at a time. Those of
+// quadrics intersect spheres and disks; the filters say that a hit is cut out by alpha.
+void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
+void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args);
+void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
+void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
+
+struct Accelerator::Implementation {
+    Device device;
+    std::vector<ShapeUser> users;
+    std::vector<EmbreeScene> objects;
+    EmbreeScene world;
+    int shapeCount = 0;
+
+    EmbreeScene NewScene();
+    // Attaches a shape under its own number, so that a hit names it directly.
+    void Attach(RTCScene scene, const ShapeTable& shapes, int index);
+    void AttachInstance(const Instance& instance, int index);
+};
+
+inline RTCRay MakeRay(const Ray& ray) {
+    RTCRay r;
+    r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
+    r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
+    // The range is closed for Embree. A ray that starts in an axis-aligned plane through the
+    // origin, where error bounds are 0, meets that plane at exactly 0, which must not count.
+    r.tnear = std::numeric_limits<float>::min();
+    r.tfar = ray.tMax;
+    r.time = 0;
+    r.mask = ~0u;
+    r.id = 0;
+    r.flags = 0;
+    return r;
+}
+
+// Do what the accelerator is asked for; see there.
+inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, Hit* hit) {
+    RTCRayHit r;
+    r.ray = MakeRay(ray);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(impl.world.get(), &r);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(impl.world.get(), &context, &r);
+#endif
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit->t = r.ray.tfar;
+    hit->b1 = r.hit.u;
+    hit->b2 = r.hit.v;
+    hit->shape = int(r.hit.geomID);
+    hit->primitive = r.hit.primID;
+    hit->instance =
+        r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? -1 : int(r.hit.instID[0]) - impl.shapeCount;
+    return true;
+}
+
+inline bool IsOccluded(const Accelerator::Implementation& impl, const Ray& ray) {
+    RTCRay r = MakeRay(ray);
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(impl.world.get(), &r);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(impl.world.get(), &context, &r);
+#endif
+    return r.tfar < 0;
+}
+
+}  // namespace lull

@@ -1,0 +1,300 @@
+#include "stopping/base/hdf5_file.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+static_assert(std::is_same_v<hid_t, int64_t>);
+
+using Close = herr_t (*)(hid_t);
+
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error("cannot " + what); }
+
+void Check(herr_t status, const std::string& what) {
+    if (status < 0) Fail(what);
+}
+
+// Owns an identifier, which is negative if the call that returns it has failed.
+class Handle {
+  public:
+    Handle(hid_t id, Close close, const std::string& what) : id(id), close(close) {
+        if (id < 0) Fail(what);
+    }
+    ~Handle() { close(id); }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id; }
+
+  private:
+    hid_t id;
+    Close close;
+};
+
+std::shared_ptr<const int64_t> Share(hid_t id, Close close, const std::string& what) {
+    if (id < 0) Fail(what);
+    return {new int64_t(id), [close](const int64_t* owned) {
+                close(*owned);
+                delete owned;
+            }};
+}
+
+// Keeps the library from printing an account of its errors, which are thrown.
+void BeQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::vector<int64_t> ShapeOf(hid_t space) {
+    const int rank = H5Sget_simple_extent_ndims(space);
+    std::vector<hsize_t> shape(size_t(std::max(0, rank)));
+    if (rank > 0) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+    return {shape.begin(), shape.end()};
+}
+
+size_t Count(hid_t space) {
+    return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+}
+
+// Says how the library names what C++ calls T. (Its names are variables, set when it starts.)
+template <typename T>
+struct ElementType;
+template <>
+struct ElementType<float> {
+    static constexpr H5T_class_t kClass = H5T_FLOAT;
+    static constexpr const char* kName = "floating-point numbers";
+    static hid_t File() { return H5T_IEEE_F32LE; }
+    static hid_t Memory() { return H5T_NATIVE_FLOAT; }
+};
+template <>
+struct ElementType<double> {
+    static constexpr H5T_class_t kClass = H5T_FLOAT;
+    static constexpr const char* kName = "floating-point numbers";
+    static hid_t File() { return H5T_IEEE_F64LE; }
+    static hid_t Memory() { return H5T_NATIVE_DOUBLE; }
+};
+template <>
+struct ElementType<int32_t> {
+    static constexpr H5T_class_t kClass = H5T_INTEGER;
+    static constexpr const char* kName = "integers";
+    static hid_t File() { return H5T_STD_I32LE; }
+    static hid_t Memory() { return H5T_NATIVE_INT32; }
+};
+template <>
+struct ElementType<std::byte> {
+    static constexpr H5T_class_t kClass = H5T_INTEGER;
+    static constexpr const char* kName = "integers";
+    static hid_t File() { return H5T_STD_U8LE; }
+    static hid_t Memory() { return H5T_NATIVE_UINT8; }
+};
+
+void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t space,
+                    const void* data) {
+    const std::string what = "write attribute '" + name + "'";
+    const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, what);
+    Check(H5Awrite(attribute, type, data), what);
+}
+
+}  // namespace
+
+Hdf5Group Hdf5Group::Open(const std::string& path) {
+    BeQuiet();
+    return Hdf5Group(
+        Share(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it as HDF5"));
+}
+
+Hdf5Group Hdf5Group::Create(const std::string& path) {
+    BeQuiet();
+    return Hdf5Group(Share(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Fclose, "create it"));
+}
+
+Hdf5Group Hdf5Group::CreateInMemory() {
+    BeQuiet();
+    const std::string what = "make a file in memory";
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
+    Check(H5Pset_fapl_core(access, size_t(1) << 20, false), what);
+    return Hdf5Group(
+        Share(H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what));
+}
+
+std::vector<std::byte> Hdf5Group::Image() {
+    Flush();
+    const ssize_t size = H5Fget_file_image(*id, nullptr, 0);
+    if (size < 0) Fail("copy a file in memory");
+    std::vector<std::byte> bytes(static_cast<size_t>(size));
+    if (H5Fget_file_image(*id, bytes.data(), bytes.size()) < 0) Fail("copy a file in memory");
+    return bytes;
+}
+
+void Hdf5Group::Flush() { Check(H5Fflush(*id, H5F_SCOPE_GLOBAL), "write it to the end"); }
+
+bool Hdf5Group::HasGroup(const std::string& name) const {
+    return H5Lexists(*id, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Hdf5Group Hdf5Group::Group(const std::string& name) const {
+    return Hdf5Group(
+        Share(H5Gopen2(*id, name.c_str(), H5P_DEFAULT), H5Gclose, "find the group '" + name + "'"));
+}
+
+Hdf5Group Hdf5Group::MakeGroup(const std::string& name) {
+    return Hdf5Group(Share(H5Gcreate2(*id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Gclose, "make the group '" + name + "'"));
+}
+
+std::vector<std::string> Hdf5Group::Groups() const {
+    std::vector<std::string> names;
+    const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
+        static_cast<std::vector<std::string>*>(data)->push_back(name);
+        return 0;
+    };
+    Check(H5Literate(*id, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names), "list the groups");
+    std::erase_if(names, [&](const std::string& name) {
+        const hid_t group = H5Gopen2(*id, name.c_str(), H5P_DEFAULT);
+        if (group >= 0) H5Gclose(group);
+        return group < 0;
+    });
+    return names;
+}
+
+bool Hdf5Group::HasAttribute(const std::string& name) const {
+    return H5Aexists(*id, name.c_str()) > 0;
+}
+
+int Hdf5Group::Int(const std::string& name) const {
+    const std::string what = "read attribute '" + name + "', which must be an integer";
+    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_INTEGER || Count(space) != 1) Fail(what);
+    int value = 0;
+    Check(H5Aread(attribute, H5T_NATIVE_INT, &value), what);
+    return value;
+}
+
+std::vector<std::string> Hdf5Group::Strings(const std::string& name) const {
+    const std::string what = "read attribute '" + name + "', which must be text";
+    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_STRING) Fail(what);
+    std::vector<std::string> strings(Count(space));
+    if (strings.empty()) return strings;
+
+    if (H5Tis_variable_str(type) > 0) {
+        std::vector<char*> texts(strings.size(), nullptr);
+        Check(H5Aread(attribute, type, texts.data()), what);
+        for (size_t i = 0; i < texts.size(); ++i)
+            if (texts[i]) strings[i] = texts[i];
+        H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+    } else {
+        const size_t size = H5Tget_size(type);
+        std::vector<char> texts(strings.size() * size);
+        Check(H5Aread(attribute, type, texts.data()), what);
+        for (size_t i = 0; i < strings.size(); ++i)
+            strings[i].assign(&texts[i * size], strnlen(&texts[i * size], size));
+    }
+    return strings;
+}
+
+std::string Hdf5Group::String(const std::string& name) const {
+    const std::vector<std::string> strings = Strings(name);
+    if (strings.size() != 1) Fail("read attribute '" + name + "', which must be one text");
+    return strings[0];
+}
+
+void Hdf5Group::SetInt(const std::string& name, int value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    WriteAttribute(*id, name, H5T_NATIVE_INT, space, &value);
+}
+
+void Hdf5Group::SetString(const std::string& name, const std::string& text) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+    Check(H5Tset_size(type, H5T_VARIABLE), "make a text type");
+    const char* pointer = text.c_str();
+    WriteAttribute(*id, name, type, space, &pointer);
+}
+
+// Writes one array of texts of the same length, padded with zeros, as Keras does through h5py.
+void Hdf5Group::SetStrings(const std::string& name, std::span<const std::string> texts) {
+    size_t size = 1;
+    for (const std::string& text : texts) size = std::max(size, text.size());
+    std::vector<char> padded(size * texts.size());
+    for (size_t i = 0; i < texts.size(); ++i)
+        std::copy(texts[i].begin(), texts[i].end(), padded.begin() + ptrdiff_t(i * size));
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+    Check(H5Tset_size(type, size), "make a text type");
+    Check(H5Tset_strpad(type, H5T_STR_NULLPAD), "make a text type");
+    const hsize_t count = texts.size();
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, "make an array of texts");
+    WriteAttribute(*id, name, type, space, padded.data());
+}
+
+std::vector<int64_t> Hdf5Group::Shape(const std::string& path) const {
+    const std::string what = "find the array '" + path + "'";
+    const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);
+    const Handle space(H5Dget_space(data), H5Sclose, what);
+    return ShapeOf(space);
+}
+
+template <typename T>
+std::vector<T> Hdf5Group::Array(const std::string& path, std::span<const int64_t> shape) const {
+    const std::string what = "read the array '" + path + "'";
+    const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);
+    const Handle space(H5Dget_space(data), H5Sclose, what);
+    const Handle type(H5Dget_type(data), H5Tclose, what);
+    if (!std::ranges::equal(ShapeOf(space), shape)) {
+        std::string text;
+        for (int64_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
+        Fail(what + ": it does not have the shape " + text);
+    }
+    if (H5Tget_class(type) != ElementType<T>::kClass)
+        Fail(what + ": it holds no " + ElementType<T>::kName);
+    std::vector<T> values(Count(space));
+    Check(H5Dread(data, ElementType<T>::Memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          what);
+    return values;
+}
+
+template <typename T>
+void Hdf5Group::AddArray(const std::string& path, std::span<const int64_t> shape,
+                         std::span<const T> values, Hdf5Storage storage) {
+    const std::string what = "write the array '" + path + "'";
+    const std::vector<hsize_t> size(shape.begin(), shape.end());
+    const Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, what);
+    if (Count(space) != values.size()) Fail(what + ": its values do not fill its shape");
+    const Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+    // Without the time, the same content gives the same bytes.
+    Check(H5Pset_obj_track_times(options, false), what);
+    if (storage == Hdf5Storage::Compressed && !values.empty()) {
+        Check(H5Pset_chunk(options, int(size.size()), size.data()), what);
+        Check(H5Pset_shuffle(options), what);
+        Check(H5Pset_deflate(options, 9), what);
+    }
+    const Handle data(H5Dcreate2(*id, path.c_str(), ElementType<T>::File(), space, H5P_DEFAULT,
+                                 options, H5P_DEFAULT),
+                      H5Dclose, what);
+    Check(H5Dwrite(data, ElementType<T>::Memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          what);
+}
+
+template std::vector<float> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<double> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<int32_t> Hdf5Group::Array(const std::string&, std::span<const int64_t>) const;
+template std::vector<std::byte> Hdf5Group::Array(const std::string&,
+                                                 std::span<const int64_t>) const;
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const float>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const double>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const int32_t>, Hdf5Storage);
+template void Hdf5Group::AddArray(const std::string&, std::span<const int64_t>,
+                                  std::span<const std::byte>, Hdf5Storage);
+
+}  // namespace lull

@@ -1,0 +1,94 @@
+// Records what a stopping rule could want to know of a block, pass by pass, so that rules can be
+// trained and judged without rendering again.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Names numbers that are recorded of a block: one for each of `count` sub-blocks, row-major, or one
+// for the whole block.
+struct Channel {
+    std::string_view name;
+    int count;
+};
+
+// Holds all of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
+// lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
+// deviation are mean and standard deviation of L; texture is the mean of t, and noise, noise_mean,
+// masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
+// of those rules (baselines.h).
+inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
+                                                       {"h25", 25},
+                                                       {"h100", 100},
+                                                       {"h400", 400},
+                                                       {"h1", 100},
+                                                       {"h2", 100},
+                                                       {"lightness", 100},
+                                                       {"deviation", 100},
+                                                       {"texture", 100},
+                                                       {"noise", 100},
+                                                       {"noise_mean", 100},
+                                                       {"masked_noise", 100},
+                                                       {"half_noise", 100},
+                                                       {"dammertz", 1},
+                                                       {"luxtile", 1}}};
+
+// Returns the place of a channel's first number in a record. Throws std::invalid_argument for a
+// name that there is not.
+int ChannelOffset(std::string_view name);
+int ChannelCount(std::string_view name);
+inline constexpr int kRecordLength = [] {
+    int length = 0;
+    for (const Channel& channel : kChannels) length += channel.count;
+    return length;
+}();
+
+// The rule `cycles` remembers pixels, so its stops cannot be told from one number a pass: it runs
+// at these thresholds, and what is recorded is where it stopped.
+inline constexpr std::array<double, 13> kCyclesThresholds = {
+    0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
+
+// Holds the history of one block.
+struct BlockRecording {
+    std::vector<int> spp;       // of the records, increasing
+    std::vector<float> values;  // kRecordLength for each of them
+    // spp at which `cycles` stopped at each of kCyclesThresholds; 0: not within the recording.
+    std::array<int, kCyclesThresholds.size()> cyclesStops = {};
+
+    int Count() const { return int(spp.size()); }
+    // Returns the numbers of one channel in record i.
+    std::span<const float> Values(int i, std::string_view channel) const;
+};
+
+// Says which passes are recorded: all up to 400 spp, then every second one (counted from the
+// first), and the last.
+bool IsRecorded(int spp, int passSpp, int cap);
+
+// Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks
+// must have at least 20 x 20 pixels. What is recorded goes to `recording`, which must outlive it.
+class Recorder final : public Criterion {
+  public:
+    Recorder(int passSpp, int cap, int limit, BlockRecording* recording);
+    ~Recorder() override;
+
+    ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
+    Decision Observe(const BlockView& view) override;
+    std::vector<std::byte> Save() const override;
+    void Restore(std::span<const std::byte> state) override;
+
+  private:
+    void StartCycles();
+
+    int passSpp, cap, limit;
+    BlockRecording* recording;
+    std::vector<std::unique_ptr<Criterion>> cycles;  // null where it has stopped
+};
+
+}  // namespace lull

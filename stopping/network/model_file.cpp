@@ -1,0 +1,209 @@
+#include "stopping/network/model_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "stopping/base/checksum.h"
+#include "stopping/base/hdf5_file.h"
+#include "stopping/network/keras_config.h"
+
+namespace lull {
+
+namespace {
+
+// Maps what the weights of a layer are called ("kernel", "recurrent_kernel", "bias") to where they
+// are: the last part of their name, between "/" and ":0", whatever scopes come before it.
+std::map<std::string, std::string> WeightPaths(const Hdf5Group& layer) {
+    std::map<std::string, std::string> paths;
+    for (const std::string& path : layer.Strings("weight_names")) {
+        const std::string name = path.substr(path.rfind('/') + 1);
+        paths[name.substr(0, name.find(':'))] = path;
+    }
+    return paths;
+}
+
+// Reads the weights of one layer. What Keras stores row by row is column by column here, so that
+// its arrays arrive transposed without being moved.
+class LayerReader {
+  public:
+    LayerReader(const Hdf5Group& root, const std::string& name)
+        : name(name), group(root.Group(name)), paths(WeightPaths(group)) {}
+
+    Eigen::MatrixXf Matrix(const std::string& weights, int64_t rows, int64_t columns) const {
+        const std::vector<float> values = Read(weights, {rows, columns});
+        return Eigen::Map<const Eigen::MatrixXf>(values.data(), columns, rows);
+    }
+    Eigen::VectorXf Vector(const std::string& weights, int64_t size) const {
+        const std::vector<float> values = Read(weights, {size});
+        return Eigen::Map<const Eigen::VectorXf>(values.data(), size);
+    }
+    // Returns how many values the layer takes: the rows of its kernel.
+    int64_t Inputs() const {
+        const std::vector<int64_t> shape = group.Shape(Path("kernel"));
+        return shape.empty() ? 0 : shape[0];
+    }
+
+  private:
+    const std::string& Path(const std::string& weights) const {
+        const auto path = paths.find(weights);
+        if (path == paths.end())
+            throw std::runtime_error("layer '" + name + "' has no weights called " + weights);
+        return path->second;
+    }
+    std::vector<float> Read(const std::string& weights, const std::vector<int64_t>& shape) const {
+        std::vector<float> values = group.Array<float>(Path(weights), shape);
+        if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+            throw std::runtime_error("the weights '" + Path(weights) + "' hold NaN or infinity");
+        return values;
+    }
+
+    std::string name;
+    Hdf5Group group;
+    std::map<std::string, std::string> paths;
+};
+
+Network ReadNetwork(const Hdf5Group& root, const KerasModel& model, int64_t inputs) {
+    Network network;
+    for (const KerasLayer& layer : model.layers) {
+        const LayerReader reader(root, layer.name);
+        const int64_t columns = (layer.isLstm ? 4 : 1) * layer.units;
+        const Eigen::MatrixXf kernel = reader.Matrix("kernel", inputs, columns);
+        const Eigen::VectorXf bias =
+            layer.useBias ? reader.Vector("bias", columns) : Eigen::VectorXf::Zero(columns).eval();
+        if (layer.isLstm)
+            network.lstm.push_back({layer.name, kernel,
+                                    reader.Matrix("recurrent_kernel", layer.units, columns), bias,
+                                    layer.activation, layer.recurrentActivation});
+        else
+            network.dense.push_back({layer.name, kernel, bias, layer.activation});
+        inputs = layer.units;
+    }
+    return network;
+}
+
+ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs) {
+    ModelSettings s;
+    if (inputs > 1000000) throw std::runtime_error("the network takes too many values");
+    if (timeSteps > 0) s.k = timeSteps;
+    bool saysM = false;
+    if (file.HasGroup("lull")) {
+        const Hdf5Group group = file.Group("lull");
+        auto read = [&](const char* name, int standard) {
+            return group.HasAttribute(name) ? group.Int(name) : standard;
+        };
+        s.k = read("k", s.k);
+        s.n = read("n", s.n);
+        saysM = group.HasAttribute("m");
+        s.m = read("m", s.m);
+        s.snorm = read("snorm", s.snorm) != 0;
+        s.bnorm = read("bnorm", s.bnorm) != 0;
+        s.votes = read("votes", s.votes);
+        s.voteSpacing = read("vote_spacing", s.voteSpacing);
+        if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
+        if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
+    }
+    if (!saysM) s.m = int(inputs);
+    CheckSettings(s);
+    if (InputCount(s) != inputs || (timeSteps > 0 && s.k != timeSteps))
+        throw std::runtime_error("/lull says " + std::to_string(s.k) + " steps of " +
+                                 std::to_string(InputCount(s)) + " values, but the network takes " +
+                                 (timeSteps > 0 ? std::to_string(timeSteps) : "any number of") +
+                                 " steps of " + std::to_string(inputs) + " values");
+    return s;
+}
+
+// Writes the weights of one layer, transposed back; those of one column get one dimension.
+void WriteLayer(Hdf5Group root, const std::string& layer,
+                const std::vector<std::pair<std::string, Eigen::MatrixXf>>& weights) {
+    Hdf5Group group = root.MakeGroup(layer), scope = group.MakeGroup(layer);
+    std::vector<std::string> names;
+    for (const auto& [name, matrix] : weights) {
+        std::vector<int64_t> shape = {matrix.rows()};
+        if (name != "bias") shape.insert(shape.begin(), matrix.cols());
+        scope.AddArray<float>(name + ":0", shape, {matrix.data(), size_t(matrix.size())});
+        names.push_back(layer + "/" + name + ":0");
+    }
+    group.SetStrings("weight_names", names);
+}
+
+void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
+           const std::map<std::string, std::string>& record) {
+    file.SetString("model_config", WriteKerasConfig(network, s.k));
+    Hdf5Group root = file.MakeGroup("model_weights");
+    for (Hdf5Group* group : {&file, &root}) {
+        group->SetString("keras_version", "2.2.4");
+        group->SetString("backend", "tensorflow");
+    }
+    std::vector<std::string> names;
+    for (const LstmLayer& l : network.lstm) {
+        WriteLayer(root, l.name,
+                   {{"kernel", l.kernel}, {"recurrent_kernel", l.recurrent}, {"bias", l.bias}});
+        names.push_back(l.name);
+    }
+    for (const DenseLayer& l : network.dense) {
+        WriteLayer(root, l.name, {{"kernel", l.kernel}, {"bias", l.bias}});
+        names.push_back(l.name);
+    }
+    root.SetStrings("layer_names", names);
+
+    Hdf5Group group = file.MakeGroup("lull");
+    group.SetInt("k", s.k);
+    group.SetInt("n", s.n);
+    group.SetInt("m", s.m);
+    group.SetString("feature", FeatureNames(s.features));
+    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
+    group.SetInt("snorm", s.snorm);
+    group.SetInt("bnorm", s.bnorm);
+    group.SetInt("votes", s.votes);
+    group.SetInt("vote_spacing", s.voteSpacing);
+    if (record.empty()) return;
+    Hdf5Group training = group.MakeGroup("training");
+    for (const auto& [name, text] : record) training.SetString(name, text);
+}
+
+}  // namespace
+
+Model ReadModel(const std::string& path) {
+    Model model;
+    model.checksum = FileChecksum(path);
+    try {
+        const Hdf5Group file = Hdf5Group::Open(path);
+        const std::string version =
+            file.HasAttribute("keras_version") ? file.String("keras_version") : "";
+        const KerasModel config = ParseKerasConfig(file.String("model_config"), version);
+        const Hdf5Group root = file.Group("model_weights");
+        const int64_t values = LayerReader(root, config.layers.front().name).Inputs();
+        const int64_t inputs = config.isFlat ? values / config.timeSteps : values;
+        if ((config.inputs > 0 && config.inputs != inputs) ||
+            (config.isFlat && values != inputs * config.timeSteps))
+            throw std::runtime_error("the first kernel does not have the shape of the input");
+        model.settings = ReadSettings(file, config.timeSteps, inputs);
+        model.network = ReadNetwork(root, config, values);
+        CheckNetwork(model.network);
+    } catch (const std::exception& error) {
+        throw std::runtime_error(path + ": " + error.what());
+    }
+    return model;
+}
+
+void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
+                const std::map<std::string, std::string>& record) {
+    CheckNetwork(network);
+    CheckSettings(settings);
+    const std::string newPath = path + ".new";
+    try {
+        Hdf5Group file = Hdf5Group::Create(newPath);
+        Write(file, network, settings, record);
+        file.Flush();
+    } catch (const std::exception& error) {
+        throw std::runtime_error(newPath + ": " + error.what());
+    }
+    std::filesystem::rename(newPath, path);
+}
+
+}  // namespace lull

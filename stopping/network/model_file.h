@@ -1,0 +1,36 @@
+// Reads and writes trained networks in the layout of Keras' model.save(): HDF5 with a JSON
+// description (attribute `model_config`) and weights under `model_weights/LAYER`.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "stopping/network/lstm.h"
+#include "stopping/network/window.h"
+
+namespace lull {
+
+struct Model {
+    Network network;
+    ModelSettings settings;
+    std::string checksum;  // of the file it was read from, see FileChecksum()
+};
+
+// Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as
+// Keras 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m,
+// snorm, bnorm, votes, vote_spacing and the strings feature and pool, lists with commas. One that
+// is absent (all are, in a published model) has its default, but k and m follow the shape of the
+// network's input. Throws std::runtime_error
+// beginning with the path and naming what is missing, not modelled, of the wrong shape, NaN or
+// infinite.
+Model ReadModel(const std::string& path);
+
+// Writes a model so that ReadModel() returns it and Keras 2 can load it; to a new file that then
+// takes the place of an old one. `record` says how it was trained; each of its texts (64 KiB at the
+// most) becomes an attribute of the group /lull/training. Throws std::invalid_argument for a
+// network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it
+// cannot be written.
+void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
+                const std::map<std::string, std::string>& record = {});
+
+}  // namespace lull

@@ -1,0 +1,141 @@
+#include "stopping/network/model_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+bool Needs(const ModelSettings& settings, Feature feature) {
+    return std::find(settings.features.begin(), settings.features.end(), feature) !=
+           settings.features.end();
+}
+
+bool NeedsEntropies(const ModelSettings& settings) {
+    return std::any_of(settings.features.begin(), settings.features.end(), IsEntropy);
+}
+
+bool NeedsStatistics(const ModelSettings& settings) {
+    return std::any_of(settings.features.begin(), settings.features.end(),
+                       [](Feature f) { return !IsEntropy(f) && f != Feature::LogSpp; });
+}
+
+void MeasureEntropies(const BlockView& view, const ModelSettings& settings,
+                      BlockMeasures* measures) {
+    std::vector<uint8_t> srgb(view.mean.size());
+    EncodeSrgb8(view.mean, srgb);
+    std::vector<double> lightness(view.mean.size() / 3);
+    Lightness(srgb, lightness);
+    for (const SvdEntropy& e : SubBlockEntropies(lightness, view.width, view.height, settings.m)) {
+        if (Needs(settings, Feature::H)) measures->Of(Feature::H).push_back(e.h);
+        if (Needs(settings, Feature::H1)) measures->Of(Feature::H1).push_back(e.h1);
+        if (Needs(settings, Feature::H2)) measures->Of(Feature::H2).push_back(e.h2);
+    }
+}
+
+void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
+    const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
+                                                          view.height, kMeasuredSubBlocks);
+    auto put = [&](Feature feature, const std::vector<float>& values) {
+        measures->Of(feature).assign(values.begin(), values.end());
+    };
+    put(Feature::Lightness, s.lightness);
+    put(Feature::Deviation, s.deviation);
+    put(Feature::Texture, s.texture);
+    put(Feature::Noise, s.noise);
+    put(Feature::NoiseMean, s.noiseMean);
+    put(Feature::MaskedNoise, s.maskedNoise);
+    put(Feature::HalfNoise, s.halfNoise);
+    measures->Of(Feature::DetailMaskedNoise) =
+        DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
+}
+
+int SubBlocks(const ModelSettings& settings, Feature feature) {
+    return IsEntropy(feature) ? settings.m : kMeasuredSubBlocks;
+}
+
+double Pooled(const Pool& pool, std::vector<double> values) {
+    const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
+    if (pool.kind == Pool::PowerMean)
+        return pool.number == 1 ? v.mean()
+                                : std::pow(v.abs().pow(pool.number).mean(), 1.0 / pool.number);
+    std::sort(values.begin(), values.end());
+    const double place = pool.number / 100.0 * double(values.size() - 1);
+    const size_t below = size_t(place), above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - double(below)) * (values[above] - values[below]);
+}
+
+// Brings values near the unit interval, or to where differences mean the same everywhere.
+double Scaled(Feature feature, double value) {
+    if (IsEntropy(feature)) return value;
+    if (feature == Feature::Lightness) return value / 100;
+    if (feature == Feature::Deviation || feature == Feature::Texture)
+        return std::log1p(std::max(value, 0.0) / 4) / 2;
+    return std::log(std::max(value, 0.0) + 0.001);
+}
+
+}  // namespace
+
+ViewNeed NeedOf(const ModelSettings& settings) {
+    return NeedsStatistics(settings)  ? ViewNeed::MeanAndHalf
+           : NeedsEntropies(settings) ? ViewNeed::Mean
+                                      : ViewNeed::Nothing;
+}
+
+BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
+    CheckView(view, NeedOf(settings));
+    BlockMeasures measures{.spp = view.spp};
+    if (NeedsEntropies(settings)) MeasureEntropies(view, settings, &measures);
+    if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
+    return measures;
+}
+
+std::vector<InputRange> InputRanges(const ModelSettings& settings) {
+    std::vector<InputRange> ranges;
+    int begin = 0;
+    for (Feature feature : settings.features) {
+        InputRange range{feature, begin, 1, 1};
+        if (feature != Feature::LogSpp) {
+            const bool pooled = !settings.pools.empty();
+            range.count = pooled ? int(settings.pools.size()) : SubBlocks(settings, feature);
+            range.side = pooled ? 1 : int(std::lround(std::sqrt(range.count)));
+        }
+        ranges.push_back(range);
+        begin += range.count;
+    }
+    return ranges;
+}
+
+int InputCount(const ModelSettings& settings) {
+    int count = 0;
+    for (const InputRange& range : InputRanges(settings)) count += range.count;
+    return count;
+}
+
+std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings) {
+    std::vector<double> inputs;
+    for (Feature feature : settings.features) {
+        if (feature == Feature::LogSpp) {
+            inputs.push_back(std::log(measures.spp / 20.0) / std::log(500.0));
+            continue;
+        }
+        const std::vector<double>& values = measures.Of(feature);
+        if (values.size() != size_t(SubBlocks(settings, feature)))
+            throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +
+                                        " do not have one value for each sub-block");
+        if (settings.pools.empty())
+            for (double v : values) inputs.push_back(Scaled(feature, v));
+        for (const Pool& pool : settings.pools)
+            inputs.push_back(Scaled(feature, Pooled(pool, values)));
+    }
+    return inputs;
+}
+
+}  // namespace lull

@@ -1,0 +1,52 @@
+// Turns what is measured of a block into what a network is given: the same way where a model is
+// trained, from recordings, and where it judges, from pixels.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+#include "stopping/network/model_settings.h"
+
+namespace lull {
+
+// The sub-blocks that have statistics other than entropies, as recordings have them.
+inline constexpr int kMeasuredSubBlocks = 100;
+
+// Holds what was measured of a block at one spp: for each feature the values of its sub-blocks,
+// row-major (m entropies, kMeasuredSubBlocks of other statistics); empty where it is not asked
+// for, and always for LogSpp.
+struct BlockMeasures {
+    int spp = 0;
+    std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
+
+    std::vector<double>& Of(Feature feature) { return values[size_t(feature)]; }
+    const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
+};
+
+// Says what MeasureBlock() reads.
+ViewNeed NeedOf(const ModelSettings& settings);
+
+// Measures what the settings ask for. Throws as CheckView() and SubBlockEntropies() do.
+BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
+
+// Says which places in the input of a network belong to a feature.
+struct InputRange {
+    Feature feature;
+    int begin = 0, count = 0;
+    int side = 1;  // side * side = count where there is one value a sub-block, else 1
+};
+
+// Returns the ranges in the order of the settings' features; they cover all inputs.
+std::vector<InputRange> InputRanges(const ModelSettings& settings);
+int InputCount(const ModelSettings& settings);
+
+// Returns the input of one step, InputCount() values, before it is normalised over a window:
+// entropies as they are; noise as log(v + 0.001); deviation and texture as log(1 + v / 4) / 2 (a
+// texture t masks noise by 1 + t / 4); lightness / 100; the spp as log(spp / 20) / log(500), which
+// is 1 at 10,000. Values are pooled before their logarithm is taken. Throws std::invalid_argument
+// if the measures of a feature do not have the length they should have.
+std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
+
+}  // namespace lull

@@ -1,0 +1,119 @@
+#include "stopping/network/model_settings.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "stopping/base/block_view.h"
+
+namespace lull {
+
+namespace {
+
+constexpr std::array<std::pair<Feature, const char*>, 12> featureNames = {
+    {{Feature::H, "H"},
+     {Feature::H1, "H1"},
+     {Feature::H2, "H2"},
+     {Feature::Lightness, "lightness"},
+     {Feature::Deviation, "deviation"},
+     {Feature::Texture, "texture"},
+     {Feature::Noise, "noise"},
+     {Feature::NoiseMean, "noise_mean"},
+     {Feature::MaskedNoise, "masked_noise"},
+     {Feature::HalfNoise, "half_noise"},
+     {Feature::DetailMaskedNoise, "detail_masked_noise"},
+     {Feature::LogSpp, "logspp"}}};
+
+Feature ParseFeature(const std::string& name) {
+    std::string known;
+    for (const auto& [feature, text] : featureNames) {
+        if (name == text) return feature;
+        known += std::string(known.empty() ? "" : ", ") + text;
+    }
+    throw std::invalid_argument("feature '" + name + "' is not known; there are " + known);
+}
+
+std::string FeatureName(Feature feature) { return featureNames[size_t(feature)].second; }
+
+Pool ParsePool(const std::string& name) {
+    if (name == "mean") return {Pool::PowerMean, 1};
+    if (name == "rms") return {Pool::PowerMean, 2};
+    const char* const end = name.data() + name.size();
+    if (name.size() > 1 && (name[0] == 'p' || name[0] == 'q')) {
+        Pool pool{name[0] == 'p' ? Pool::PowerMean : Pool::Quantile};
+        const auto [at, error] = std::from_chars(name.data() + 1, end, pool.number);
+        const int least = name[0] == 'p' ? 3 : 0, most = name[0] == 'p' ? 9 : 100;
+        if (error == std::errc() && at == end && pool.number >= least && pool.number <= most)
+            return pool;
+    }
+    throw std::invalid_argument("pooling '" + name +
+                                "' is not known; there are mean, rms, p3 to p9 and q0 to q100");
+}
+
+std::string PoolName(const Pool& pool) {
+    if (pool == Pool{Pool::PowerMean, 1}) return "mean";
+    if (pool == Pool{Pool::PowerMean, 2}) return "rms";
+    return std::string(pool.kind == Pool::PowerMean ? "p" : "q")
+        .append(std::to_string(pool.number));
+}
+
+template <typename T>
+std::vector<T> ParseList(const std::string& names, T (*parse)(const std::string&)) {
+    std::vector<T> list;
+    for (size_t begin = 0; begin <= names.size();) {
+        const size_t end = std::min(names.find(',', begin), names.size());
+        const std::string name = names.substr(begin, end - begin);
+        const T item = parse(name);
+        if (std::find(list.begin(), list.end(), item) != list.end())
+            throw std::invalid_argument("'" + name + "' comes twice in '" + names + "'");
+        list.push_back(item);
+        begin = end + 1;
+    }
+    return list;
+}
+
+template <typename T, typename Name>
+std::string JoinNames(std::span<const T> list, Name name) {
+    std::string names;
+    for (const T& item : list) names.append(names.empty() ? "" : ",").append(name(item));
+    return names;
+}
+
+}  // namespace
+
+std::string FeatureNames(std::span<const Feature> features) {
+    return JoinNames(features, FeatureName);
+}
+
+std::vector<Feature> ParseFeatures(const std::string& names) {
+    return ParseList(names, ParseFeature);
+}
+
+std::string PoolNames(std::span<const Pool> pools) { return JoinNames(pools, PoolName); }
+
+std::vector<Pool> ParsePools(const std::string& names) {
+    return names.empty() ? std::vector<Pool>() : ParseList(names, ParsePool);
+}
+
+void CheckSettings(const ModelSettings& s) {
+    auto check = [](const char* name, int value, int least, int most) {
+        if (value < least || value > most)
+            throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) +
+                                        " is not in [" + std::to_string(least) + ", " +
+                                        std::to_string(most) + "]");
+    };
+    check("k", s.k, 1, 1000);
+    check("n", s.n, 1, 1000000);
+    check("m", s.m, 1, smallestVotingSide * smallestVotingSide);
+    check("votes", s.votes, 1, 1000);
+    check("vote_spacing", s.voteSpacing, 0, 1000000);
+    const int side = int(std::lround(std::sqrt(s.m)));
+    if (side * side != s.m)
+        throw std::invalid_argument("m = " + std::to_string(s.m) + " is no square number");
+    if (s.features.empty()) throw std::invalid_argument("a model needs at least one feature");
+}
+
+}  // namespace lull

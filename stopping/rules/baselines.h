@@ -1,0 +1,55 @@
+// Provides the rules that lull's own is compared with: fixed spp, and what other renderers do.
+//
+// All error estimates compare the mean I of all samples with the mean A of one fixed half of
+// them. With B the mean of the other half, I - A = (B - A) / 2; for independent samples it has
+// the standard deviation sigma / sqrt(n), exactly the standard error of I. Below,
+// d = |I_R - A_R| + |I_G - A_G| + |I_B - A_B| and s = I_R + I_G + I_B.
+#pragma once
+
+#include <memory>
+
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Stops a block at `spp` samples per pixel, or the end of the pass that reaches it.
+std::unique_ptr<Criterion> MakeFixed(int spp);
+
+// Returns the mean over the block of d / sqrt(s), where the term is 0 if s <= 0 (Dammertz,
+// Hanika, Keller, Lensch: A Hierarchical Automatic Stopping Condition for Monte Carlo Global
+// Illumination, WSCG 2010). It estimates the error in square-root brightness. Reads both means.
+double DammertzError(const BlockView& view);
+
+// Stops a block when factor * DammertzError() < threshold, with both > 0. The paper multiplies by
+// sqrt(block area / image area), which lets its recursive splitting compare blocks of different
+// sizes. Our blocks are not split, and with that factor the same noise would be tolerated more in
+// a larger image; so the factor is 1 unless the rule asks for it.
+std::unique_ptr<Criterion> MakeDammertz(double threshold, double factor = 1);
+
+// Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
+// the square root below 1 and the identity above. Both point to three components.
+double CyclesPixelError(const float* mean, const float* halfMean);
+
+// Returns Cycles' least number of samples at a threshold in (0, 1]: max(4, ceil(16 / T^0.3)).
+int CyclesMinimumSpp(double threshold);
+
+// Stops a block as Cycles stops an image: beyond the minimum, at every multiple of 20 spp, tests
+// the active pixels (at first all). One is converged if its error is < 5 * threshold; the pixels
+// around one that is not are active again (3 x 3 dilation: what makes a test of single pixels
+// safe, as it has 75 % relative spread). The block stops when none is active. The decision's
+// value is the largest error of the pixels tested / 5.
+std::unique_ptr<Criterion> MakeCycles(double threshold);
+
+// Returns the largest difference, over pixels and components, between the display values of both
+// means, clamp(x, 0, 1)^(1/2.2), as in LuxCore's tile test.
+//
+// LuxCore scales x by an exposure that it takes from the other tiles, in the order in which they
+// were finished. The scale here is 1: blocks stay independent, runs reproducible, and the image
+// is judged as it is displayed.
+double LuxTileError(const BlockView& view);
+
+// Stops a block when LuxTileError() < threshold, from 32 spp on. LuxCore tests every second pass,
+// as its halves are the odd and the even passes; ours are balanced after every pass.
+std::unique_ptr<Criterion> MakeLuxTile(double threshold);
+
+}  // namespace lull

@@ -1,0 +1,170 @@
+#include "stopping/rules/criterion.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "stopping/base/checksum.h"
+#include "stopping/network/model_file.h"
+#include "stopping/rules/baselines.h"
+#include "stopping/rules/learned.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/rules/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* ruleForms =
+    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise[:T], thresholds:FILE[:NAME] and "
+    "learned[:MODEL.h5]";
+
+// Parses all of `text` as a number > 0, finite.
+template <typename T>
+T ParsePositive(const std::string& text, const std::string& needed) {
+    T value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || rest != end || !(value > 0) || !std::isfinite(double(value)))
+        throw std::invalid_argument("'" + text + "' is not " + needed);
+    return value;
+}
+
+double ParseThreshold(const std::string& text) {
+    return ParsePositive<double>(text, "a threshold; a number > 0 is needed");
+}
+
+CriterionFactory Fixed(const std::string& argument) {
+    const int spp = ParsePositive<int>(argument, "a number of samples per pixel, at least 1");
+    return {.make = [spp](const BlockInfo&) { return MakeFixed(spp); }};
+}
+
+CriterionFactory Dammertz(const std::string& argument) {
+    const std::string suffix = ":area";
+    const bool byArea = argument.ends_with(suffix);
+    const double threshold =
+        ParseThreshold(byArea ? argument.substr(0, argument.size() - suffix.size()) : argument);
+    return {.smallestSide = smallestVotingSide, .make = [=](const BlockInfo& block) {
+                return MakeDammertz(threshold, byArea ? std::sqrt(block.areaFraction) : 1);
+            }};
+}
+
+CriterionFactory Cycles(const std::string& argument) {
+    const double threshold = ParseThreshold(argument);
+    return {.smallestSide = smallestVotingSide,
+            .make = [threshold](const BlockInfo&) { return MakeCycles(threshold); }};
+}
+
+CriterionFactory LuxTile(const std::string& argument) {
+    const double threshold = ParseThreshold(argument);
+    return {.smallestSide = smallestVotingSide,
+            .make = [threshold](const BlockInfo&) { return MakeLuxTile(threshold); }};
+}
+
+CriterionFactory LNoise(const std::string& argument) {
+    const double threshold = ParseThreshold(argument);
+    return {.smallestSide = smallestVotingSide,
+            .make = [threshold](const BlockInfo&) { return MakeLightnessNoise(threshold); }};
+}
+
+// Returns the rule with the threshold that it has where none is given.
+std::string WithThreshold(const std::string& rule) {
+    if (rule == "dammertz") return "dammertz:0.02";
+    if (rule == "lnoise") return "lnoise:0.65";
+    return rule;
+}
+
+// Chooses the row of a thresholds file: the one asked for, else the scene's, else the only one.
+const ThresholdsRow& ChooseRow(const std::vector<ThresholdsRow>& rows, const std::string& path,
+                               const std::string& name, const std::string& sceneName) {
+    auto find = [&](const std::string& wanted) {
+        return std::find_if(rows.begin(), rows.end(),
+                            [&](const ThresholdsRow& row) { return row.name == wanted; });
+    };
+    auto row = find(name.empty() ? sceneName : name);
+    if (row == rows.end() && name.empty() && rows.size() == 1) row = rows.begin();
+    if (row != rows.end()) return *row;
+    if (rows.empty()) throw std::runtime_error(path + ": has no rows");
+    const std::string example = "such as '" + rows.front().name + "'";
+    if (!name.empty())
+        throw std::runtime_error(path + ": has no row '" + name + "', but rows " + example);
+    throw std::runtime_error(path + ": has several rows; name one, " + example);
+}
+
+CriterionFactory Thresholds(const std::string& argument, const RuleContext& context) {
+    if (argument.empty()) throw std::invalid_argument("the name of a thresholds file is missing");
+    // Take all of it for the file if there is one of that name: paths may have colons in them.
+    std::string path = argument, name;
+    const size_t colon = argument.rfind(':');
+    if (colon != std::string::npos && !std::filesystem::exists(path)) {
+        path = argument.substr(0, colon);
+        name = argument.substr(colon + 1);
+    }
+    const ThresholdsRow row = ChooseRow(ReadThresholds(path), path, name, context.sceneName);
+    if (context.blockCount > 0 && int(row.spp.size()) != context.blockCount)
+        throw std::runtime_error(path + ": '" + row.name + "' has thresholds for " +
+                                 std::to_string(row.spp.size()) + " blocks, the image has " +
+                                 std::to_string(context.blockCount));
+    return {.checksum = FileChecksum(path), .make = [row](const BlockInfo& block) {
+                if (block.index < 0 || block.index >= int(row.spp.size()))
+                    throw std::invalid_argument("'" + row.name + "' has no threshold for block " +
+                                                std::to_string(block.index));
+                return MakeFixed(row.spp[size_t(block.index)]);
+            }};
+}
+
+CriterionFactory Learned(const std::string& argument, const RuleContext& context) {
+    const std::string path = argument.empty() ? context.defaultModel : argument;
+    if (argument.empty() && !std::filesystem::exists(path))
+        throw std::runtime_error("the model of the rule `learned` is not at '" + path +
+                                 "'; name it, learned:MODEL.h5, or choose another rule");
+    const auto model = std::make_shared<const Model>(ReadModel(path));
+    // Make one now, so that a model that does not fit is an error before anything is rendered.
+    try {
+        MakeLearned(model, context.passSpp);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(path + ": " + error.what());
+    }
+    return {.checksum = model->checksum,
+            .smallestSide = smallestVotingSide,
+            .make = [model, passSpp = context.passSpp](const BlockInfo&) {
+                return MakeLearned(model, passSpp);
+            }};
+}
+
+CriterionFactory MakeFactory(const std::string& kind, const std::string& argument,
+                             const RuleContext& context) {
+    if (kind == "fixed") return Fixed(argument);
+    if (kind == "dammertz") return Dammertz(argument);
+    if (kind == "cycles") return Cycles(argument);
+    if (kind == "luxtile") return LuxTile(argument);
+    if (kind == "lnoise") return LNoise(argument);
+    if (kind == "thresholds") return Thresholds(argument, context);
+    if (kind == "learned") return Learned(argument, context);
+    throw std::invalid_argument("there is no such rule; there are " + std::string(ruleForms));
+}
+
+}  // namespace
+
+void Criterion::Restore(std::span<const std::byte> state) {
+    if (!state.empty())
+        throw std::runtime_error("the saved state belongs to another stopping rule");
+}
+
+CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContext& context) {
+    const std::string rule = WithThreshold(given);
+    const size_t colon = rule.find(':');
+    const std::string kind = rule.substr(0, colon);
+    const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);
+    try {
+        CriterionFactory factory = MakeFactory(kind, argument, context);
+        factory.rule = rule;
+        return factory;
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument("stopping rule '" + rule + "': " + error.what());
+    }
+}
+
+}  // namespace lull

@@ -1,0 +1,91 @@
+// Defines the one interface between renderer and stopping rules: after each pass a block is shown
+// to its criterion, which answers continue or stop.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+
+namespace lull {
+
+// Records an answer of a criterion. No number in it is ever NaN.
+struct Decision {
+    bool stop = false;
+    // Whether the block was looked at in this call; if not, the numbers are those of the last time.
+    bool judged = false;
+    double value = 0;      // what was compared: an error estimate, P(noisy) or the spp
+    double threshold = 0;  // what it was compared with
+    int votes = 0;         // noiseless votes in a row (rules that vote only)
+};
+
+// Judges one block over all its passes and holds what that needs to remember. Different criteria
+// can be used by different threads at the same time.
+class Criterion {
+  public:
+    virtual ~Criterion() = default;
+
+    // Returns what Observe() will read at `spp`, so that no view is built in vain.
+    virtual ViewNeed Need(int spp) const = 0;
+
+    // Takes note of the block after a pass and decides. To be called once after every pass, with
+    // increasing spp, whatever Need() says, and no more once it has answered stop. Throws
+    // std::invalid_argument if the spans that Need() asks for do not have the block's size, or if
+    // spp or the size contradict earlier calls.
+    virtual Decision Observe(const BlockView& view) = 0;
+
+    // Return and set all that earlier calls of Observe() have left behind, for checkpoints.
+    // Restore() throws std::runtime_error if `state` was saved by another rule or is damaged; the
+    // criterion is then to be thrown away.
+    virtual std::vector<std::byte> Save() const { return {}; }
+    virtual void Restore(std::span<const std::byte> state);
+};
+
+// Says which block a criterion is for.
+struct BlockInfo {
+    int index = 0;            // row-major place in the grid of blocks
+    double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
+};
+
+// Holds what a rule can depend on beside its own text.
+struct RuleContext {
+    int passSpp = 20;            // samples per pixel and pass, > 0; the first pass ends at this spp
+    int blockCount = 0;          // blocks in the image; 0: not known
+    std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty
+    std::string defaultModel = {};  // the file that `learned` reads; may be empty
+};
+
+// Makes the criteria of an image. Models and tables are read once and shared by all of them.
+struct CriterionFactory {
+    std::string rule = {};      // as it was given, for headers and reports
+    std::string checksum = {};  // of the file that the rule reads; empty if it reads none
+    // Pixels a side below which a block does not judge itself but follows a neighbour (see
+    // small_blocks.h); 0 for rules that only count samples.
+    int smallestSide = 0;
+    // Makes a criterion; can be called from any thread. Throws std::invalid_argument for a block
+    // that the rule has no answer for.
+    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
+};
+
+// The rule where none is asked for.
+inline constexpr const char* defaultRule = "learned";
+
+// Reads a stopping rule and the files it names:
+//     fixed:N                 stop at N samples per pixel
+//     dammertz[:T[:area]]     stop when the block's mean error is < T (0.02: in the middle greys
+//                             about two steps of an 8-bit display)
+//     cycles:T                stop when no pixel's error is >= T
+//     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
+//     lnoise[:T]              stop when the visible noise in lightness is < T three times in a row
+//                             (0.9: where people stop to see it, see stopping/models/README.md)
+//     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
+//     learned[:MODEL.h5]      stop after noiseless votes of a recurrent network in a row
+// Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message
+// says what is wrong and what would be right.
+CriterionFactory MakeCriterionFactory(const std::string& rule, const RuleContext& context = {});
+
+}  // namespace lull

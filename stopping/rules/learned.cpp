@@ -1,0 +1,143 @@
+#include "stopping/rules/learned.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "stopping/base/state.h"
+#include "stopping/rules/votes.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t learnedTag = 0x314e524c;  // "LRN1"
+
+VoteSchedule MakeSchedule(const ModelSettings& settings, int passSpp) {
+    return {.firstSpp = passSpp,
+            .n = settings.n,
+            .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : passSpp};
+}
+
+class LearnedCriterion final : public Criterion {
+  public:
+    LearnedCriterion(std::shared_ptr<const Model> model, int passSpp)
+        : model(std::move(model)),
+          schedule(MakeSchedule(this->model->settings, passSpp)),
+          history(this->model->settings),
+          votes{.needed = this->model->settings.votes} {}
+
+    ViewNeed Need(int spp) const override {
+        return schedule.Records(spp) ? NeedOf(model->settings) : ViewNeed::Nothing;
+    }
+
+    Decision Observe(const BlockView& view) override {
+        CheckView(view, Need(view.spp));
+        bool judged = false;
+        if (schedule.Records(view.spp)) {
+            const ModelSettings& settings = model->settings;
+            history.Add(view.spp, InputVector(MeasureBlock(view, settings), settings));
+            judged = Vote(view.spp);
+        }
+        return {.stop = judged && votes.Stops(),
+                .judged = judged,
+                .value = probability,
+                .threshold = 0.5,
+                .votes = votes.inRow};
+    }
+
+    std::vector<std::byte> Save() const override {
+        StateWriter writer;
+        writer.Put(learnedTag);
+        writer.Put(int32_t(votes.inRow));
+        writer.Put(probability);
+        writer.Put(uint32_t(InputCount(model->settings)));
+        writer.Put(uint32_t(history.Entries().size()));
+        for (const FeatureHistory::Entry& entry : history.Entries()) {
+            writer.Put(int32_t(entry.spp));
+            writer.PutAll(std::span(entry.feature));
+        }
+        return std::move(writer.bytes);
+    }
+
+    void Restore(std::span<const std::byte> state) override {
+        StateReader reader(state);
+        reader.Expect(learnedTag);
+        votes.inRow = reader.Get<int32_t>();
+        probability = reader.Get<double>();
+        const uint32_t inputs = uint32_t(InputCount(model->settings));
+        if (reader.Get<uint32_t>() != inputs)
+            throw std::runtime_error("the saved state belongs to a model with other inputs");
+        if (votes.inRow < 0 || !(probability >= 0 && probability <= 1))
+            throw std::runtime_error("the saved state of a learned rule is damaged");
+        history.Clear();
+        std::vector<double> feature(inputs);
+        for (uint32_t count = reader.Get<uint32_t>(); count > 0; --count) {
+            const int spp = reader.Get<int32_t>();
+            reader.GetAll(std::span(feature));
+            AddSaved(spp, feature);
+        }
+        reader.Finish();
+    }
+
+  private:
+    // Votes if a vote is due at this spp and the window is full. Returns whether it did.
+    bool Vote(int spp) {
+        if (!schedule.Votes(spp)) return false;
+        const std::optional<Eigen::MatrixXf> window = history.WindowAt(spp);
+        if (!window) return false;
+        probability = NoisyProbability(model->network, *window);
+        votes.Cast(probability);
+        return true;
+    }
+
+    void AddSaved(int spp, const std::vector<double>& feature) {
+        try {
+            history.Add(spp, feature);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(std::string("the saved state of a learned rule is damaged: ") +
+                                     error.what());
+        }
+    }
+
+    std::shared_ptr<const Model> model;
+    VoteSchedule schedule;
+    FeatureHistory history;
+    VoteCounter votes;
+    double probability = 1;  // of the last vote; noisy until there is one
+};
+
+}  // namespace
+
+double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
+    const double p = RunNetwork(network, window)[0];
+    return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
+}
+
+std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int passSpp) {
+    const ModelSettings& settings = model->settings;
+    CheckSettings(settings);
+    CheckNetwork(model->network);
+    if (!Takes(model->network, InputCount(settings), settings.k))
+        throw std::invalid_argument("the network does not take " + std::to_string(settings.k) +
+                                    " steps of " + std::to_string(InputCount(settings)) +
+                                    " values, as its settings have it");
+    const auto& dense = model->network.dense;
+    const Eigen::Index outputs =
+        dense.empty() ? model->network.lstm.back().Units() : dense.back().bias.size();
+    if (outputs != 1)
+        throw std::invalid_argument("the network has " + std::to_string(outputs) +
+                                    " outputs; one, the probability of noise, is needed");
+    if (passSpp < 1 || settings.n % passSpp != 0 || settings.voteSpacing % passSpp != 0)
+        throw std::invalid_argument("the model looks at a block every " +
+                                    std::to_string(settings.n) + " spp (and votes every " +
+                                    std::to_string(settings.voteSpacing) +
+                                    "; 0: each pass), which must be multiples of the pass of " +
+                                    std::to_string(passSpp) + " spp");
+    return std::make_unique<LearnedCriterion>(std::move(model), passSpp);
+}
+
+}  // namespace lull

@@ -1,0 +1,25 @@
+// Judges blocks by the noise that an observer can see in their lightness.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Returns the root of the mean of squares: the RMS of a block, from the RMS of sub-blocks that are
+// equally large. At least one value.
+double PooledRms(std::span<const float> subBlocks);
+
+// Returns the RMS over the block of its noise in lightness, masked by texture: the pooled
+// maskedNoise of 100 sub-blocks (lightness_noise.h). Reads both means. Throws as CheckView() does,
+// and std::invalid_argument for a block of less than 10 pixels a side.
+double VisibleNoise(const BlockView& view);
+
+// Stops a block when VisibleNoise() was below `threshold`, > 0, after three passes in a row. The
+// half-buffer estimate of a block varies by about 1 % where its noise is even, but more where a few
+// pixels hold most of it: hence the votes.
+std::unique_ptr<Criterion> MakeLightnessNoise(double threshold);
+
+}  // namespace lull

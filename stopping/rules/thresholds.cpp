@@ -1,0 +1,94 @@
+#include "stopping/rules/thresholds.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+std::vector<std::string> Split(const std::string& line) {
+    std::vector<std::string> fields;
+    for (size_t begin = 0; begin <= line.size();) {
+        const size_t end = std::min(line.find(';', begin), line.size());
+        fields.push_back(line.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    if (fields.back().empty()) fields.pop_back();
+    return fields;
+}
+
+// Parses one line; throws std::invalid_argument saying what is wrong with it.
+ThresholdsRow ParseRow(const std::string& line) {
+    const std::vector<std::string> fields = Split(line);
+    if (fields.empty() || fields[0].empty())
+        throw std::invalid_argument("the name of the viewpoint is missing");
+    if (fields[0].find('\r') != std::string::npos)
+        throw std::invalid_argument(
+            "a carriage return in the name of the viewpoint; lines have to end with a line feed");
+    ThresholdsRow row{fields[0], {}};
+    for (size_t i = 1; i < fields.size(); ++i) {
+        const char *begin = fields[i].data(), *end = begin + fields[i].size();
+        int spp = 0;
+        const auto [rest, error] = std::from_chars(begin, end, spp);
+        if (error != std::errc() || rest != end || spp < 0)
+            throw std::invalid_argument("'" + fields[i] +
+                                        "' is no threshold; a whole number of samples is needed");
+        row.spp.push_back(spp);
+    }
+    if (row.spp.empty())
+        throw std::invalid_argument("'" + row.name +
+                                    "' has no thresholds; 'name;t0;t1;...;' is needed");
+    return row;
+}
+
+}  // namespace
+
+std::vector<ThresholdsRow> ReadThresholds(std::istream& in, const std::string& fileName) {
+    std::vector<ThresholdsRow> rows;
+    std::set<std::string> names;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (line.empty()) continue;
+        try {
+            rows.push_back(ParseRow(line));
+            if (!names.insert(rows.back().name).second)
+                throw std::invalid_argument("'" + rows.back().name + "' has a row already");
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(fileName + ":" + std::to_string(number) + ": " + error.what());
+        }
+    }
+    if (in.bad()) throw std::runtime_error(fileName + ": cannot be read");
+    return rows;
+}
+
+std::vector<ThresholdsRow> ReadThresholds(const std::string& path) {
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error(path + ": cannot be opened");
+    return ReadThresholds(file, path);
+}
+
+void WriteThresholds(std::ostream& out, const std::vector<ThresholdsRow>& rows) {
+    for (const ThresholdsRow& row : rows) {
+        if (row.name.empty() || row.name.find_first_of(";\r\n") != std::string::npos)
+            throw std::invalid_argument("'" + row.name + "' cannot be a name in a thresholds file");
+        if (row.spp.empty() || *std::min_element(row.spp.begin(), row.spp.end()) < 0)
+            throw std::invalid_argument("'" + row.name + "' needs thresholds, none below 0");
+        out << row.name << ';';
+        for (int spp : row.spp) out << spp << ';';
+        out << '\n';
+    }
+}
+
+void WriteThresholds(const std::string& path, const std::vector<ThresholdsRow>& rows) {
+    std::ofstream file(path);
+    WriteThresholds(file, rows);
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+}  // namespace lull

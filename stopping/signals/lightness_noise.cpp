@@ -1,0 +1,199 @@
+#include "stopping/signals/lightness_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int smoothingRadius = 2;  // 5 x 5 pixels
+constexpr int textureRadius = 6;    // 13 x 13 pixels
+
+float Finite(float x) { return std::isfinite(x) ? x : 0; }
+
+// Returns what a display shows of a component; 0 for NaN.
+float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
+
+// Whether a change of a component changes what is displayed.
+bool IsDisplayed(float x) { return x > 0 && x < 1; }
+
+float Luminance(float r, float g, float b) {
+    return float(luminanceWeights[0]) * r + float(luminanceWeights[1]) * g +
+           float(luminanceWeights[2]) * b;
+}
+
+// Holds L at a luminance in [0, 1] and its derivative there (see Lightness()).
+struct LightnessSlope {
+    float lightness, slope;
+};
+LightnessSlope LightnessAt(float y) {
+    if (!(y > 0.008856f))
+        return {std::max(0.f, 116 * (7.787f * y + 16 / 116.f) - 16), 116 * 7.787f};
+    const float root = std::cbrt(y);
+    return {std::min(100.f, 116 * root - 16), 116 / (3 * root * root)};
+}
+
+// Answers what the values in rectangles of an image sum to.
+class SumTable {
+  public:
+    // `value(i)` is that of pixel i, row-major.
+    template <typename Value>
+    SumTable(int width, int height, const Value& value)
+        : stride(size_t(width) + 1), sums(stride * (size_t(height) + 1)) {
+        size_t i = 0;
+        for (size_t y = 1; y <= size_t(height); ++y) {
+            double row = 0;
+            for (size_t x = 1; x < stride; ++x) {
+                row += value(i++);
+                sums[y * stride + x] = sums[(y - 1) * stride + x] + row;
+            }
+        }
+    }
+
+    // Returns the sum over [x0, x1) x [y0, y1).
+    double Sum(int x0, int x1, int y0, int y1) const {
+        const double* top = &sums[size_t(y0) * stride];
+        const double* bottom = &sums[size_t(y1) * stride];
+        return (bottom[x1] - bottom[x0]) - (top[x1] - top[x0]);
+    }
+
+  private:
+    size_t stride;
+    std::vector<double> sums;
+};
+
+// Calls use(i, x0, x1, y0, y1) for each pixel i with the square window around it, clipped at the
+// borders of the block.
+template <typename Use>
+void ForWindows(int width, int height, int radius, const Use& use) {
+    size_t i = 0;
+    for (int y = 0; y < height; ++y) {
+        const int y0 = std::max(0, y - radius), y1 = std::min(height, y + radius + 1);
+        for (int x = 0; x < width; ++x, ++i)
+            use(i, std::max(0, x - radius), std::min(width, x + radius + 1), y0, y1);
+    }
+}
+
+// Computes LightnessNoise::texture.
+std::vector<float> Texture(const std::vector<float>& lightness, int width, int height) {
+    // Subtract some value of the block: the variance is then exactly zero where all are equal, and
+    // loses less to rounding elsewhere.
+    const float origin = lightness[0];
+    std::vector<double> smooth(lightness.size());
+    const SumTable plain(width, height, [&](size_t i) { return double(lightness[i] - origin); });
+    ForWindows(width, height, smoothingRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
+        smooth[i] = plain.Sum(x0, x1, y0, y1) / ((x1 - x0) * (y1 - y0));
+    });
+
+    std::vector<float> texture(lightness.size());
+    const SumTable sums(width, height, [&](size_t i) { return smooth[i]; });
+    const SumTable squares(width, height, [&](size_t i) { return smooth[i] * smooth[i]; });
+    ForWindows(width, height, textureRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
+        const double area = (x1 - x0) * (y1 - y0), mean = sums.Sum(x0, x1, y0, y1) / area;
+        const double variance = squares.Sum(x0, x1, y0, y1) / area - mean * mean;
+        texture[i] = float(std::sqrt(std::max(0.0, variance)));
+    });
+    return texture;
+}
+
+// Collects sums over the pixels of a sub-block.
+struct PixelSums {
+    int count = 0;
+    double lightness = 0, squaredLightness = 0, texture = 0, absoluteNoise = 0;
+    double squaredNoise = 0, squaredMasked = 0, squaredHalf = 0;
+
+    void Add(const LightnessNoise& pixels, size_t i) {
+        const double noise = pixels.noise[i], l = pixels.lightness[i], half = pixels.halfNoise[i];
+        const double masked = MaskedNoise(pixels.noise[i], pixels.texture[i]);
+        ++count;
+        lightness += l;
+        squaredLightness += l * l;
+        texture += pixels.texture[i];
+        absoluteNoise += std::abs(noise);
+        squaredNoise += noise * noise;
+        squaredMasked += masked * masked;
+        squaredHalf += half * half;
+    }
+};
+
+}  // namespace
+
+LightnessNoise ComputeLightnessNoise(const BlockView& view) {
+    CheckView(view, ViewNeed::MeanAndHalf);
+    const size_t pixels = view.mean.size() / 3;
+    LightnessNoise result;
+    result.lightness.resize(pixels);
+    result.noise.resize(pixels);
+    result.halfNoise.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+        float m[3], a[3], b[3], change[3];  // displayed of all, of the halves; displayed noise
+        for (size_t c = 0; c < 3; ++c) {
+            const float all = Finite(view.mean[3 * i + c]), half = Finite(view.halfMean[3 * i + c]);
+            m[c] = Displayed(all);
+            a[c] = Displayed(half);
+            b[c] = Displayed(2 * all - half);
+            // (A - B) / 2 = A - M, which is between -M and M where no sample is negative.
+            change[c] = IsDisplayed(all) ? std::clamp(half - all, -1.f, 1.f) : 0;
+        }
+        const LightnessSlope at = LightnessAt(Luminance(m[0], m[1], m[2]));
+        result.lightness[i] = at.lightness;
+        result.noise[i] = at.slope * Luminance(change[0], change[1], change[2]);
+        result.halfNoise[i] = (LightnessAt(Luminance(a[0], a[1], a[2])).lightness -
+                               LightnessAt(Luminance(b[0], b[1], b[2])).lightness) /
+                              2;
+    }
+    result.texture = Texture(result.lightness, view.width, view.height);
+    return result;
+}
+
+LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int width, int height,
+                                            int subBlocks) {
+    const int side = int(std::lround(std::sqrt(std::max(0, subBlocks))));
+    if (side < 1 || side * side != subBlocks || width < side || height < side)
+        throw std::invalid_argument("a block cannot be cut into that many sub-blocks");
+    const size_t needed = size_t(width) * size_t(height);
+    for (const auto* values :
+         {&pixels.lightness, &pixels.noise, &pixels.halfNoise, &pixels.texture})
+        if (values->size() != needed)
+            throw std::invalid_argument("noise estimates do not have the block's size");
+
+    LightnessNoiseStatistics result;
+    const std::vector<int> xs = SplitEvenly(width, side), ys = SplitEvenly(height, side);
+    for (int v = 0; v < side; ++v)
+        for (int u = 0; u < side; ++u) {
+            PixelSums sums;
+            for (int y = ys[size_t(v)]; y < ys[size_t(v) + 1]; ++y)
+                for (int x = xs[size_t(u)]; x < xs[size_t(u) + 1]; ++x)
+                    sums.Add(pixels, size_t(y) * size_t(width) + size_t(x));
+            const double mean = sums.lightness / sums.count;
+            const double variance = sums.squaredLightness / sums.count - mean * mean;
+            result.lightness.push_back(float(mean));
+            result.deviation.push_back(float(std::sqrt(std::max(0.0, variance))));
+            result.texture.push_back(float(sums.texture / sums.count));
+            result.noise.push_back(float(std::sqrt(sums.squaredNoise / sums.count)));
+            result.noiseMean.push_back(
+                float(std::sqrt(M_PI / 2) * (sums.absoluteNoise / sums.count)));
+            result.maskedNoise.push_back(float(std::sqrt(sums.squaredMasked / sums.count)));
+            result.halfNoise.push_back(float(std::sqrt(sums.squaredHalf / sums.count)));
+        }
+    return result;
+}
+
+std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
+                                      std::span<const float> deviation,
+                                      std::span<const float> texture) {
+    auto square = [](double x) { return x * x; };
+    std::vector<double> masked;
+    for (size_t i = 0; i < halfNoise.size(); ++i) {
+        const double detail = square(deviation[i]) - square(texture[i]) - square(halfNoise[i]);
+        masked.push_back(halfNoise[i] / (1 + std::sqrt(std::max(detail, 0.0)) / 4));
+    }
+    return masked;
+}
+
+}  // namespace lull

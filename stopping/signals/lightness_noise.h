@@ -1,0 +1,51 @@
+// Estimates the noise that an observer can see in a block: in lightness, and masked by texture.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+
+namespace lull {
+
+// Holds estimates for every pixel of a block, row-major.
+//
+// With A the mean of one half of the samples, B that of the other and M of all, (A - B) / 2 has the
+// standard deviation of the error of M. Lightness L is that of the displayed colour: components
+// are clamped to [0, 1], but not rounded to 8 bits, which would add noise of its own.
+struct LightnessNoise {
+    std::vector<float> lightness;  // L of M, in [0, 100]
+    // (A - B) / 2 taken to lightness by its derivative at M, zero in components that the display
+    // saturates. One draw from the noise of that pixel, with its sign: only its squares averaged
+    // over many pixels say how large the noise is.
+    std::vector<float> noise;
+    std::vector<float> halfNoise;  // (L(A) - L(B)) / 2, bounded
+    // Standard deviation of L in the 13 x 13 pixels around (those within the block), after L has
+    // been smoothed by averaging 5 x 5: what masks noise. Written t.
+    std::vector<float> texture;
+};
+
+// Reads both means of the view; values that are not finite count as 0. Throws as CheckView() does.
+LightnessNoise ComputeLightnessNoise(const BlockView& view);
+
+// Returns noise / (1 + t / 4): what remains visible of noise on texture.
+inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
+
+// Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
+// maskedNoise and halfNoise are root mean squares; noiseMean is the mean of |noise| sqrt(pi / 2),
+// which estimates the mean standard deviation. Throws std::invalid_argument if the estimates do not
+// have the size or there are fewer pixels a side than sub-blocks.
+struct LightnessNoiseStatistics {
+    std::vector<float> lightness, deviation, texture, noise, noiseMean, maskedNoise, halfNoise;
+};
+LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
+                                            int subBlocks);
+
+// Returns h / (1 + d / 4) of sub-blocks, where h is halfNoise, which sees fireflies that saturate
+// the display, and d^2 = deviation^2 - t^2 - h^2 (0 if below 0) is what varies too finely to be in
+// t: detail of the size of noise hides noise best. All three have the same length.
+std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
+                                      std::span<const float> deviation,
+                                      std::span<const float> texture);
+
+}  // namespace lull

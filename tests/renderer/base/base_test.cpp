@@ -1,0 +1,151 @@
+// Tests the small things everything uses: geometry, color and the counting of warnings.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "renderer/base/color.h"
+#include "renderer/base/error.h"
+#include "renderer/base/memory.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
+
+namespace lull {
+namespace {
+
+TEST(OffsetRayOrigin, LeavesTheErrorBoxOnTheRightSide) {
+    test::Random random(1);
+    for (int k = 0; k < 100000; ++k) {
+        const float scale = std::pow(10.f, 8 * random.Float() - 4);
+        const Vec3f p = scale * random.Direction(), n = random.Direction(), w = random.Direction();
+        const Vec3f error = Gamma(5) * p.cwiseAbs();
+        const Vec3f q = OffsetRayOrigin(p, error, n, w);
+        const Eigen::Vector3d moved = q.cast<double>() - p.cast<double>();
+        const double along = moved.dot(n.cast<double>()) * (w.dot(n) < 0 ? -1 : 1);
+        // Anywhere in the box of errors, the surface lies at most this far along n.
+        ASSERT_GE(along, n.cwiseAbs().cast<double>().dot(error.cast<double>()) * (1 - 1e-6));
+        ASSERT_LT(moved.norm(), 1e-5 * scale);
+    }
+    const Vec3f p(1, 2, 3);
+    EXPECT_EQ(OffsetRayOrigin(p, Vec3f::Zero(), Vec3f(0, 0, 1), Vec3f(0, 0, 1)), p);
+}
+
+TEST(CoordinateSystem, IsOrthonormalAndRightHanded) {
+    test::Random random(2);
+    std::vector<Vec3f> normals = {Vec3f::UnitX(),  -Vec3f::UnitX(), Vec3f::UnitY(),
+                                  -Vec3f::UnitY(), Vec3f::UnitZ(),  -Vec3f::UnitZ()};
+    for (int k = 0; k < 10000; ++k) normals.push_back(random.Direction());
+    for (int k = 0; k < 1000; ++k)
+        normals.push_back(Vec3f(1e-4f * random.Float(), 1e-4f * random.Float(), -1).normalized());
+    for (const Vec3f& n : normals) {
+        Frame f{{}, {}, n};
+        CoordinateSystem(n, &f.s, &f.t);
+        ASSERT_NEAR(f.s.norm(), 1, 1e-5);
+        ASSERT_NEAR(f.t.norm(), 1, 1e-5);
+        ASSERT_NEAR(f.s.dot(f.t), 0, 1e-5);
+        ASSERT_NEAR((f.s.cross(f.t) - n).norm(), 0, 1e-5);
+        const Vec3f v = random.Direction();
+        ASSERT_NEAR((f.FromLocal(f.ToLocal(v)) - v).norm(), 0, 1e-5);
+    }
+}
+
+TEST(Transforms, KeepNormalsPerpendicular) {
+    test::Random random(3);
+    for (int k = 0; k < 1000; ++k) {
+        Mat4d m = Mat4d::Identity();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 4; ++j) m(i, j) = random.Float() - 0.5 + (i == j ? 2 : 0);
+        const Vec3f n = random.Direction(), p = random.Direction();
+        Vec3f s, t;
+        CoordinateSystem(n, &s, &t);
+        EXPECT_NEAR(TransformNormal(m.inverse(), n).dot(TransformVector(m, s)), 0, 1e-5);
+        EXPECT_NEAR(
+            (TransformPoint(m, p + s) - TransformPoint(m, p) - TransformVector(m, s)).norm(), 0,
+            1e-5);
+    }
+}
+
+TEST(Bounds, StartEmptyAndGrow) {
+    Bounds3f bounds;
+    EXPECT_TRUE(bounds.IsEmpty());
+    bounds.Extend(Vec3f(1, 2, 3));
+    EXPECT_FALSE(bounds.IsEmpty());
+    EXPECT_EQ(bounds.Diagonal(), Vec3f::Zero());
+    bounds.Extend(Bounds3f());
+    bounds.Extend(Vec3f(0, 5, 3));
+    EXPECT_EQ(bounds.Diagonal(), Vec3f(1, 3, 0));
+}
+
+TEST(Memory, IsCheckedBeforeItIsTaken) {
+    EXPECT_GT(AvailableMemory(), 1 << 20);
+    EXPECT_NO_THROW(CheckMemory(1000, "a thousand bytes", "take less"));
+    try {
+        CheckMemory(int64_t(1) << 60, "an exbibyte", "take less", {});
+        ADD_FAILURE() << "no machine has that much";
+    } catch (const Error& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with("an exbibyte needs 1152921504.6 GB"));
+        EXPECT_TRUE(std::string(error.what()).ends_with("GB are available; take less"));
+    }
+}
+
+TEST(Color, RoundTripsTheTransferCurve) {
+    for (int i = 0; i <= 10000; ++i) {
+        const float v = i / 10000.f;
+        EXPECT_NEAR(LinearFromSrgb(SrgbFromLinear(v)), v, 1e-6f + 1e-5f * v);
+        EXPECT_NEAR(SrgbFromLinear(LinearFromSrgb(v)), v, 1e-5);
+    }
+    EXPECT_EQ(SrgbFromLinear(0), 0);
+    EXPECT_NEAR(SrgbFromLinear(1), 1, 1e-6);
+    EXPECT_NEAR(SrgbFromLinear(0.5f), 0.735357, 1e-5);
+    EXPECT_NEAR(LinearFromSrgb(0.5f), 0.214041, 1e-5);
+    // The two pieces of the curve meet.
+    EXPECT_NEAR(SrgbFromLinear(0.0031308f), SrgbFromLinear(0.0031309f), 2e-6);
+}
+
+TEST(Color, WhiteHasLuminanceOne) {
+    EXPECT_NEAR(Luminance(Rgb::Ones()), 1, 1e-6);
+    EXPECT_FLOAT_EQ(Luminance(Rgb(0, 1, 0)), 0.715160f);
+}
+
+FileLoc LocAt(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
+
+TEST(FileLoc, FormatsItsPrefix) {
+    EXPECT_EQ(LocAt(7).Prefix(), "scene.pbrt:7: ");
+    EXPECT_EQ(LocAt(0).Prefix(), "scene.pbrt: ");
+    EXPECT_EQ(FileLoc().Prefix(), "");
+    EXPECT_STREQ(Error(LocAt(7), "broken").what(), "scene.pbrt:7: broken");
+}
+
+TEST(Warnings, ShowsTheFirstOfAKindAndCountsAll) {
+    std::vector<std::string> messages;
+    Warnings warnings([&](const std::string& m) { messages.push_back(m); });
+    warnings.Add(LocAt(3), "odd thing", "first");
+    warnings.Add(LocAt(4), "odd thing", "second");
+    warnings.Add(LocAt(5), "other thing");
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_EQ(messages[0].find("scene.pbrt:3: "), 0u) << messages[0];
+    EXPECT_NE(messages[0].find("odd thing"), std::string::npos);
+    EXPECT_NE(messages[0].find("first"), std::string::npos);
+    EXPECT_EQ(warnings.Total(), 3);
+    EXPECT_EQ(warnings.Counts(),
+              (std::map<std::string, int>{{"odd thing", 2}, {"other thing", 1}}));
+    warnings.Summarize();
+    ASSERT_EQ(messages.size(), 3u);
+    EXPECT_NE(messages[2].find("odd thing"), std::string::npos);
+    EXPECT_NE(messages[2].find("2"), std::string::npos);
+}
+
+TEST(Warnings, CountsFromManyThreads) {
+    int shown = 0;
+    Warnings warnings([&](const std::string&) { ++shown; });
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 4; ++t)
+            threads.emplace_back([&] {
+                for (int i = 0; i < 1000; ++i) warnings.Add({}, i % 2 ? "odd" : "even");
+            });
+    }
+    EXPECT_EQ(shown, 2);
+    EXPECT_EQ(warnings.Counts(), (std::map<std::string, int>{{"even", 2000}, {"odd", 2000}}));
+}
+
+}  // namespace
+}  // namespace lull

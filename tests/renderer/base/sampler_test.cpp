@@ -1,0 +1,190 @@
+#include "renderer/base/sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/renderer/bsdf/sphere_statistics.h"
+
+namespace lull {
+namespace {
+
+constexpr SamplerKind kKinds[] = {SamplerKind::Random, SamplerKind::Sobol};
+
+std::vector<double> Uniform(int cells) { return std::vector<double>(cells, 1.0 / cells); }
+
+int CellOf(const Vec2f& p, int across, int down) {
+    return int(p.y() * float(down)) * across + int(p.x() * float(across));
+}
+
+// Takes what a path takes: a mix of single and paired dimensions.
+std::vector<float> NumbersOf(Sampler* sampler, const Vec2i& pixel, uint32_t index) {
+    sampler->StartSample(pixel, index);
+    std::vector<float> numbers;
+    for (int i = 0; i < 20; ++i) {
+        numbers.push_back(sampler->Get1D());
+        const Vec2f p = sampler->Get2D();
+        numbers.insert(numbers.end(), {p.x(), p.y()});
+    }
+    return numbers;
+}
+
+TEST(Sampler, RandomIsUniform) {
+    Sampler sampler(SamplerKind::Random, 5);
+    constexpr int kCells = 256, kSamples = 4000, kDimensions = 4;
+    // Over the samples of one pixel, and over the pixels with one sample each.
+    for (const bool acrossPixels : {false, true})
+        for (int dimension = 0; dimension < kDimensions; ++dimension) {
+            std::vector<int64_t> single(kCells), paired(kCells);
+            for (int k = 0; k < kSamples; ++k) {
+                if (acrossPixels)
+                    sampler.StartSample({k % 64, k / 64}, 3);
+                else
+                    sampler.StartSample({17, 4}, k);
+                for (int i = 0; i < dimension; ++i) sampler.Get1D();
+                ++single[int(sampler.Get1D() * kCells)];
+                ++paired[CellOf(sampler.Get2D(), 16, 16)];
+            }
+            const double level = test::Significance(4 * kDimensions);
+            EXPECT_GT(test::ChiSquarePValue(Uniform(kCells), single, kSamples), level);
+            EXPECT_GT(test::ChiSquarePValue(Uniform(kCells), paired, kSamples), level);
+        }
+}
+
+TEST(Sampler, IsAddressable) {
+    for (const SamplerKind kind : kKinds) {
+        Sampler forward(kind, 11), backward(kind, 11);
+        std::vector<std::vector<float>> first;
+        for (int k = 0; k < 200; ++k) first.push_back(NumbersOf(&forward, {k % 7, k % 3}, k));
+        for (int k = 199; k >= 0; --k) {
+            // Leave a sample of another pixel half used in between.
+            backward.StartSample({1000 - k, k}, 5);
+            backward.Get2D();
+            EXPECT_EQ(NumbersOf(&backward, {k % 7, k % 3}, k), first[k]);
+        }
+    }
+}
+
+TEST(Sampler, DiffersAmongPixelsSamplesAndSeeds) {
+    for (const SamplerKind kind : kKinds) {
+        std::set<std::vector<float>> seen;
+        int count = 0;
+        for (const uint64_t seed : {0ull, 1ull, 2ull, 0x100000000ull, ~0ull}) {
+            Sampler sampler(kind, seed);
+            for (int y = -1; y < 4; ++y)
+                for (int x = -1; x < 4; ++x)
+                    for (const uint32_t k : {0u, 1u, 2u, 255u, 65536u, 0xffffffffu}) {
+                        seen.insert(NumbersOf(&sampler, {x, y}, k));
+                        ++count;
+                    }
+        }
+        EXPECT_EQ(int(seen.size()), count);
+    }
+}
+
+// The first numbers of neighbours (pixels, seeds and, for random, samples) are independent.
+TEST(Sampler, IsUncorrelatedAmongNeighbours) {
+    constexpr int kPairs = 40000;
+    for (const SamplerKind kind : kKinds) {
+        Sampler sampler(kind, 0), other(kind, 1);
+        for (int what = 0; what < 4; ++what) {
+            if (what == 3 && kind == SamplerKind::Sobol) continue;
+            double covariance = 0;
+            std::vector<int64_t> cells(256);
+            for (int i = 0; i < kPairs; ++i) {
+                const Vec2i pixel = 2 * Vec2i(i % 200, i / 200);
+                sampler.StartSample(pixel, 4);
+                const float a = sampler.Get1D();
+                if (what == 0) sampler.StartSample(pixel + Vec2i(1, 0), 4);
+                if (what == 1) sampler.StartSample(pixel + Vec2i(0, 1), 4);
+                if (what == 2) other.StartSample(pixel, 4);
+                if (what == 3) sampler.StartSample(pixel, 5);
+                const float b = (what == 2 ? other : sampler).Get1D();
+                covariance += (a - 0.5) * (b - 0.5) / kPairs;
+                ++cells[CellOf({a, b}, 16, 16)];
+            }
+            // The standard error of the covariance of uniform numbers is 1 / (12 sqrt(n)).
+            EXPECT_LT(std::abs(covariance), 4.5 / (12 * std::sqrt(double(kPairs)))) << what;
+            EXPECT_GT(test::ChiSquarePValue(Uniform(256), cells, kPairs), 1e-4) << what;
+        }
+    }
+}
+
+TEST(Sampler, DimensionsAreUncorrelated) {
+    constexpr int kSamples = 4096, kDimensions = 12;
+    for (const SamplerKind kind : kKinds) {
+        Sampler sampler(kind, 3);
+        for (int first = 0; first < kDimensions; ++first)
+            for (int second = first + 1; second < kDimensions; ++second) {
+                std::vector<int64_t> cells(64);
+                for (int k = 0; k < kSamples; ++k) {
+                    // One sample of many pixels, as Sobol's samples of one pixel are too even.
+                    sampler.StartSample({k % 64, k / 64}, 9);
+                    float a = 0, b = 0;
+                    for (int i = 0; i <= second; ++i) {
+                        b = sampler.Get1D();
+                        if (i == first) a = b;
+                    }
+                    ++cells[CellOf({a, b}, 8, 8)];
+                }
+                EXPECT_GT(test::ChiSquarePValue(Uniform(64), cells, kSamples), 1e-5)
+                    << first << " " << second;
+            }
+    }
+}
+
+// Every prefix of 2^m samples has one sample in every elementary interval of that size.
+TEST(Sampler, SobolPairsAreNets) {
+    Sampler sampler(SamplerKind::Sobol, 7);
+    constexpr int kDimensions = 24;
+    for (const Vec2i& pixel : {Vec2i(0, 0), Vec2i(1, 0), Vec2i(639, 479), Vec2i(-5, 100000)})
+        for (int m = 0; m <= 10; ++m) {
+            const int n = 1 << m;
+            std::vector<std::vector<Vec2f>> points(kDimensions);
+            for (int k = 0; k < n; ++k) {
+                sampler.StartSample(pixel, k);
+                for (auto& p : points) p.push_back(sampler.Get2D());
+            }
+            for (const auto& p : points)
+                for (int across = 0; across <= m; ++across) {
+                    std::vector<int> cells(n);
+                    for (const Vec2f& q : p) {
+                        ASSERT_TRUE(q.minCoeff() >= 0 && q.maxCoeff() < 1);
+                        ++cells[CellOf(q, 1 << across, n >> across)];
+                    }
+                    ASSERT_EQ(std::count(cells.begin(), cells.end(), 1), n) << m << " " << across;
+                }
+        }
+}
+
+// The samples of later passes are nets of their own: any aligned run of 2^m samples is.
+TEST(Sampler, SobolRunsAreNets) {
+    Sampler sampler(SamplerKind::Sobol, 7);
+    for (const uint32_t start : {64u, 128u, 1u << 20, 0xffffffc0u}) {
+        std::vector<int> cells(64);
+        for (uint32_t k = 0; k < 64; ++k) {
+            sampler.StartSample({3, 8}, start + k);
+            sampler.Get2D();
+            ++cells[CellOf(sampler.Get2D(), 8, 8)];
+        }
+        EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 64) << start;
+    }
+}
+
+TEST(Sampler, SobolScramblesDimensionsDifferently) {
+    Sampler sampler(SamplerKind::Sobol, 7);
+    constexpr int kDimensions = 64;
+    std::vector<std::vector<float>> columns(2 * kDimensions);
+    for (int k = 0; k < 16; ++k) {
+        sampler.StartSample({0, 0}, k);
+        for (int d = 0; d < kDimensions; ++d) {
+            const Vec2f p = sampler.Get2D();
+            columns[2 * d].push_back(p.x());
+            columns[2 * d + 1].push_back(p.y());
+        }
+    }
+    EXPECT_EQ(std::set(columns.begin(), columns.end()).size(), columns.size());
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,118 @@
+// Checks that directions are sampled with the density that is claimed for them.
+#include <gtest/gtest.h>
+
+#include "tests/renderer/bsdf/lobe_examples.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
+
+namespace lull::test {
+namespace {
+
+const double kAngles[] = {0, 30, 60, 85, 89.5, 95, 120, 150, 180};
+
+// Returns where a lobe's density peaks: the mirrored or the refracted direction.
+Vec3f PeakOf(const Lobe& lobe, const Vec3f& wo) {
+    Vec3f peak(-wo.x(), -wo.y(), wo.z());
+    if (const auto* t = std::get_if<MicrofacetTransmission>(&lobe))
+        if (!Refract(wo, {0, 0, std::copysign(1.f, wo.z())}, wo.z() > 0 ? 1 / t->eta : t->eta,
+                     &peak))
+            peak = Vec3f(-wo.x(), -wo.y(), -wo.z());
+    return peak.normalized();
+}
+
+SphereGrid GridFor(const Lobe& lobe, const Vec3f& wo) {
+    const float alpha = AlphasOf(lobe).minCoeff();
+    if (alpha >= 0.05f) return EvenGrid(32, 24);
+    return PeakedGrid(PeakOf(lobe, wo), 0.1 * alpha, 24, 12);
+}
+
+// Returns the density of what is really sampled: without the microfacets that wo sees from behind.
+double SampledDensity(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
+    double pdf = bsdf.Evaluate(wo, wi, LobeSet::NonSpecular).pdf;
+    for (int i = 0; i < bsdf.LobeCount(LobeSet::All); ++i)
+        if (!IsFrontFacing(bsdf.At(i), wo, wi))
+            pdf -= std::get<MicrofacetTransmission>(bsdf.At(i)).Evaluate(wo, wi).pdf /
+                   bsdf.LobeCount(LobeSet::NonSpecular);
+    return pdf;
+}
+
+// Returns the p-value of samples of the Bsdf's lobes that are not specular.
+double PValue(const Bsdf& bsdf, const Vec3f& wo, const SphereGrid& grid, uint64_t seed,
+              double* total) {
+    const std::vector<double> expected =
+        Integrate(grid, [&](const Vec3f& wi) { return SampledDensity(bsdf, wo, wi); });
+    *total = 0;
+    for (double e : expected) *total += e;
+
+    constexpr int kSamples = 100'000;
+    Random random(seed);
+    std::vector<int64_t> observed(expected.size());
+    for (int i = 0; i < kSamples; ++i)
+        if (const auto s = bsdf.Sample(wo, random.Point(), LobeSet::NonSpecular))
+            ++observed[grid.CellOf(s->wi)];
+    return ChiSquarePValue(expected, observed, kSamples);
+}
+
+TEST(LobeSampling, FollowsItsDensity) {
+    const std::vector<NamedLobe> lobes = SpreadLobes();
+    const double significance = Significance(int(lobes.size() * std::size(kAngles)));
+    uint64_t seed = 1000;
+    for (const NamedLobe& l : lobes)
+        for (double angle : kAngles) {
+            const Vec3f wo = FromAngles(angle, 37);
+            double total;
+            const double p = PValue(MakeBsdf({l.lobe}), wo, GridFor(l.lobe, wo), ++seed, &total);
+            EXPECT_GT(p, significance) << l.name << ", " << angle << " degrees, seed " << seed;
+            EXPECT_LT(total, 1 + 2e-3) << l.name << ", " << angle << " degrees";
+        }
+}
+
+TEST(BsdfSampling, FollowsItsDensity) {
+    const Rgb c(0.5f, 0.6f, 0.7f);
+    const TrowbridgeReitz d(0.3f, 0.3f), e(0.6f, 0.4f);
+    const std::vector<std::vector<Lobe>> bsdfs = {
+        {LambertianReflection{c}, DielectricReflection{c, d, {1 / 1.5f}}},
+        {DielectricReflection{c, e, {1.5f}}, MicrofacetTransmission{c, e, 1.5f}},
+        {LambertianReflection{c}, LambertianTransmission{c}, DielectricReflection{c, d, {1.5f}},
+         MicrofacetTransmission{c, d, 1.5f}},
+        // Specular lobes stand aside.
+        {SpecularTransmission{c, 1}, LambertianReflection{c}, DielectricReflection{c, e, {1.5f}},
+         SpecularReflection<DielectricInterface>{c, {1.5f}}, SpecularTransmission{c, 1.5f}},
+        {FresnelBlend{c, c, d}, OrenNayar(c, 30), FresnelSpecular{c, c, 1.5f},
+         LambertianTransmission{c}},
+    };
+    const double significance = Significance(int(bsdfs.size() * std::size(kAngles)));
+    uint64_t seed = 2000;
+    for (const std::vector<Lobe>& lobes : bsdfs)
+        for (double angle : kAngles) {
+            const Vec3f wo = FromAngles(angle, 200);
+            double total;
+            const double p = PValue(MakeBsdf(lobes), wo, EvenGrid(20, 24), ++seed, &total);
+            EXPECT_GT(p, significance)
+                << lobes.size() << " lobes, " << angle << " degrees, seed " << seed;
+            EXPECT_LT(total, 1 + 2e-3);
+        }
+}
+
+// The remapped number must be uniform again: each lobe's own samples follow its own density.
+TEST(BsdfSampling, RemapsTheNumberThatChoseTheLobe) {
+    const Rgb c(0.5f, 0.5f, 0.5f);
+    const TrowbridgeReitz d(0.5f, 0.5f);
+    const Bsdf bsdf = MakeBsdf(
+        {LambertianReflection{c}, MicrofacetTransmission{c, d, 1.5f}, LambertianReflection{c}});
+    const Bsdf only = MakeBsdf({MicrofacetTransmission{c, d, 1.5f}});
+    const Vec3f wo = FromAngles(50);
+    Random random(3);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec2f u = random.Point();
+        const auto a = bsdf.Sample(wo, {(1 + u.x()) / 3, u.y()}, LobeSet::All);
+        const auto b = only.Sample(wo, u, LobeSet::All);
+        ASSERT_EQ(a.has_value(), b.has_value());
+        if (!a) continue;
+        EXPECT_LT((a->wi - b->wi).norm(), 1e-3f);
+        EXPECT_NEAR(a->pdf, b->pdf / 3, 1e-3f * b->pdf);
+        EXPECT_TRUE(a->isTransmission);
+    }
+}
+
+}  // namespace
+}  // namespace lull::test

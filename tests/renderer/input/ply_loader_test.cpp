@@ -1,0 +1,326 @@
+#include "renderer/input/ply_loader.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+#include "tests/renderer/input/test_files.h"
+
+namespace lull {
+namespace {
+
+// Writes values as a PLY body in any of the three encodings.
+class PlyWriter {
+  public:
+    explicit PlyWriter(const std::string& format)
+        : isAscii(format == "ascii"), isSwapped(format == "binary_big_endian") {
+        text = "ply\nformat " + format + " 1.0\ncomment made by a test\n";
+    }
+    PlyWriter& Header(const std::string& lines) {
+        text += lines + "end_header\n";
+        return *this;
+    }
+    template <typename T>
+    PlyWriter& Put(std::initializer_list<double> values) {
+        for (const double value : values) {
+            if (isAscii) {
+                text += std::to_string(value) + " ";
+                continue;
+            }
+            const T typed = T(value);
+            std::string bytes(sizeof(T), '\0');
+            std::memcpy(bytes.data(), &typed, sizeof(T));
+            if (isSwapped) std::reverse(bytes.begin(), bytes.end());
+            text += bytes;
+        }
+        if (isAscii) text += "\n";
+        return *this;
+    }
+
+    std::string text;
+
+  private:
+    bool isAscii, isSwapped;
+};
+
+constexpr const char* kFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+
+std::string Gzip(const std::string& text) {
+    z_stream z{};
+    deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    std::string packed(deflateBound(&z, text.size()), '\0');
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    z.avail_in = uInt(text.size());
+    z.next_out = reinterpret_cast<Bytef*>(packed.data());
+    z.avail_out = uInt(packed.size());
+    deflate(&z, Z_FINISH);
+    packed.resize(z.total_out);
+    deflateEnd(&z);
+    return packed;
+}
+
+class Ply : public testing::Test {
+  protected:
+    MeshData Load(const std::string& contents) {
+        return LoadPly(folder.Write("a.ply", contents), warnings);
+    }
+    std::string ErrorOf(const std::string& contents) {
+        return folder.MessageOf([&] { Load(contents); });
+    }
+
+    TestFolder folder;
+    Warnings warnings;
+};
+
+using Triangle = std::array<uint32_t, 3>;
+
+constexpr char kPositions[] = "property float x\nproperty float y\nproperty float z\n";
+constexpr char kFaces[] = "property list uchar int vertex_indices\n";
+
+// Returns a triangle and its vertices, which the error tests then damage.
+std::string Header(const std::string& vertices, const std::string& faces) {
+    return "element vertex " + vertices + "\n" + kPositions + "element face " + faces + "\n" +
+           kFaces;
+}
+
+TEST_F(Ply, TrianglesInEveryEncodingPlainAndPacked) {
+    for (const std::string format : kFormats) {
+        PlyWriter ply(format);
+        ply.Header(Header("3", "2"));
+        ply.Put<float>({0, 0, 0}).Put<float>({1, 0, 0}).Put<float>({0, 2, .5});
+        ply.Put<uint8_t>({3}).Put<int>({0, 1, 2}).Put<uint8_t>({3}).Put<int>({2, 1, 0});
+        for (const std::string& contents : {ply.text, Gzip(ply.text)}) {
+            const MeshData mesh = Load(contents);
+            ASSERT_EQ(mesh.positions.size(), 3u) << format;
+            EXPECT_EQ(mesh.positions[2], Vec3f(0, 2, .5f));
+            EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+            EXPECT_TRUE(mesh.normals.empty() && mesh.uvs.empty() && mesh.faceIndices.empty());
+        }
+    }
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
+TEST_F(Ply, QuadsSplitAndOtherPolygonsAreLeftOut) {
+    for (const std::string format : kFormats) {
+        PlyWriter ply(format);
+        ply.Header("element vertex 5\n" + std::string(kPositions) + "element face 5\n" + kFaces +
+                   "property int face_indices\n");
+        for (int i = 0; i < 5; ++i) ply.Put<float>({double(i), 0, 0});
+        ply.Put<uint8_t>({4}).Put<int>({0, 1, 2, 3, 70});
+        ply.Put<uint8_t>({5}).Put<int>({0, 1, 2, 3, 4, 71});
+        ply.Put<uint8_t>({2}).Put<int>({0, 1, 72});
+        ply.Put<uint8_t>({3}).Put<int>({4, 1, 2, 73});
+        ply.Put<uint8_t>({1}).Put<int>({9, 74});
+        const MeshData mesh = Load(ply.text);
+        EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 1, 2}}));
+        EXPECT_EQ(mesh.faceIndices, (std::vector{70, 70, 73}));
+    }
+    EXPECT_EQ(warnings.Counts().at("face left out that is neither triangle nor quad"), 9);
+}
+
+TEST_F(Ply, PropertiesInAnyOrderAndType) {
+    for (const std::string format : kFormats) {
+        PlyWriter ply(format);
+        ply.Header(
+            "element vertex 3\nproperty uchar red\nproperty double ny\nproperty short z\n"
+            "property float nx\nproperty int8 x\nproperty uint16 nz\nproperty int t\n"
+            "property uint y\nproperty uchar s\n"
+            "element face 1\nproperty float quality\nproperty list uint16 uint8 vertex_index\n"
+            "property list uchar float texcoord\n");
+        for (int i = 0; i < 3; ++i)
+            ply.Put<uint8_t>({200})
+                .Put<double>({.25})
+                .Put<int16_t>({-300})
+                .Put<float>({-.5})
+                .Put<int8_t>({-7})
+                .Put<uint16_t>({60000})
+                .Put<int>({-100000})
+                .Put<uint32_t>({70000. + i})
+                .Put<uint8_t>({9});
+        ply.Put<float>({.5}).Put<uint16_t>({3}).Put<uint8_t>({2, 1, 0});
+        ply.Put<uint8_t>({2}).Put<float>({.1, .2});
+        const MeshData mesh = Load(ply.text);
+        ASSERT_EQ(mesh.positions.size(), 3u) << format;
+        EXPECT_EQ(mesh.positions[1], Vec3f(-7, 70001, -300));
+        EXPECT_EQ(mesh.normals.at(2), Vec3f(-.5f, .25f, 60000));
+        EXPECT_EQ(mesh.uvs.at(0), Vec2f(9, -100000));
+        EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{2, 1, 0}}));
+    }
+}
+
+TEST_F(Ply, EveryNameOfTextureCoordinates) {
+    for (const auto& [u, v] : {std::pair("u", "v"),
+                               {"s", "t"},
+                               {"texture_u", "texture_v"},
+                               {"texture_s", "texture_t"}}) {
+        PlyWriter ply("ascii");
+        ply.Header("element vertex 3\n" + std::string(kPositions) + "property float " + u +
+                   "\nproperty float " + v + "\nelement face 1\n" + kFaces);
+        for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, .25, .75});
+        ply.Put<int>({3, 0, 1, 2});
+        EXPECT_EQ(Load(ply.text).uvs.at(2), Vec2f(.25f, .75f)) << u;
+    }
+}
+
+TEST_F(Ply, IncompleteNormalsAndUvsAreIgnored) {
+    PlyWriter ply("ascii");
+    ply.Header("element vertex 3\n" + std::string(kPositions) +
+               "property float nx\nproperty float ny\nproperty float u\nelement face 1\n" + kFaces);
+    for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, 1, 1, 1});
+    ply.Put<int>({3, 0, 1, 2});
+    const MeshData mesh = Load(ply.text);
+    EXPECT_TRUE(mesh.normals.empty() && mesh.uvs.empty());
+}
+
+TEST_F(Ply, UnknownElementsAreSkippedAndFacesMayComeFirst) {
+    for (const std::string format : kFormats) {
+        PlyWriter ply(format);
+        ply.Header(
+            "element camera 2\nproperty double fov\nproperty uchar kind\nelement empty 9\n"
+            "element strips 2\nproperty list uchar int indices\nelement face 1\n" +
+            std::string(kFaces) + "element vertex 3\n" + kPositions);
+        for (int i = 0; i < 2; ++i) ply.Put<double>({.5}).Put<uint8_t>({1});
+        ply.Put<uint8_t>({0}).Put<uint8_t>({2}).Put<int>({1, 2});
+        ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
+        for (int i = 0; i < 3; ++i) ply.Put<float>({1. * i, 0, 0});
+        const MeshData mesh = Load(ply.text);
+        EXPECT_EQ(mesh.positions.at(2).x(), 2) << format;
+        EXPECT_EQ(mesh.triangles.size(), 1u);
+    }
+}
+
+TEST_F(Ply, CarriageReturnsAndBlankLines) {
+    const MeshData mesh = Load(
+        "ply\r\nformat ascii 1.0\r\n\r\nelement vertex 3\r\n"
+        "property float x\r\nproperty float y\r\nproperty float z\r\n"
+        "element face 1\r\nproperty list uchar int vertex_indices\r\n"
+        "end_header\r\n0 0 0\r\n+1 0 0\r\n\r\n0 1e0 0\r\n3 0 1 2");
+    EXPECT_EQ(mesh.positions[2], Vec3f(0, 1, 0));
+}
+
+TEST_F(Ply, JoinedGzipMembersAreOneFile) {
+    PlyWriter ply("ascii");
+    ply.Header(Header("3", "1")).Put<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}).Put<int>({3, 0, 1, 2});
+    const size_t half = ply.text.size() / 2;
+    EXPECT_EQ(Load(Gzip(ply.text.substr(0, half)) + Gzip(ply.text.substr(half))).positions.size(),
+              3u);
+}
+
+TEST_F(Ply, NormalsThatAreNotFiniteBecomeZero) {
+    PlyWriter ply("binary_little_endian");
+    ply.Header("element vertex 3\n" + std::string(kPositions) +
+               "property float nx\nproperty float ny\nproperty float nz\nproperty float u\n"
+               "property float v\nelement face 1\n" +
+               kFaces);
+    for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, 1, 0, i == 1 ? NAN : 0, INFINITY, 0});
+    ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
+    const MeshData mesh = Load(ply.text);
+    EXPECT_EQ(mesh.normals[0], Vec3f(1, 0, 0));
+    EXPECT_EQ(mesh.normals[1], Vec3f::Zero());
+    EXPECT_EQ(mesh.uvs[2], Vec2f::Zero());
+    EXPECT_EQ(warnings.Counts().at("normal in a PLY file that is not finite"), 1);
+    EXPECT_EQ(warnings.Counts().at("uv in a PLY file that is not finite"), 3);
+}
+
+TEST_F(Ply, BadHeaders) {
+    const auto expect = [&](const std::string& lines, const std::string& message) {
+        EXPECT_EQ(ErrorOf("ply\n" + lines + "end_header\n"), message);
+    };
+    EXPECT_EQ(ErrorOf(""), "a.ply:1: not a PLY file: its first line must be 'ply'");
+    EXPECT_EQ(ErrorOf("PNG\n"), "a.ply:1: not a PLY file: its first line must be 'ply'");
+    EXPECT_EQ(ErrorOf(std::string(100000, 'x')),
+              "a.ply:1: not a PLY file: its first line must be 'ply'");
+    EXPECT_EQ(ErrorOf("ply\nformat ascii 1.0\n"), "a.ply:3: the PLY header has no end_header");
+    expect("", "a.ply:2: the PLY header names no format");
+    expect("format text 1.0\n", "a.ply:2: unknown PLY format 'text'");
+    expect("colour red\n", "a.ply:2: 'colour red' does not belong in a PLY header");
+    expect("element vertex\n", "a.ply:2: 'element vertex' does not belong in a PLY header");
+    expect("element vertex -3\n", "a.ply:2: '-3' cannot be the count of PLY element 'vertex'");
+    expect("element vertex 3x\n", "a.ply:2: '3x' cannot be the count of PLY element 'vertex'");
+    expect("element vertex 99999999999999999999\n",
+           "a.ply:2: '99999999999999999999' cannot be the count of PLY element 'vertex'");
+    expect("property float x\n", "a.ply:2: a PLY property must come after an element");
+    expect("element vertex 1\nproperty half x\n", "a.ply:3: unknown type 'half' in a PLY header");
+    expect("element vertex 1\nproperty float\n",
+           "a.ply:3: a PLY property is written 'property TYPE NAME' or 'property list TYPE TYPE "
+           "NAME'");
+    expect("element face 1\nproperty list float int vertex_indices\n",
+           "a.ply:3: the counts of a PLY list must be of an integer type");
+}
+
+TEST_F(Ply, MissingParts) {
+    const std::string ascii = "ply\nformat ascii 1.0\n";
+    EXPECT_EQ(ErrorOf(ascii + "end_header\n"),
+              "a.ply: the PLY file has no vertices or no "
+              "triangles");
+    EXPECT_EQ(ErrorOf(ascii + Header("0", "0") + "end_header\n"),
+              "a.ply: the PLY file has no vertices or no triangles");
+    EXPECT_EQ(ErrorOf(ascii + "element vertex 1\nproperty float x\nend_header\n0"),
+              "a.ply: the vertices of the PLY file have no x, y and z");
+    EXPECT_EQ(ErrorOf(ascii + "element face 1\nproperty float x\nend_header\n0"),
+              "a.ply: the faces of the PLY file need one list vertex_indices");
+    EXPECT_EQ(ErrorOf(ascii + Header("0", "0") + Header("0", "0") + "end_header\n"),
+              "a.ply: the PLY file has two elements 'vertex'");
+}
+
+TEST_F(Ply, TruncatedFilesAndAbsurdCounts) {
+    for (const std::string format : kFormats) {
+        PlyWriter ply(format);
+        ply.Header(Header("3", "1"));
+        const size_t header = ply.text.size();
+        ply.Put<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}).Put<uint8_t>({3}).Put<int>({0, 1, 2});
+        // An ASCII file may lack its last blanks and zeros.
+        const size_t whole = format == "ascii" ? ply.text.find("2.0") + 1 : ply.text.size();
+        for (size_t size = header; size < whole; ++size)
+            EXPECT_TRUE(ErrorOf(ply.text.substr(0, size)).find("the PLY file ends before") !=
+                        std::string::npos)
+                << format << " " << size;
+        for (const std::string count : {"1000000000", "4000000000", "9000000000000000000"}) {
+            EXPECT_EQ(ErrorOf(PlyWriter(format).Header(Header(count, "1")).text + "0 0 0 "),
+                      "a.ply: the PLY file ends before the " + count + " rows of element 'vertex'");
+            EXPECT_EQ(ErrorOf(PlyWriter(format).Header("element x " + count + "\n" + kFaces).text),
+                      "a.ply: the PLY file ends before the " + count + " rows of element 'x'");
+        }
+    }
+    const std::string packed = Gzip(std::string(10000, 'a'));
+    EXPECT_EQ(ErrorOf(packed.substr(0, packed.size() / 2)),
+              "a.ply: the gzip'd data are damaged or cut short");
+    EXPECT_EQ(ErrorOf("\x1f\x8bxxxxxxxxxxxxxxxxx"),
+              "a.ply: the gzip'd data are damaged or cut short");
+    EXPECT_EQ(ErrorOf(Gzip(std::string(size_t(65) << 20, '\0'))),
+              "a.ply: unpacks to more than 67108864 bytes; unpack it by hand if it is right");
+}
+
+TEST_F(Ply, BadValues) {
+    const auto errorOf = [&](const std::string& vertex, const std::string& face) {
+        return ErrorOf("ply\nformat ascii 1.0\n" + Header("3", "1") + "end_header\n0 0 0\n1 0 0\n" +
+                       vertex + "\n" + face + "\n");
+    };
+    EXPECT_EQ(errorOf("0 nan 0", "3 0 1 2"), "a.ply: vertex 2 of the PLY file is not finite");
+    EXPECT_EQ(errorOf("0 inf 0", "3 0 1 2"), "a.ply: vertex 2 of the PLY file is not finite");
+    EXPECT_EQ(errorOf("0 1e39 0", "3 0 1 2"), "a.ply: vertex 2 of the PLY file is not finite");
+    EXPECT_EQ(errorOf("0 1e999 0", "3 0 1 2"),
+              "a.ply:12: '1e999' is not a number that can be used");
+    EXPECT_EQ(errorOf("0 x 0", "3 0 1 2"), "a.ply:12: 'x' is not a number that can be used");
+    EXPECT_EQ(errorOf("0 1 0", "3 0 1 3"), "a.ply: triangle 0 refers to vertex 3, but there are 3");
+    EXPECT_EQ(errorOf("0 1 0", "3 0 1 -1"), "a.ply:13: a face has the vertex index -1.000000");
+    EXPECT_EQ(errorOf("0 1 0", "3 0 1 .5"), "a.ply:13: a face has the vertex index 0.500000");
+    EXPECT_EQ(errorOf("0 1 0", "0"), "a.ply:13: a face has no vertices");
+    EXPECT_EQ(errorOf("0 1 0", "-3 0 1 2"),
+              "a.ply:13: a list of property 'vertex_indices' has a "
+              "count that is negative or no integer");
+    EXPECT_EQ(errorOf("0 1 0", "2 0 1"), "a.ply: the PLY file has no vertices or no triangles");
+    // The bulk path of binary files finds them as well.
+    PlyWriter ply("binary_little_endian");
+    ply.Header(Header("1", "1")).Put<float>({0, 0, 0}).Put<uint8_t>({3}).Put<int>({0, 0, -1});
+    EXPECT_EQ(ErrorOf(ply.text), "a.ply: triangle 0 refers to vertex 4294967295, but there are 1");
+}
+
+TEST_F(Ply, FilesThatCannotBeRead) {
+    const FileLoc loc{std::make_shared<const std::string>("scene.pbrt"), 7};
+    EXPECT_EQ(folder.MessageOf([&] { LoadPly(folder.File("none.ply"), warnings, loc); }),
+              "scene.pbrt:7: cannot read 'none.ply': No such file or directory");
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,42 @@
+// Gives input tests files of their own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "renderer/input/pbrt_parser.h"
+#include "tests/renderer/output/test_files.h"
+
+namespace lull {
+
+// Gives a test that parses scenes a directory of its own.
+struct TestFolder : TemporaryDirectory {
+    Description Parse(std::string_view text, Warnings* warnings = nullptr,
+                      const ParseOptions& options = {}) const {
+        Warnings ignored;
+        return ParsePbrt(Write("scene.pbrt", text), options, warnings ? *warnings : ignored);
+    }
+
+    // Parses the text between WorldBegin and WorldEnd, on line 1.
+    Description ParseWorld(std::string_view text, Warnings* warnings = nullptr) const {
+        return Parse("WorldBegin " + std::string(text) + "\nWorldEnd\n", warnings);
+    }
+
+    // Returns the message of the Error that `text` gives, without the folder's name; "" for none.
+    std::string ErrorOf(std::string_view text, const ParseOptions& options = {}) const {
+        return MessageOf([&] { Parse(text, nullptr, options); });
+    }
+
+    template <typename Function>
+    std::string MessageOf(const Function& function) const {
+        std::string message = lull::ErrorOf(function);
+        const std::string prefix = path.string() + "/";
+        for (size_t at; (at = message.find(prefix)) != std::string::npos;)
+            message.erase(at, prefix.size());
+        return message;
+    }
+};
+
+}  // namespace lull

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include "renderer/pages/bench_page.h"
+#include "renderer/pages/comparison_page.h"
+#include "renderer/pages/embedded.h"
+#include "tests/renderer/output/test_files.h"
+
+namespace lull {
+namespace {
+
+// Returns the data that a page holds.
+Json DataOf(const std::string& page) {
+    const std::string open = "<script id=\"data\" type=\"application/json\">";
+    const size_t begin = page.find(open) + open.size();
+    return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+ComparisonReport TwoImages() {
+    ComparisonReport report;
+    report.title = "two";
+    Comparison& comparison = report.comparison;
+    comparison.region = {{10, 20}, {50, 60}};
+    comparison.blocks = {{{10, 20}, {30, 60}}, {{30, 20}, {50, 60}}};
+    comparison.cap = 100;
+    comparison.hasReference = true;
+    const float values[3] = {0.45f, 0.5f, 0.5f};
+    const char* const names[3] = {"automatic", "human", "reference"};
+    for (int i = 0; i < 3; ++i) {
+        ComparedImage& image = comparison.images.emplace_back();
+        image.name = names[i];
+        image.image = {40, 40, std::vector<float>(40 * 40 * 3, values[i])};
+    }
+    comparison.images[0].costs = {{.spp = 20, .seconds = 2, .ruleSeconds = 1},
+                                  {.spp = 50, .seconds = 10}};
+    comparison.images[1].costs = {{.spp = 60, .seconds = 6}, {.spp = 40, .seconds = 8}};
+    comparison.images[2].costs = {{.spp = 100, .seconds = 10}, {.spp = 100, .seconds = 20}};
+    report.verifications = {
+        {.threads = 2, .wallSeconds = 7, .seconds = 12, .ruleSeconds = 1, .samePixels = true}};
+    Measure(&comparison);
+    return report;
+}
+
+TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
+    const std::string page = MakePage({{"title", "x"}});
+    for (const char* name : {"page.css", "page.js", "format.js", "charts.js", "viewer.js",
+                             "tables.js", "bench.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
+        ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
+        EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
+    }
+    EXPECT_EQ(EmbeddedFile("no such file"), "");
+    for (const char* reaching :
+         {"src=\"http", "href=\"http", "@import", "url(", "fetch(", "import("})
+        EXPECT_EQ(page.find(reaching), std::string::npos) << reaching;
+    for (const char* name : {"page.css", "page.js", "data"})
+        EXPECT_FALSE(Contains(page, std::string("{{") + name + "}}"));
+}
+
+TEST(MakePage, CannotBeBrokenByItsData) {
+    const std::string evil = "</script><script>alert(1)</script><!-- {{page.js}} \xff";
+    const std::string page = MakePage({{"title", evil}});
+    EXPECT_FALSE(Contains(page, "alert(1)</script>"));
+    const std::string title = DataOf(page)["title"];
+    EXPECT_TRUE(title.starts_with("</script><script>alert(1)</script><!-- {{page.js}} "));
+}
+
+TEST(PictureUri, IsAPngInBase64) {
+    const std::string uri = PictureUri({2, 1, {0, 0, 0, 1, 1, 1}});
+    EXPECT_TRUE(uri.starts_with("data:image/png;base64,iVBORw0KGgo"));
+    EXPECT_EQ((uri.size() - std::string("data:image/png;base64,").size()) % 4, 0u);
+    EXPECT_TRUE(MapUri(std::vector<float>{0, 0.5f, 1}, 3, 1).starts_with("data:image/png;base64,"));
+}
+
+TEST(ComparisonJson, SaysWhatWasSaved) {
+    const Json json = ComparisonJson(TwoImages());
+    EXPECT_EQ(json["reference"], "reference");
+    EXPECT_EQ(json["atCap"]["samples"], 40 * 40 * 100);
+    EXPECT_EQ(json["atCap"]["seconds"], 30);
+    const Json& automatic = json["images"][0];
+    EXPECT_DOUBLE_EQ(automatic["saved"]["samples"], 0.65);
+    EXPECT_DOUBLE_EQ(automatic["saved"]["seconds"], 1 - 13. / 30);
+    EXPECT_EQ(automatic["saved"]["estimated"], false);
+    EXPECT_EQ(automatic["blocks"][1]["spp"], 50);
+    EXPECT_EQ(json["blocks"][1]["x"], 20);  // within the image
+    EXPECT_EQ(json["againstHuman"]["earlier"], 1);
+    EXPECT_EQ(json["againstHuman"]["later"], 1);
+    EXPECT_EQ(json["againstHuman"]["spp"], Json({-40, 10}));
+    EXPECT_EQ(json["againstHuman"]["meanDistance"], 25);
+    // The human image is the reference itself: no error, no noise, and no infinity in JSON.
+    EXPECT_EQ(json["images"][1]["figures"]["rmse"], 0);
+    EXPECT_TRUE(json["images"][1]["figures"]["psnr"].is_null());
+}
+
+// The saving in seconds, 1 - 7 / (30 / 2), over that in samples, 0.65.
+TEST(ComparisonJson, SaysHowMuchOfTheSavingIsKept) {
+    const Json v = ComparisonJson(TwoImages())["verifications"][0];
+    EXPECT_DOUBLE_EQ(v["wallSecondsToCap"], 15);
+    EXPECT_NEAR(v["savedWall"], 1 - 7. / 15, 1e-12);
+    EXPECT_NEAR(v["kept"], (1 - 7. / 15) / 0.65, 1e-12);
+    EXPECT_NEAR(v["ruleShare"], 1. / 13, 1e-12);
+}
+
+TEST(CostAtCap, IsEstimatedWhereNothingWentThatFar) {
+    ComparisonReport report = TwoImages();
+    report.comparison.images.pop_back();
+    const TotalCost cost = CostAtCap(report.comparison);
+    EXPECT_TRUE(cost.isEstimated);
+    EXPECT_DOUBLE_EQ(cost.seconds, 6 / 60. * 100 + 10 / 50. * 100);
+}
+
+TEST(MakeComparisonPage, HasPicturesAndErrorMaps) {
+    const Json data = DataOf(MakeComparisonPage(TwoImages()));
+    ASSERT_EQ(data["images"].size(), 3u);
+    for (const Json& image : data["images"])
+        EXPECT_TRUE(image["src"].get<std::string>().starts_with("data:image/png"));
+    EXPECT_TRUE(data["images"][0].contains("flipSrc"));
+    EXPECT_FALSE(data["images"][2].contains("flipSrc"));
+}
+
+TEST(MakeBenchPage, HasThePoints) {
+    BenchPoint point;
+    point.rule = "fixed";
+    point.setting = "20";
+    point.sampler = "sobol";
+    point.spp = 20;
+    point.figures.psnr = std::numeric_limits<double>::infinity();
+    Provenance provenance;
+    provenance.schedule.cap = 100;
+    const Json data = DataOf(MakeBenchPage("room", provenance, {point}, {"sobol"},
+                                           {2, 2, std::vector<float>(12)}, {"a note"}));
+    EXPECT_EQ(data["bench"]["points"][0]["rule"], "fixed");
+    EXPECT_TRUE(data["bench"]["points"][0]["psnr"].is_null());
+    EXPECT_EQ(data["notes"][0], "a note");
+}
+
+TEST(MakeRenderPage, HasCurvesAndDecisions) {
+    RenderResult result;
+    result.blocks.resize(1);
+    result.blocks[0].block = {
+        .pixels = {{4, 4}, {8, 8}}, .spp = 20, .stopped = true, .stoppedByVote = true};
+    result.blocks[0].decisions = {{20, {.stop = true, .judged = true, .value = 1, .threshold = 2}}};
+    std::vector<BlockHistory> histories(1);
+    histories[0].curves = {{20}, {0.5f}, {1.5f}};
+    Provenance provenance;
+    provenance.criterion = "lnoise:2";
+    provenance.schedule.cap = 100;
+    const Film film({{4, 4}, {8, 8}});
+    const Json data = DataOf(MakeRenderPage(provenance, result, film, histories, {{"odd", 2}}));
+    EXPECT_EQ(data["kind"], "render");
+    EXPECT_EQ(data["blocks"][0]["x"], 0);
+    EXPECT_EQ(data["blocks"][0]["curves"]["noise"][0], 1.5);
+    EXPECT_EQ(data["blocks"][0]["decisions"]["value"][0], 1);
+    EXPECT_EQ(data["images"][0]["blocks"][0]["spp"], 20);
+    EXPECT_EQ(data["warnings"]["odd"], 2);
+}
+
+}  // namespace
+}  // namespace lull

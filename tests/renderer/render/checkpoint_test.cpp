@@ -1,0 +1,187 @@
+#include "renderer/render/checkpoint.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "stopping/base/state.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+const PixelRect kRegion = {{0, 0}, {131, 97}};
+const RenderIdentity kIdentity = {{"scene", "a"}, {"seed", "0"}};
+
+// Sums up what it has been shown, and stops where the sum is a certain one; so it stops elsewhere
+// if it has forgotten anything.
+class SummingCriterion final : public Criterion {
+  public:
+    explicit SummingCriterion(int block) : passes(3 + 2 * block) {}
+    ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
+    Decision Observe(const BlockView& view) override {
+        for (size_t i = 0; i < view.mean.size(); ++i) sum += view.mean[i] - view.halfMean[i];
+        return {.stop = --passes == 0, .judged = true, .value = sum, .threshold = 0};
+    }
+    std::vector<std::byte> Save() const override {
+        StateWriter writer;
+        writer.Put(sum);
+        writer.Put(passes);
+        return std::move(writer.bytes);
+    }
+    void Restore(std::span<const std::byte> state) override {
+        StateReader reader(state);
+        sum = reader.Get<double>();
+        passes = reader.Get<int>();
+        reader.Finish();
+    }
+
+  private:
+    double sum = 0;
+    int passes;
+};
+
+RenderOptions SmallRender(int threads) {
+    RenderOptions options;
+    options.schedule = {.blockSize = 50, .passLength = 6, .cap = 60};
+    options.sampler = SamplerKind::Random;
+    options.threads = threads;
+    options.makeCriterion = [](const BlockInfo& block) {
+        return std::make_unique<SummingCriterion>(block.index);
+    };
+    return options;
+}
+
+void ExpectSame(const RenderResult& a, const RenderResult& b) {
+    ASSERT_EQ(a.blocks.size(), b.blocks.size());
+    for (size_t i = 0; i < a.blocks.size(); ++i) {
+        EXPECT_EQ(a.blocks[i].block.spp, b.blocks[i].block.spp);
+        EXPECT_EQ(a.blocks[i].block.stoppedByVote, b.blocks[i].block.stoppedByVote);
+        ASSERT_EQ(a.blocks[i].decisions.size(), b.blocks[i].decisions.size());
+        for (size_t k = 0; k < a.blocks[i].decisions.size(); ++k) {
+            EXPECT_EQ(a.blocks[i].decisions[k].spp, b.blocks[i].decisions[k].spp);
+            EXPECT_EQ(a.blocks[i].decisions[k].decision.value,
+                      b.blocks[i].decisions[k].decision.value);
+        }
+    }
+}
+
+TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("render.checkpoint");
+    Film reference(kRegion);
+    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
+    EXPECT_LT(reference.SampleCount(), kRegion.Area() * 60);
+
+    for (const int samplesARun : {5000, 12345, 100000, 300000}) {
+        Film film(kRegion);
+        RenderState state;
+        RenderResult result;
+        bool begun = false;
+        // Each run starts from the file alone, with another number of threads.
+        for (int run = 0; run < 1000; ++run) {
+            RenderOptions options = SmallRender(1 + run % 3);
+            std::atomic<int> samples = 0;
+            const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+                ++samples;
+                return SyntheticSample(sampler, pixel, index);
+            };
+            options.isCancelled = [&] { return samples >= samplesARun; };
+            options.onCheckpoint = [&](const RenderState& s) {
+                WriteCheckpoint(path, kIdentity, s, film);
+            };
+            result = Render(source, options, &film, begun ? &state : nullptr);
+            if (!result.cancelled) break;
+            begun = true;
+            film = Film(kRegion);
+            state = ReadCheckpoint(path, kIdentity, &film);
+        }
+        EXPECT_TRUE(begun);
+        EXPECT_TRUE(SamePixels(film, reference)) << samplesARun;
+        ExpectSame(result, expected);
+        EXPECT_EQ(result.progress.samples, reference.SampleCount());
+    }
+}
+
+TEST(Checkpoint, IsTakenAgainAndAgainWithoutAnEffect) {
+    Film reference(kRegion);
+    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
+    RenderOptions options = SmallRender(4);
+    options.checkpointInterval = 0;
+    int checkpoints = 0;
+    options.onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+    Film film(kRegion);
+    ExpectSame(Render(SyntheticSample, options, &film), expected);
+    EXPECT_TRUE(SamePixels(film, reference));
+    EXPECT_GT(checkpoints, 50);
+}
+
+TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
+    Film whole(kRegion), part(kRegion);
+    const RenderOptions options = SmallRender(2);
+    const RenderResult expected = Render(SyntheticSample, options, &whole);
+    RenderState state;
+    for (const Block& block : MakeBlocks(kRegion, options.schedule)) {
+        state.blocks.push_back({.block = block, .decisions = {}});
+        state.blocks.back().block.stopped = state.blocks.size() != 3;
+    }
+    state.criteria.resize(state.blocks.size());
+    const RenderResult result = Render(SyntheticSample, options, &part, &state);
+    EXPECT_FALSE(result.cancelled);
+    for (size_t i = 0; i < result.blocks.size(); ++i)
+        EXPECT_EQ(result.blocks[i].block.spp, i == 2 ? expected.blocks[i].block.spp : 0);
+    EXPECT_EQ(part.At({120, 20}).sum, whole.At({120, 20}).sum);
+    EXPECT_EQ(part.At({20, 20}).count, 0u);
+
+    state.criteria.pop_back();
+    EXPECT_THROW(Render(SyntheticSample, options, &part, &state), std::invalid_argument);
+}
+
+// Writes the checkpoint of a render that has just begun.
+void WriteSmallCheckpoint(const std::string& path) {
+    Film film(kRegion);
+    RenderOptions options = SmallRender(1);
+    std::atomic<int> tiles = 0;
+    options.isCancelled = [&] { return tiles++ >= 50; };
+    options.onCheckpoint = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
+    Render(SyntheticSample, options, &film);
+}
+
+TEST(Checkpoint, SaysWhatIsNotTheSame) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.checkpoint");
+    WriteSmallCheckpoint(path);
+    Film film(kRegion);
+    const std::string error = ErrorOf([&] {
+        ReadCheckpoint(path, {{"scene", "a"}, {"seed", "1"}}, &film);
+    });
+    EXPECT_TRUE(Contains(error, path)) << error;
+    EXPECT_TRUE(Contains(error, "another seed (0 there, 1 here)")) << error;
+    EXPECT_TRUE(Contains(ErrorOf([&] {
+                             ReadCheckpoint(path, {{"scene", "a"}, {"crop", "1"}}, &film);
+                         }),
+                         "another crop (none there, 1 here)"));
+}
+
+TEST(Checkpoint, RefusesDamagedFiles) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.checkpoint");
+    WriteSmallCheckpoint(path);
+    const std::string bytes = ReadBytes(path);
+    Film film(kRegion);
+    EXPECT_NO_THROW(ReadCheckpoint(path, kIdentity, &film));
+    EXPECT_THROW(ReadCheckpoint(directory.File("none"), kIdentity, &film), Error);
+    for (const size_t length : {size_t(0), size_t(10), bytes.size() / 2, bytes.size() - 1})
+        EXPECT_THROW(
+            ReadCheckpoint(directory.Write("cut", bytes.substr(0, length)), kIdentity, &film),
+            Error)
+            << length;
+    // Another image's pixels do not fit.
+    Film smaller({{0, 0}, {40, 97}});
+    EXPECT_THROW(ReadCheckpoint(path, kIdentity, &smaller), Error);
+}
+
+}  // namespace
+}  // namespace lull

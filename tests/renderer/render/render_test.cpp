@@ -1,0 +1,198 @@
+#include "renderer/render/render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+const PixelRect kRegion = {{0, 0}, {131, 97}};
+
+RenderOptions SmallRender() {
+    RenderOptions options;
+    options.schedule = {.blockSize = 50, .passLength = 20, .cap = 50};
+    options.sampler = SamplerKind::Random;
+    options.threads = 1;
+    return options;
+}
+
+Film Rendered(const RenderOptions& options, const PixelRect& region = kRegion) {
+    Film film(region);
+    Render(SyntheticSample, options, &film);
+    return film;
+}
+
+TEST(Render, IsTheSameBitsForAnyNumberOfThreads) {
+    const Film reference = Rendered(SmallRender());
+    EXPECT_EQ(reference.SampleCount(), kRegion.Area() * 50);
+    for (const int threads : {2, 4, 16})
+        for (int run = 0; run < 3; ++run) {
+            RenderOptions options = SmallRender();
+            options.threads = threads;
+            EXPECT_TRUE(SamePixels(Rendered(options), reference)) << threads;
+        }
+}
+
+TEST(Render, IsTheSameBitsForAnyBlocksTilesAndPasses) {
+    const Film reference = Rendered(SmallRender());
+    for (const int blockSize : {1, 7, 64, 200})
+        for (const int passLength : {1, 3, 20, 1000})
+            for (const int tileSize : {5, 16}) {
+                RenderOptions options = SmallRender();
+                options.threads = 2;
+                options.schedule = {.blockSize = blockSize,
+                                    .passLength = passLength,
+                                    .cap = 50,
+                                    .tileSize = tileSize};
+                EXPECT_TRUE(SamePixels(Rendered(options), reference))
+                    << blockSize << " " << passLength;
+            }
+}
+
+TEST(Render, GivesACropTheSamePixels) {
+    const Film whole = Rendered(SmallRender());
+    const PixelRect crop = {{13, 40}, {99, 71}};
+    const Film part = Rendered(SmallRender(), crop);
+    for (int y = crop.min.y(); y < crop.max.y(); ++y)
+        for (int x = crop.min.x(); x < crop.max.x(); ++x)
+            ASSERT_EQ(part.At({x, y}).sum, whole.At({x, y}).sum);
+}
+
+TEST(Render, StopsEachBlockWhenItsCriterionSaysSo) {
+    for (const int threads : {1, 4}) {
+        RenderOptions options = SmallRender();
+        options.threads = threads;
+        options.schedule.cap = 200;
+        options.makeCriterion = [](const BlockInfo& block) {
+            return std::make_unique<ScriptedCriterion>(40 * (block.index + 1));
+        };
+        Film film(kRegion);
+        const RenderResult result = Render(SyntheticSample, options, &film);
+        ASSERT_EQ(result.blocks.size(), 6u);
+        EXPECT_FALSE(result.cancelled);
+        for (int i = 0; i < 6; ++i) {
+            const BlockResult& block = result.blocks[i];
+            EXPECT_EQ(block.block.spp, std::min(200, 40 * (i + 1)));
+            EXPECT_EQ(block.block.stoppedByVote, i < 5);
+            EXPECT_EQ(int(block.decisions.size()), block.block.spp / 20);
+            EXPECT_EQ(int(film.At(block.block.pixels.min).count), block.block.spp);
+        }
+        EXPECT_EQ(result.progress.samples, film.SampleCount());
+    }
+}
+
+// Checks what the criterion is shown against the film.
+TEST(Render, ShowsCriteriaTheBlockAfterEachPass) {
+    struct Witness : Criterion {
+        std::vector<int>* spp;
+        ViewNeed Need(int at) const override {
+            return at == 20 ? ViewNeed::Nothing : at == 40 ? ViewNeed::Mean : ViewNeed::MeanAndHalf;
+        }
+        Decision Observe(const BlockView& view) override {
+            spp->push_back(view.spp);
+            EXPECT_EQ(view.width, 60);
+            EXPECT_EQ(view.height, 30);
+            EXPECT_EQ(view.mean.size(), view.spp == 20 ? 0u : 60u * 30u * 3u);
+            EXPECT_EQ(view.halfMean.size(), view.spp < 60 ? 0u : 60u * 30u * 3u);
+            return {};
+        }
+    };
+    std::vector<int> spp;
+    RenderOptions options = SmallRender();
+    options.schedule = {.blockSize = 200, .passLength = 20, .cap = 70};
+    options.makeCriterion = [&](const BlockInfo& block) {
+        EXPECT_EQ(block.areaFraction, 1);
+        auto witness = std::make_unique<Witness>();
+        witness->spp = &spp;
+        return witness;
+    };
+    Film film({{5, 5}, {65, 35}});
+    const RenderResult result = Render(SyntheticSample, options, &film);
+    EXPECT_EQ(spp, (std::vector<int>{20, 40, 60, 70}));
+    EXPECT_TRUE(result.blocks[0].decisions.empty());  // it never judged
+}
+
+// All of four threads meet inside one tile each of the only block: the last live block fills
+// every core. Where it did not, those inside would wait in vain.
+TEST(Render, SpreadsASingleBlockOverAllThreads) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::set<std::thread::id> inside;
+    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        std::unique_lock lock(mutex);
+        inside.insert(std::this_thread::get_id());
+        changed.notify_all();
+        changed.wait_for(lock, std::chrono::seconds(20), [&] { return inside.size() >= 4; });
+        lock.unlock();
+        return SyntheticSample(sampler, pixel, index);
+    };
+    RenderOptions options = SmallRender();
+    options.threads = 4;
+    options.schedule = {.blockSize = 200, .passLength = 4, .cap = 4};
+    Film film({{0, 0}, {200, 200}});
+    Render(meet, options, &film);
+    EXPECT_EQ(inside.size(), 4u);
+}
+
+TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
+    std::atomic<int> taken = 0;
+    RenderOptions options = SmallRender();
+    options.threads = 2;
+    options.schedule = {.blockSize = 50, .passLength = 20, .cap = 10000};
+    options.isCancelled = [&] { return taken > 400000; };
+    Film film(kRegion);
+    const RenderResult result = Render(
+        [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            ++taken;
+            return SyntheticSample(sampler, pixel, index);
+        },
+        options, &film);
+    EXPECT_TRUE(result.cancelled);
+    EXPECT_EQ(film.SampleCount(), taken);
+    EXPECT_EQ(result.progress.samples, taken);
+    EXPECT_LT(taken, 400000 + 3 * 16 * 16 * 20);
+    // All have had their share.
+    for (const BlockResult& block : result.blocks) EXPECT_GT(block.block.spp, 0);
+}
+
+TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
+    struct Broken : Criterion {
+        ViewNeed Need(int) const override { return ViewNeed::Nothing; }
+        Decision Observe(const BlockView&) override { throw std::runtime_error("broken"); }
+    };
+    RenderOptions options = SmallRender();
+    options.threads = 4;
+    options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
+    Film film(kRegion);
+    EXPECT_THROW(Render(SyntheticSample, options, &film), std::runtime_error);
+    EXPECT_THROW(
+        Render([](Sampler&, const Vec2i&, uint32_t) -> PathSample { throw std::bad_alloc(); },
+               SmallRender(), &film),
+        std::bad_alloc);
+}
+
+TEST(Render, ReportsProgressInOrderAndTheEnd) {
+    std::vector<RenderProgress> reports;
+    RenderOptions options = SmallRender();
+    options.threads = 4;
+    options.progressInterval = 0;
+    options.onProgress = [&](const RenderProgress& p) { reports.push_back(p); };
+    Rendered(options);
+    ASSERT_GT(reports.size(), 2u);
+    for (size_t i = 1; i < reports.size(); ++i)
+        EXPECT_GE(reports[i].samples, reports[i - 1].samples);
+    EXPECT_EQ(reports.back().samples, kRegion.Area() * 50);
+    EXPECT_EQ(reports.back().samplesToCap, 0);
+    EXPECT_EQ(reports.back().stoppedBlocks, reports.back().blocks);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,164 @@
+// Renders small scenes all the way from pbrt text to pixels.
+#include <gtest/gtest.h>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+// A box open to the viewer with a lamp under its ceiling, a glass ball and a mirror ball.
+constexpr const char* kBox = R"(
+LookAt 0 0 -3.4  0 0 0  0 1 0
+Camera "perspective" "float fov" [39]
+Film "image" "integer xresolution" [96] "integer yresolution" [80] "string filename" "box.exr"
+Sampler "random"
+WorldBegin
+Material "matte" "rgb Kd" [.7 .7 .7]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7 8 9 10 8 10 11]
+  "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1    -1 1 -1  1 1 -1  1 1 1  -1 1 1
+             -1 -1 1  1 -1 1  1 1 1  -1 1 1]
+Material "matte" "rgb Kd" [.6 .1 .1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point P" [-1 -1 -1  -1 -1 1  -1 1 1  -1 1 -1]
+Material "matte" "rgb Kd" [.1 .5 .1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point P" [1 -1 -1  1 -1 1  1 1 1  1 1 -1]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [12 11 9] "bool twosided" "true"
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+    "point P" [-.3 .98 -.3  .3 .98 -.3  .3 .98 .3  -.3 .98 .3]
+AttributeEnd
+AttributeBegin
+  Translate -.4 -.6 .2
+  Material "mirror"
+  Shape "sphere" "float radius" [.4]
+AttributeEnd
+AttributeBegin
+  Translate .45 -.65 -.3
+  Material "glass"
+  Shape "sphere" "float radius" [.35]
+AttributeEnd
+WorldEnd
+)";
+
+// An evenly lit wall seen head on: nothing in it can hide a border between blocks.
+constexpr const char* kWall = R"(
+LookAt 0 0 -2  0 0 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "image" "integer xresolution" [80] "integer yresolution" [80] "string filename" "wall.exr"
+Sampler "random"
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "matte" "rgb Kd" [.5 .5 .5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point P" [-5 -5 0  5 -5 0  5 5 0  -5 5 0]
+WorldEnd
+)";
+
+std::unique_ptr<const Scene> MakeScene(const char* text, const FilmOverrides& film = {}) {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    const Description description = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    CompileOptions options;
+    options.film = film;
+    return Compile(description, options, warnings);
+}
+
+PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
+
+struct Settings {
+    Estimator estimator = Estimator::Combined;
+    SamplerKind sampler = SamplerKind::Random;
+    uint64_t seed = 0;
+    int threads = 1, blockSize = 200, passLength = 20, cap = 20;
+};
+
+Film Rendered(const Scene& scene, const Settings& s) {
+    RenderOptions options;
+    options.schedule = {.blockSize = s.blockSize, .passLength = s.passLength, .cap = s.cap};
+    options.sampler = s.sampler;
+    options.seed = s.seed;
+    options.threads = s.threads;
+    Film film(RegionOf(scene));
+    Render(SamplesOf(scene, s.estimator), options, &film);
+    return film;
+}
+
+TEST(SceneRender, IsTheSameBitsForAnyThreadsBlocksAndPasses) {
+    const auto scene = MakeScene(kBox);
+    for (const Estimator estimator : {Estimator::Combined, Estimator::PbrtV3})
+        for (const SamplerKind sampler : {SamplerKind::Random, SamplerKind::Sobol}) {
+            const Settings base = {.estimator = estimator, .sampler = sampler};
+            const Film reference = Rendered(*scene, base);
+            EXPECT_EQ(reference.RejectedCount(), 0);
+            for (const int threads : {2, 4}) {
+                Settings s = base;
+                s.threads = threads;
+                s.blockSize = threads == 2 ? 200 : 33;
+                s.passLength = threads == 2 ? 20 : 7;
+                EXPECT_TRUE(SamePixels(Rendered(*scene, s), reference));
+            }
+        }
+}
+
+TEST(SceneRender, GivesACropTheSamePixels) {
+    const auto whole = MakeScene(kBox);
+    FilmOverrides overrides;
+    overrides.crop = {.25f, .75f, .1f, .6f};
+    const auto part = MakeScene(kBox, overrides);
+    const Film wholeFilm = Rendered(*whole, {}), partFilm = Rendered(*part, {.threads = 2});
+    const PixelRect crop = RegionOf(*part);
+    EXPECT_EQ(crop, (PixelRect{{24, 8}, {72, 48}}));
+    for (int y = crop.min.y(); y < crop.max.y(); ++y)
+        for (int x = crop.min.x(); x < crop.max.x(); ++x)
+            ASSERT_EQ(partFilm.At({x, y}).sum, wholeFilm.At({x, y}).sum) << x << " " << y;
+}
+
+TEST(SceneRender, DependsOnTheSeed) {
+    const auto scene = MakeScene(kBox);
+    EXPECT_FALSE(SamePixels(Rendered(*scene, {.seed = 1}), Rendered(*scene, {.seed = 2})));
+}
+
+TEST(SceneRender, GivesAWallItsRadiance) {
+    const auto scene = MakeScene(kWall);
+    const Film film = Rendered(*scene, {.cap = 100});
+    double sum = 0;
+    for (const FilmPixel& pixel : film.Pixels()) {
+        EXPECT_NEAR(pixel.Mean().x(), 0.5f, 0.1f);
+        sum += pixel.Mean().x();
+    }
+    EXPECT_NEAR(sum / double(film.Pixels().size()), 0.5, 0.002);
+}
+
+// Neighbours across a border differ no more than neighbours elsewhere.
+TEST(SceneRender, ShowsNoBordersOfBlocks) {
+    const auto scene = MakeScene(kWall);
+    RenderOptions options;
+    options.schedule = {.blockSize = 20, .passLength = 20, .cap = 200};
+    options.sampler = SamplerKind::Random;
+    options.threads = 2;
+    // Stop the blocks at different spp, as criteria do.
+    options.makeCriterion = [](const BlockInfo& block) {
+        return std::make_unique<ScriptedCriterion>(20 + 60 * (block.index % 3));
+    };
+    Film film(RegionOf(*scene));
+    Render(SamplesOf(*scene, Estimator::Combined), options, &film);
+
+    double atBorders = 0, elsewhere = 0, squares = 0;
+    int borderPairs = 0, otherPairs = 0;
+    for (int y = 0; y < 80; ++y)
+        for (int x = 1; x < 80; ++x) {
+            const double jump = film.At({x, y}).Mean().x() - film.At({x - 1, y}).Mean().x();
+            (x % 20 == 0 ? atBorders : elsewhere) += jump;
+            ++(x % 20 == 0 ? borderPairs : otherPairs);
+            squares += jump * jump;
+        }
+    const double deviation = std::sqrt(squares / (borderPairs + otherPairs));
+    EXPECT_LT(std::abs(atBorders / borderPairs), 4 * deviation / std::sqrt(borderPairs) + 1e-6);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,50 @@
+// Gives tests samples without a scene.
+#pragma once
+
+#include <cmath>
+
+#include "renderer/render/render.h"
+
+namespace lull {
+
+// Returns noise around a smooth image. Like any source it depends on nothing but pixel, index and
+// seed. The sums are inexact in double, so that the order of additions shows in the last bits.
+inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+    sampler.StartSample(pixel, index);
+    const Vec2f u = sampler.Get2D();
+    const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
+    const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
+    return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
+}
+
+// Says whether all sums of both films are the same bits.
+inline bool SamePixels(const Film& a, const Film& b) {
+    if (!(a.Region() == b.Region())) return false;
+    for (size_t i = 0; i < a.Pixels().size(); ++i) {
+        const FilmPixel &p = a.Pixels()[i], &q = b.Pixels()[i];
+        if (p.sum != q.sum || p.halfSum != q.halfSum || p.count != q.count ||
+            p.rejected != q.rejected)
+            return false;
+    }
+    return true;
+}
+
+// Stops at the spp that it is given, and notes what it was shown.
+class ScriptedCriterion : public Criterion {
+  public:
+    explicit ScriptedCriterion(int stopAt) : stopAt(stopAt) {}
+    ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
+    Decision Observe(const BlockView& view) override {
+        Decision decision;
+        decision.judged = true;
+        decision.value = view.spp;
+        decision.threshold = stopAt;
+        decision.stop = view.spp >= stopAt;
+        return decision;
+    }
+
+  private:
+    int stopAt;
+};
+
+}  // namespace lull

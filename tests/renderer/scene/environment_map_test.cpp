@@ -1,0 +1,131 @@
+#include "renderer/scene/lights/environment_map.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "renderer/base/color.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
+
+namespace lull {
+namespace {
+
+using test::ChiSquarePValue;
+using test::Random;
+
+constexpr int kWidth = 6, kHeight = 4;
+
+// Makes a map with a black row, a bright texel and colours, in its float form.
+Image TestImage() {
+    std::vector<float> texels;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int c = 0; c < 3; ++c)
+                texels.push_back(y == 2 ? 0 : float((x * 5 + y * 3 + c) % 7) + (x == 5 && !y) * 50);
+    return {kWidth, kHeight, 3, texels};
+}
+
+// Returns what the density should be in proportion to, at the centre of a cell.
+double CellWeight(const EnvironmentMap& map, int u, int v) {
+    const Vec2f centre((u + 0.5f) / (2 * kWidth), (v + 0.5f) / (2 * kHeight));
+    return std::sin(std::numbers::pi * (v + 0.5) / (2 * kHeight)) * Luminance(map.Radiance(centre));
+}
+
+TEST(EnvironmentMap, DensityFollowsBrightnessAndSolidAngle) {
+    const Rgb scale(1, 0.5f, 2);
+    const EnvironmentMap map(TestImage(), scale);
+    std::vector<double> expected;
+    for (int v = 0; v < 2 * kHeight; ++v)
+        for (int u = 0; u < 2 * kWidth; ++u) expected.push_back(CellWeight(map, u, v));
+    const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
+    for (double& e : expected) e /= total;
+
+    // The density is constant over each cell, up to its borders.
+    for (int v = 0; v < 2 * kHeight; ++v)
+        for (int u = 0; u < 2 * kWidth; ++u)
+            for (const float d : {0.001f, 0.5f, 0.999f}) {
+                const double e = expected[v * 2 * kWidth + u] * expected.size();
+                EXPECT_NEAR(map.Pdf({(u + d) / (2 * kWidth), (v + d) / (2 * kHeight)}), e,
+                            1e-5 * (1 + e));
+            }
+
+    // Samples have this density, and know it.
+    constexpr int kSamples = 200000;
+    Random random(1);
+    std::vector<int64_t> cells(expected.size());
+    for (int k = 0; k < kSamples; ++k) {
+        float pdf;
+        const Vec2f st = map.Sample(random.Point(), &pdf);
+        ASSERT_TRUE(st.minCoeff() >= 0 && st.maxCoeff() < 1);
+        const int cell = int(st.y() * 2 * kHeight) * 2 * kWidth + int(st.x() * 2 * kWidth);
+        ASSERT_NEAR(pdf, expected[cell] * expected.size(), 1e-4 * (1 + pdf));
+        ++cells[cell];
+    }
+    EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
+}
+
+// The mean of radiance by density is the integral, whatever the place within cells.
+TEST(EnvironmentMap, EstimatesItsIntegral) {
+    const EnvironmentMap map(TestImage(), Rgb::Ones());
+    Random random(2);
+    double estimate = 0, squares = 0, uniform = 0;
+    constexpr int kSamples = 200000;
+    for (int k = 0; k < kSamples; ++k) {
+        float pdf;
+        const Vec2f st = map.Sample(random.Point(), &pdf);
+        const double value = Luminance(map.Radiance(st)) / pdf;
+        estimate += value / kSamples;
+        squares += value * value / kSamples;
+        uniform += Luminance(map.Radiance({(k % 500 + 0.5f) / 500, (k / 500 + 0.5f) / 400})) /
+                   double(kSamples);
+    }
+    EXPECT_NEAR(estimate, uniform, 4 * std::sqrt((squares - estimate * estimate) / kSamples));
+}
+
+TEST(EnvironmentMap, FormsOfTexelsAgree) {
+    std::vector<uint8_t> bytes;
+    std::vector<Half> halves;
+    std::vector<float> floats;
+    for (int i = 0; i < kWidth * kHeight * 4; ++i) {
+        bytes.push_back(uint8_t(i % 6 * 51));
+        halves.emplace_back(float(i % 6) * 0.2f);
+        floats.push_back(float(halves.back()));
+    }
+    const EnvironmentMap a({kWidth, kHeight, 4, bytes}, Rgb::Ones()),
+        b({kWidth, kHeight, 4, halves}, Rgb::Ones()), c({kWidth, kHeight, 4, floats}, Rgb::Ones());
+    const Vec2f st(0.3f, 0.99f);
+    EXPECT_NEAR(a.Pdf(st), b.Pdf(st), 1e-3);
+    EXPECT_EQ(b.Pdf(st), c.Pdf(st));
+    EXPECT_LT((a.MeanTexel() - b.MeanTexel()).abs().maxCoeff(), 1e-3f);
+    EXPECT_TRUE((b.Radiance(st) == c.Radiance(st)).all());
+}
+
+TEST(EnvironmentMap, HoldsExtremes) {
+    float pdf;
+    const EnvironmentMap black({2, 1, 1, std::vector<float>(2)}, Rgb::Ones());
+    black.Sample({0.3f, 0.8f}, &pdf);
+    EXPECT_FALSE(pdf > 0);
+    EXPECT_EQ(black.Pdf({0.3f, 0.8f}), 0);
+
+    const EnvironmentMap one({1, 1, 1, std::vector<float>{3}}, Rgb::Ones());
+    EXPECT_NEAR(one.Pdf({0.1f, 0.9f}), 1, 1e-5);
+    for (const float bright : {1e-40f, 1e9f, EnvironmentMap::kMaxTexel}) {
+        std::vector<float> texels(100 * 50, bright * 1e-9f);
+        texels[20 * 100 + 30] = bright;
+        const EnvironmentMap sun({100, 50, 1, texels}, Rgb::Ones());
+        Random random(7);
+        for (int k = 0; k < 1000; ++k) {
+            const Vec2f st = sun.Sample(random.Point(), &pdf);
+            ASSERT_TRUE(st.minCoeff() >= 0 && st.maxCoeff() < 1);
+            if (bright < 1) continue;  // so dark that it has no density
+            ASSERT_TRUE(pdf > 0 && std::isfinite(pdf));
+            ASSERT_FLOAT_EQ(pdf, sun.Pdf(st));
+            EXPECT_NEAR(st.x(), 0.305f, 0.01001f);
+            EXPECT_NEAR(st.y(), 0.41f, 0.02001f);
+        }
+        EXPECT_TRUE(std::isfinite(sun.Pdf({0.305f, 0.41f})));
+    }
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,187 @@
+// Compares what sampling lights finds with what rays in random directions find.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/output/image_io.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/output/test_files.h"
+
+namespace lull {
+namespace {
+
+using test::Random;
+
+struct LightScene {
+    TemporaryDirectory directory;
+    std::unique_ptr<const Scene> scene;
+
+    explicit LightScene(const std::string& world) {
+        ExrImage sky;
+        sky.width = 8;
+        sky.height = 4;
+        for (const char* channel : {"R", "G", "B"}) {
+            sky.channels.push_back({channel, {}, false});
+            for (int i = 0; i < 32; ++i)
+                sky.channels.back().values.push_back(float(i * 7 % 13) + (i == 13) * 90);
+        }
+        WriteExr(directory.File("sky.exr"), sky);
+        Warnings warnings;
+        // A scene without a shape is worth a warning.
+        const std::string text = "Camera \"perspective\"\nWorldBegin\n" + world +
+                                 "\nShape \"trianglemesh\" \"integer indices\" [0 1 2] "
+                                 "\"point P\" [0 0 -50  .01 0 -50  0 .01 -50]\nWorldEnd\n";
+        const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+        scene = Compile(d, {}, warnings);
+        for (const auto& [kind, count] : warnings.Counts()) ADD_FAILURE() << kind;
+    }
+};
+
+// Returns the light that arrives at `from` along w, and the density with which sampling the light
+// that it comes from finds w.
+std::pair<Rgb, float> Arriving(const Scene& scene, const Vec3f& from, const Vec3f& w) {
+    const Ray ray{.o = from, .d = w};
+    Hit hit;
+    if (!scene.accelerator.Intersect(ray, &hit)) {
+        if (scene.lights.Infinite().empty()) return {Rgb::Zero(), 0};
+        const auto& light = std::get<InfiniteLight>(scene.lights[scene.lights.Infinite()[0]]);
+        return {light.Le(w), light.Pdf(w)};
+    }
+    const int index = scene.shapes.LightAt(hit);
+    if (index < 0) return {Rgb::Zero(), 0};
+    SurfaceInteraction at;
+    scene.shapes.Interact(ray, hit, kNeedsNothing, &at);
+    const auto& light = std::get<AreaLight>(scene.lights[index]);
+    return {light.Le(at.n, -w), light.Pdf(from, at.p, at.n)};
+}
+
+struct Mean {
+    double sum = 0, squares = 0;
+    int n = 0;
+
+    void Add(double v) {
+        sum += v;
+        squares += v * v;
+        ++n;
+    }
+    double Value() const { return sum / n; }
+    double Variance() const { return (squares / n - Value() * Value()) / n; }
+};
+
+constexpr const char* kPlaced =
+    "AttributeBegin\nTranslate .3 .2 2\nRotate 50 1 2 3\nScale 1.2 1.2 1.2\n"
+    "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] \"bool twosided\" \"{}\"\n{}\nAttributeEnd\n";
+
+TEST(Lights, SamplingFindsWhatRaysFind) {
+    const std::string mesh =
+        "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] "
+        "\"point P\" [-1 -1 0  1 -1 0  1.5 1 .5  -1 1 .2]";
+    const std::pair<const char*, std::string> worlds[] = {
+        {"triangles", fmt::format(kPlaced, "false", mesh)},
+        {"two-sided triangles", fmt::format(kPlaced, "true", mesh)},
+        {"sphere", fmt::format(kPlaced, "false", "Shape \"sphere\" \"float radius\" [.7]")},
+        {"disk", fmt::format(kPlaced, "true", "Shape \"disk\" \"float radius\" [.7]")},
+        {"infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]"},
+        {"image", "Rotate 40 1 1 0\nLightSource \"infinite\" \"string mapname\" \"sky.exr\""},
+    };
+    for (const auto& [name, world] : worlds) {
+        const LightScene test(world);
+        const Scene& scene = *test.scene;
+        Random random(3);
+        for (const Vec3f& from : {Vec3f(0, 0, 0), Vec3f(0.2f, -0.4f, 0.9f), Vec3f(2, 5, -4)}) {
+            // The weight lets no direction be like another.
+            const auto weight = [](const Vec3f& w) { return 1 + 0.5 * w.z() + 0.3 * w.x(); };
+            Mean sampled, found;
+            for (int k = 0; k < 40000; ++k) {
+                double sum = 0;
+                for (int i = 0; i < scene.lights.Count(); ++i) {
+                    const auto s = scene.lights.Sample(i, from, random.Point());
+                    if (!s) continue;
+                    ASSERT_TRUE(s->pdf > 0 && std::isfinite(s->pdf)) << name;
+                    ASSERT_NEAR(s->wi.norm(), 1, 1e-5) << name;
+                    const bool isSeen = Arriving(scene, from, s->wi).first.sum() > 0;
+                    sum += s->L.sum() * weight(s->wi) / s->pdf * isSeen;
+                }
+                sampled.Add(sum);
+                const Vec3f w = SampleUniformSphere(random.Point());
+                found.Add(4 * std::numbers::pi * Arriving(scene, from, w).first.sum() * weight(w));
+            }
+            EXPECT_GT(sampled.Value(), 0) << name;
+            EXPECT_NEAR(
+                sampled.Value(), found.Value(),
+                4.5 * std::sqrt(sampled.Variance() + found.Variance()) + 1e-4 * found.Value())
+                << name << " from " << from.transpose();
+        }
+    }
+}
+
+// Both sides of the power heuristic must speak of the same density.
+TEST(Lights, SamplesKnowTheDensityThatRaysCompute) {
+    for (const char* shape :
+         {"Shape \"trianglemesh\" \"integer indices\" [0 1 2] "
+          "\"point P\" [-1 -1 0  1 -1 0  1.5 1 .5]",
+          "Shape \"sphere\" \"float radius\" [.7]", "Shape \"disk\" \"float radius\" [.7]"}) {
+        const LightScene test(fmt::format(kPlaced, "true", shape));
+        Random random(4);
+        int different = 0;
+        for (int k = 0; k < 10000; ++k) {
+            const Vec3f from = 3 * SampleUniformSphere(random.Point());
+            const auto s = test.scene->lights.Sample(0, from, random.Point());
+            if (!s) continue;
+            const float pdf = Arriving(*test.scene, from, s->wi).second;
+            different += !(std::abs(pdf - s->pdf) <= 2e-3f * s->pdf);
+        }
+        // Grazing rays meet the light elsewhere.
+        EXPECT_LT(different, 100) << shape;
+    }
+}
+
+TEST(Lights, RefuseToBeStretched) {
+    for (const char* shape : {"sphere", "disk"}) try {
+            LightScene(
+                fmt::format("AttributeBegin\nScale 1 2 1\nAreaLightSource \"diffuse\"\n"
+                            "Shape \"{}\"\nAttributeEnd\nShape \"{}\"",
+                            shape, shape));
+            ADD_FAILURE() << shape;
+        } catch (const Error& error) {
+            EXPECT_TRUE(Contains(error.what(), "test.pbrt:6: a light of shape")) << error.what();
+        }
+}
+
+TEST(Lights, WithoutAreaGiveWhatTheirFormulasSay) {
+    const Vec3f from(0, 0, 0);
+    const auto sampleOf = [&](const std::string& world) {
+        const LightScene test(world);
+        return test.scene->lights.Sample(0, from, {0.5f, 0.5f});
+    };
+    // Radiant intensity over squared distance.
+    auto s = sampleOf("LightSource \"point\" \"rgb I\" [8 4 2] \"point from\" [0 0 2]");
+    ASSERT_TRUE(s && s->isDelta);
+    EXPECT_NEAR(s->L.x(), 2, 1e-5);
+    EXPECT_NEAR(s->wi.z(), 1, 1e-6);
+    s = sampleOf(
+        "LightSource \"distant\" \"rgb L\" [8 4 2] \"point from\" [0 3 4] "
+        "\"point to\" [0 0 0]");
+    ASSERT_TRUE(s && s->isDelta);
+    EXPECT_NEAR(s->L.y(), 4, 1e-5);
+    EXPECT_NEAR(s->wi.y(), 0.6f, 1e-6);
+    // Within the cone, in its soft border (pbrt 3rd ed., 12.3.2) and beyond.
+    const std::string spot =
+        "LightSource \"spot\" \"rgb I\" [4 4 4] \"float coneangle\" [30] "
+        "\"float conedeltaangle\" [10] \"point from\" [0 0 2] \"point to\" [{} 0 0]";
+    s = sampleOf(fmt::format(fmt::runtime(spot), 0));
+    ASSERT_TRUE(s);
+    EXPECT_NEAR(s->L.x(), 1, 1e-5);
+    const double degree = std::numbers::pi / 180;
+    s = sampleOf(fmt::format(fmt::runtime(spot), 2 * std::tan(25 * degree)));
+    ASSERT_TRUE(s);
+    const double delta = (std::cos(25 * degree) - std::cos(30 * degree)) /
+                         (std::cos(20 * degree) - std::cos(30 * degree));
+    EXPECT_NEAR(s->L.x(), std::pow(delta, 4), 1e-4);
+    s = sampleOf(fmt::format(fmt::runtime(spot), 2 * std::tan(31 * degree)));
+    EXPECT_TRUE(!s || s->L.isZero());
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,100 @@
+#include "stopping/learning/rivals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tests/stopping/learning/channel_recordings.h"
+
+namespace lull {
+namespace {
+
+// Holds blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
+// by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
+struct Blocks {
+    std::vector<BlockRecording> recordings;
+    std::vector<JudgedBlock> judged;
+
+    Blocks() {
+        for (int i = 0; i < 9; ++i) {
+            const double amplitude = 5 + 4 * i, other = 1 + (i * 5) % 9;
+            BlockRecording& recording = recordings.emplace_back(EmptyRecording(10000));
+            SetChannel(&recording, "masked_noise",
+                       [=](int spp) { return amplitude / std::sqrt(spp); });
+            for (const char* channel : {"dammertz", "luxtile"})
+                SetChannel(&recording, channel, [=](int spp) { return other / std::sqrt(spp); });
+            // cycles stops at half of the threshold at its third setting, at 1.5 at the fourth.
+            const int human = int(std::pow(amplitude / 0.5, 2));
+            recording.cyclesStops[2] = human / 2;
+            recording.cyclesStops[3] = human * 3 / 2;
+        }
+        for (int i = 0; i < 9; ++i)
+            judged.push_back({.viewpoint = std::string(1, char('a' + i / 3)),
+                              .block = i % 3,
+                              .human = int(std::pow((5 + 4 * i) / 0.5, 2)),
+                              .cap = 10000,
+                              .passSpp = 20,
+                              .recording = &recordings[size_t(i)]});
+    }
+};
+
+const Rival& Find(const std::vector<Rival>& rivals, const std::string& rule) {
+    return *std::ranges::find(rivals, rule, &Rival::rule);
+}
+
+TEST(Rivals, FindTheBestSetting) {
+    const Blocks blocks;
+    for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
+        const std::vector<Rival> rivals = JudgeRivals(blocks.judged, chooseBy, 40);
+        ASSERT_EQ(rivals.size(), 4u);
+        const Rival& noise = Find(rivals, "lnoise");
+        // Three votes take 80 spp more than people, so that the best is a little above 0.5.
+        EXPECT_NEAR(noise.bestOfAll, 0.51, 0.02);
+        ASSERT_EQ(noise.viewpoints.size(), 3u);
+        const Judgement best = Judge(noise.viewpoints, {.grid = 40, .margins = {2}});
+        EXPECT_EQ(best.blocks, 9);
+        EXPECT_LT(best.absoluteError, 200);
+        EXPECT_LT(best.criticalErrors[0], 0.01);
+        EXPECT_GT(*best.auc, 0.99);
+        for (const char* rule : {"dammertz", "cycles", "luxtile"})
+            EXPECT_GT(Judge(Find(rivals, rule).viewpoints, {}).absoluteError, 500) << rule;
+        for (const ViewpointOutcome& viewpoint : noise.viewpoints)
+            EXPECT_NEAR(std::stod(viewpoint.setting), 0.51, 0.03);
+    }
+}
+
+TEST(Rivals, ChooseOnOtherViewpoints) {
+    // The people of one viewpoint are of another mind. That changes the choice for the others, and
+    // not for theirs.
+    Blocks blocks;
+    const auto before = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    for (size_t i = 6; i < 9; ++i) blocks.judged[i].human = 200;
+    const auto after = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    for (const char* rule : {"dammertz", "luxtile", "lnoise"}) {
+        const Rival &x = Find(before, rule), &y = Find(after, rule);
+        EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
+        EXPECT_NE(x.bestOfAll, y.bestOfAll) << rule;
+        EXPECT_LT(x.bestOfAll, y.bestOfAll) << rule;
+    }
+}
+
+TEST(Rivals, TakeTheCheaperOfEqualSettings) {
+    const Blocks blocks;
+    // Both settings of cycles are wrong by half; the coarser comes first.
+    const Rival cycles = Find(JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40), "cycles");
+    EXPECT_EQ(cycles.bestOfAll, kCyclesThresholds[2]);
+    EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
+    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.judged[1].human / 2);
+}
+
+TEST(Rivals, NeedTwoViewpoints) {
+    const Blocks blocks;
+    EXPECT_THROW(JudgeRivals(std::span(blocks.judged).first(3), ChooseBy::AbsoluteError, 40),
+                 std::invalid_argument);
+    EXPECT_THROW(JudgeRivals({}, ChooseBy::AbsoluteError, 40), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,244 @@
+#include "stopping/network/model_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "stopping/base/checksum.h"
+#include "stopping/base/hdf5_file.h"
+#include "stopping/network/keras_config.h"
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/scratch_file.h"
+#include "tests/stopping/shared_data.h"
+
+namespace lull {
+namespace {
+
+TEST(ModelFile, AgreesWithKeras) {
+    LULL_SHARED_FILE(valuesPath, "golden/keras_lstm.json");
+    double worst = 0;
+    for (const nlohmann::json& golden : ReadJson(valuesPath)) {
+        const std::string name = golden["file"];
+        LULL_SHARED_FILE(path, "golden/" + name);
+        const Model model = ReadModel(path);
+        EXPECT_EQ(model.settings.k, golden["k"].get<int>());
+        EXPECT_EQ(model.settings.m, golden["m"].get<int>());
+        EXPECT_EQ(model.settings.n, 40);  // what the file does not say is the paper's
+        EXPECT_EQ(model.settings.votes, 3);
+        EXPECT_EQ(model.network.lstm.size(), 3u);
+        EXPECT_EQ(model.network.dense.size(), 1u);
+        for (size_t i = 0; i < golden["inputs"].size(); ++i) {
+            Eigen::MatrixXf sequence(model.settings.m, model.settings.k);
+            for (int step = 0; step < model.settings.k; ++step)
+                for (int j = 0; j < model.settings.m; ++j)
+                    sequence(j, step) = golden["inputs"][i][size_t(step)][size_t(j)].get<float>();
+            const double p = RunNetwork(model.network, sequence)[0];
+            EXPECT_NEAR(p, golden["outputs"][i].get<double>(), 1e-5) << name << ", input " << i;
+            worst = std::max(worst, std::abs(p - golden["outputs"][i].get<double>()));
+        }
+    }
+    RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
+}
+
+bool Equal(const Network& a, const Network& b) {
+    bool equal = a.lstm.size() == b.lstm.size() && a.dense.size() == b.dense.size();
+    for (size_t i = 0; equal && i < a.lstm.size(); ++i)
+        equal = a.lstm[i].name == b.lstm[i].name && a.lstm[i].kernel == b.lstm[i].kernel &&
+                a.lstm[i].recurrent == b.lstm[i].recurrent && a.lstm[i].bias == b.lstm[i].bias &&
+                a.lstm[i].activation == b.lstm[i].activation &&
+                a.lstm[i].recurrentActivation == b.lstm[i].recurrentActivation;
+    for (size_t i = 0; equal && i < a.dense.size(); ++i)
+        equal = a.dense[i].name == b.dense[i].name && a.dense[i].kernel == b.dense[i].kernel &&
+                a.dense[i].bias == b.dense[i].bias &&
+                a.dense[i].activation == b.dense[i].activation;
+    return equal;
+}
+
+TEST(ModelFile, ReadsWhatItWrites) {
+    Network network = RandomNetwork(25, {7, 5}, 1e4f);
+    network.lstm[0].activation = Activation::Tanh;
+    network.lstm[1].recurrentActivation = Activation::Sigmoid;
+    network.dense[0].activation = Activation::Linear;
+    const ModelSettings settings = {.k = 5,
+                                    .n = 60,
+                                    .m = 25,
+                                    .features = {Feature::H2},
+                                    .snorm = false,
+                                    .bnorm = true,
+                                    .votes = 2,
+                                    .voteSpacing = 120};
+    const ScratchFile file(".h5");
+    WriteModel(file.path, network, settings);
+    const Model model = ReadModel(file.path);
+    EXPECT_TRUE(Equal(model.network, network));
+    EXPECT_EQ(model.settings.k, 5);
+    EXPECT_EQ(model.settings.n, 60);
+    EXPECT_EQ(model.settings.m, 25);
+    EXPECT_EQ(model.settings.features, std::vector<Feature>{Feature::H2});
+    EXPECT_FALSE(model.settings.snorm);
+    EXPECT_TRUE(model.settings.bnorm);
+    EXPECT_EQ(model.settings.votes, 2);
+    EXPECT_EQ(model.settings.voteSpacing, 120);
+    EXPECT_EQ(model.checksum, FileChecksum(file.path));
+    EXPECT_FALSE(std::filesystem::exists(file.path + ".new"));
+}
+
+TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
+    ModelSettings settings = {.k = 3, .features = ParseFeatures("masked_noise,logspp")};
+    settings.pools = ParsePools("rms,q90");
+    Network network;
+    network.dense.push_back({"dense_1", Eigen::MatrixXf::Random(4, 9), Eigen::VectorXf::Random(4)});
+    network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
+    const ScratchFile file(".h5");
+    WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});
+    const Model model = ReadModel(file.path);
+    EXPECT_TRUE(Equal(model.network, network));
+    EXPECT_EQ(model.settings.features, settings.features);
+    EXPECT_EQ(model.settings.pools, settings.pools);
+    EXPECT_EQ(model.settings.k, 3);
+    const Hdf5Group record = Hdf5Group::Open(file.path).Group("lull").Group("training");
+    EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
+}
+
+TEST(ModelFile, WritesNoBrokenModel) {
+    Network network = RandomNetwork(4, {3}, 1);
+    network.lstm[0].bias[0] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(WriteModel("/no/such/folder/m.h5", network, {.m = 4}), std::invalid_argument);
+    EXPECT_THROW(WriteModel("/no/such/folder/m.h5", RandomNetwork(4, {3}, 1), {.m = 4}),
+                 std::runtime_error);
+}
+
+// Returns the message of the error that reading the file leads to.
+std::string ErrorOf(const std::string& path) {
+    try {
+        ReadModel(path);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+void ExpectError(const std::string& path, const std::string& part) {
+    const std::string error = ErrorOf(path);
+    EXPECT_TRUE(error.starts_with(path + ": ")) << error;
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+}
+
+// Writes a model of one dense layer of one unit after an LSTM layer of one unit, whose weights
+// have the given shapes and all the same value.
+void WriteSmallModel(const std::string& path, const std::string& config, float value,
+                     std::vector<int64_t> kernelShape = {4, 4},
+                     const std::function<void(Hdf5Group)>& addSettings = {}) {
+    Hdf5Group file = Hdf5Group::Create(path);
+    if (addSettings) addSettings(file.MakeGroup("lull"));
+    file.SetString("model_config", config);
+    Hdf5Group root = file.MakeGroup("model_weights");
+    auto write = [&](const std::string& layer, const std::string& name,
+                     const std::vector<int64_t>& shape, float x, Hdf5Group group) {
+        int64_t size = 1;
+        for (int64_t n : shape) size *= n;
+        group.AddArray<float>(layer + "/" + name, shape, std::vector<float>(size_t(size), x));
+    };
+    Hdf5Group lstm = root.MakeGroup("l"), dense = root.MakeGroup("d");
+    lstm.MakeGroup("l");
+    dense.MakeGroup("d");
+    write("l", "kernel:0", kernelShape, value, lstm);
+    write("l", "recurrent_kernel:0", {1, 4}, 0.1f, lstm);
+    write("l", "bias:0", {4}, 0.1f, lstm);
+    lstm.SetStrings("weight_names",
+                    std::vector<std::string>{"l/kernel:0", "l/recurrent_kernel:0", "l/bias:0"});
+    write("d", "kernel:0", {1, 1}, 0.1f, dense);
+    write("d", "bias:0", {1}, 0.1f, dense);
+    dense.SetStrings("weight_names", std::vector<std::string>{"d/kernel:0", "d/bias:0"});
+}
+
+const std::string smallConfig = WriteKerasConfig(
+    [] {
+        Network network = RandomNetwork(4, {1}, 1);
+        network.lstm[0].name = "l";
+        network.dense[0].name = "d";
+        return network;
+    }(),
+    8);
+
+TEST(ModelFile, RefusesWeightsThatAreNotFinite) {
+    const ScratchFile file(".h5");
+    WriteSmallModel(file.path, smallConfig, 0.5f);
+    EXPECT_EQ(ErrorOf(file.path), "");
+    for (float bad :
+         {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
+        WriteSmallModel(file.path, smallConfig, bad);
+        ExpectError(file.path, "the weights 'l/kernel:0' hold NaN or infinity");
+    }
+}
+
+TEST(ModelFile, RefusesWeightsOfAnotherShape) {
+    const ScratchFile file(".h5");
+    WriteSmallModel(file.path, smallConfig, 0.5f, {4, 8});
+    ExpectError(file.path, "'l/kernel:0': it does not have the shape 4 x 4");
+    WriteSmallModel(file.path, smallConfig, 0.5f, {5, 4});
+    ExpectError(file.path, "the first kernel");
+}
+
+TEST(ModelFile, RefusesContradictingSettings) {
+    const ScratchFile file(".h5");
+    WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 25});
+    ExpectError(file.path, "/lull says 8 steps of 25 values, but the network takes 8 steps of 4");
+}
+
+TEST(ModelFile, RefusesSettingsOfNoSense) {
+    const ScratchFile file(".h5");
+    auto expect = [&](const std::string& error, const std::function<void(Hdf5Group)>& add) {
+        WriteSmallModel(file.path, smallConfig, 0.5f, {4, 4}, add);
+        ExpectError(file.path, error);
+    };
+    expect("attribute 'k', which must be an integer", [](Hdf5Group g) { g.SetString("k", "8"); });
+    expect("attribute 'feature', which must be text", [](Hdf5Group g) { g.SetInt("feature", 1); });
+    expect("feature 'H3' is not known", [](Hdf5Group g) { g.SetString("feature", "H3"); });
+    expect("votes = 0 is not in", [](Hdf5Group g) { g.SetInt("votes", 0); });
+    // One setting alone leaves the others at their defaults.
+    WriteSmallModel(file.path, smallConfig, 0.5f, {4, 4}, [](Hdf5Group g) { g.SetInt("n", 80); });
+    EXPECT_EQ(ReadModel(file.path).settings.n, 80);
+    EXPECT_TRUE(ReadModel(file.path).settings.snorm);
+}
+
+TEST(ModelFile, RefusesFilesCutShort) {
+    const ScratchFile whole(".h5"), part(".h5");
+    WriteModel(whole.path, RandomNetwork(25, {7, 5}, 1), {.m = 25});
+    std::ifstream in(whole.path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    for (size_t size = 0; size < bytes.size(); size += 500) {
+        std::ofstream(part.path, std::ios::binary) << bytes.substr(0, size);
+        EXPECT_NE(ErrorOf(part.path), "") << size;
+    }
+}
+
+TEST(ModelFile, RefusesOtherFiles) {
+    ExpectError("/no/such/file.h5", "cannot be read");
+    const ScratchFile text(".h5", "this is no HDF5 file");
+    ExpectError(text.path, "HDF5");
+    const ScratchFile empty(".h5");
+    { Hdf5Group::Create(empty.path); }
+    ExpectError(empty.path, "model_config");
+    {
+        Hdf5Group file = Hdf5Group::Create(empty.path);
+        file.SetString("model_config", smallConfig);
+    }
+    ExpectError(empty.path, "model_weights");
+}
+
+TEST(Checksum, IsTheKnownCrc32) {
+    const ScratchFile file(".txt", "123456789");
+    EXPECT_EQ(FileChecksum(file.path), "crc32:cbf43926");
+    EXPECT_THROW(FileChecksum("/no/such/file"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace lull

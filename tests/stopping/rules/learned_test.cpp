@@ -1,0 +1,170 @@
+#include "stopping/rules/learned.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/signals/block_images.h"
+
+namespace lull {
+namespace {
+
+// Returns a network that answers the same for every input.
+Network ConstantNetwork(int m, float probability) {
+    Network network = RandomNetwork(m, {3}, 0.1f);
+    network.dense[0].kernel.setZero();
+    network.dense[0].bias[0] = std::log(probability / (1 - probability));
+    return network;
+}
+
+std::shared_ptr<const Model> MakeModel(Network network, const ModelSettings& settings) {
+    return std::make_shared<const Model>(Model{std::move(network), settings, ""});
+}
+
+// Shows the criterion pass after pass of a block that converges; returns its decisions up to
+// `end` spp or the one that stops.
+std::vector<Decision> RunPasses(Criterion* criterion, int first, int end, int passSpp = 20) {
+    std::vector<Decision> decisions;
+    for (int spp = first; spp <= end; spp += passSpp) {
+        const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
+        decisions.push_back(criterion->Observe(block.At(spp)));
+        if (decisions.back().stop) break;
+    }
+    return decisions;
+}
+
+TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
+    const auto model = MakeModel(ConstantNetwork(100, 0.1f), {.voteSpacing = 40});
+    const auto criterion = MakeLearned(model, 20);
+    EXPECT_EQ(criterion->Need(20), ViewNeed::Mean);
+    EXPECT_EQ(criterion->Need(40), ViewNeed::Nothing);
+    const std::vector<Decision> decisions = RunPasses(criterion.get(), 20, 10000);
+    ASSERT_EQ(decisions.size(), 19u);  // passes
+    for (size_t i = 0; i < decisions.size(); ++i) {
+        const int spp = 20 * int(i + 1);
+        const bool judged = spp == 300 || spp == 340 || spp == 380;
+        EXPECT_EQ(decisions[i].judged, judged) << spp;
+        EXPECT_EQ(decisions[i].votes, spp < 300 ? 0 : (spp - 260) / 40) << spp;
+        EXPECT_NEAR(decisions[i].value, spp < 300 ? 1 : 0.1, 1e-6);
+        EXPECT_EQ(decisions[i].threshold, 0.5);
+    }
+}
+
+TEST(Learned, StopsFirstAt340SppWithAVoteEachPass) {
+    const auto model = MakeModel(ConstantNetwork(100, 0.1f), {});
+    EXPECT_EQ(RunPasses(MakeLearned(model, 20).get(), 20, 10000).size(), 17u);
+}
+
+TEST(Learned, NeverStopsOnNoise) {
+    const auto model = MakeModel(ConstantNetwork(25, 0.9f), {.m = 25});
+    const auto decisions = RunPasses(MakeLearned(model, 20).get(), 20, 1000);
+    EXPECT_EQ(decisions.size(), 50u);
+    EXPECT_EQ(decisions.back().votes, 0);
+}
+
+TEST(Learned, VotesOnTheWindowOfItsFeatures) {
+    const ModelSettings settings = {.k = 3, .n = 40, .m = 25, .votes = 1000};
+    const Network network = RandomNetwork(25, {8, 4}, 2);
+    const auto decisions = RunPasses(MakeLearned(MakeModel(network, settings), 20).get(), 20, 200);
+    FeatureHistory history(settings);
+    for (int spp = 20; spp <= 200; spp += 20) {
+        const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
+        history.Add(spp, InputVector(MeasureBlock(block.At(spp), settings), settings));
+        const Decision& decision = decisions[size_t(spp / 20 - 1)];
+        ASSERT_EQ(decision.judged, spp >= 100);
+        if (decision.judged) {
+            EXPECT_EQ(decision.value, NoisyProbability(network, *history.WindowAt(spp)));
+        }
+    }
+}
+
+TEST(Learned, GoesOnAsIfNeverInterrupted) {
+    for (int voteSpacing : {0, 40, 80}) {
+        const ModelSettings settings = {.k = 4, .m = 25, .votes = 1000, .voteSpacing = voteSpacing};
+        const auto model = MakeModel(RandomNetwork(25, {8, 4}, 3), settings);
+        const std::vector<Decision> expected = RunPasses(MakeLearned(model, 20).get(), 20, 600);
+        for (int split : {20, 100, 140, 260, 420}) {
+            const auto before = MakeLearned(model, 20), after = MakeLearned(model, 20);
+            RunPasses(before.get(), 20, split);
+            after->Restore(before->Save());
+            EXPECT_EQ(after->Save(), before->Save());
+            const std::vector<Decision> rest = RunPasses(after.get(), split + 20, 600);
+            for (size_t i = 0; i < rest.size(); ++i) {
+                const Decision& e = expected[size_t(split / 20) + i];
+                EXPECT_EQ(rest[i].judged, e.judged);
+                EXPECT_EQ(rest[i].value, e.value);
+                EXPECT_EQ(rest[i].votes, e.votes);
+            }
+        }
+    }
+}
+
+TEST(Learned, RefusesOtherState) {
+    const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
+    const auto criterion = MakeLearned(model, 20);
+    RunPasses(criterion.get(), 20, 100);
+    const std::vector<std::byte> state = criterion->Save();
+    for (size_t size = 0; size < state.size(); size += 7)
+        EXPECT_THROW(MakeLearned(model, 20)->Restore(std::span(state).first(size)),
+                     std::runtime_error);
+    std::vector<std::byte> longer = state;
+    longer.push_back({});
+    EXPECT_THROW(MakeLearned(model, 20)->Restore(longer), std::runtime_error);
+    const auto other = MakeModel(RandomNetwork(100, {8, 4}, 1), {});
+    EXPECT_THROW(MakeLearned(other, 20)->Restore(state), std::runtime_error);
+}
+
+TEST(Learned, SurvivesAnyBlock) {
+    const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1e4f), {.k = 3, .m = 25});
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (float value :
+         {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+        const auto criterion = MakeLearned(model, 20);
+        const BlockImage block(41, 57, value);
+        for (int spp = 20; spp <= 200; spp += 20) {
+            const Decision decision = criterion->Observe(block.At(spp));
+            EXPECT_TRUE(decision.value >= 0 && decision.value <= 1) << value;
+        }
+    }
+}
+
+TEST(Learned, TakesNonsenseForNoise) {
+    Network network = RandomNetwork(4, {2}, 1);
+    network.lstm[0].activation = network.dense[0].activation = Activation::Linear;
+    network.lstm[0].kernel.setConstant(3e38f);
+    network.dense[0].kernel << 3e38f, -3e38f;
+    EXPECT_EQ(NoisyProbability(network, Eigen::MatrixXf::Ones(4, 8)), 1);
+}
+
+TEST(Learned, RefusesModelsThatDoNotFit) {
+    const Network good = RandomNetwork(25, {4}, 1);
+    EXPECT_NO_THROW(MakeLearned(MakeModel(good, {.m = 25}), 20));
+    EXPECT_NO_THROW(MakeLearned(MakeModel(good, {.m = 25}), 10));
+    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 100}), 20), std::invalid_argument);
+    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 25}), 16), std::invalid_argument);
+    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 25, .voteSpacing = 30}), 20),
+                 std::invalid_argument);
+    Network outputs = good;
+    outputs.dense.clear();
+    EXPECT_THROW(MakeLearned(MakeModel(outputs, {.m = 25}), 20), std::invalid_argument);
+}
+
+TEST(Learned, WantsTheSppToIncrease) {
+    const auto model = MakeModel(RandomNetwork(25, {4}, 1), {.m = 25});
+    const auto criterion = MakeLearned(model, 20);
+    const BlockImage block(40, 40, 0.5f);
+    criterion->Observe(block.At(40));
+    EXPECT_THROW(criterion->Observe(block.At(40)), std::invalid_argument);
+    EXPECT_THROW(criterion->Observe(block.At(20)), std::invalid_argument);
+    BlockView empty = block.At(60);
+    empty.mean = {};
+    EXPECT_THROW(criterion->Observe(empty), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lull

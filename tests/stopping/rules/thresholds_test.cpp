@@ -1,0 +1,83 @@
+#include "stopping/rules/thresholds.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "tests/stopping/scratch_file.h"
+#include "tests/stopping/shared_data.h"
+
+namespace lull {
+namespace {
+
+std::vector<ThresholdsRow> Parse(const std::string& text) {
+    std::istringstream in(text);
+    return ReadThresholds(in, "t.csv");
+}
+
+std::string ErrorOf(const std::string& text) {
+    try {
+        Parse(text);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Thresholds, ReadThePublishedFilesAndWriteThemBack) {
+    for (const auto& [name, count] : {std::pair("human", 38u), std::pair("svd-entropy-rnn", 80u),
+                                      std::pair("26-attributes-rnn", 80u)}) {
+        LULL_SHARED_FILE(path, std::string("thresholds/") + name + ".csv");
+        const std::vector<ThresholdsRow> rows = ReadThresholds(path);
+        EXPECT_EQ(rows.size(), count);
+        for (const ThresholdsRow& row : rows) EXPECT_EQ(row.spp.size(), 16u) << row.name;
+
+        std::ifstream file(path);
+        std::stringstream original, written;
+        original << file.rdbuf();
+        WriteThresholds(written, rows);
+        EXPECT_EQ(written.str(), original.str());
+    }
+}
+
+TEST(Thresholds, AreForgivingAboutTheEnds) {
+    const auto rows = Parse("a;20;40;\r\n\nb c;0;10000");
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].name, "a");
+    EXPECT_EQ(rows[0].spp, (std::vector<int>{20, 40}));
+    EXPECT_EQ(rows[1].name, "b c");
+    EXPECT_EQ(rows[1].spp, (std::vector<int>{0, 10000}));
+    EXPECT_TRUE(Parse("").empty());
+}
+
+TEST(Thresholds, NameTheLineThatIsWrong) {
+    EXPECT_EQ(ErrorOf("a;20;\nb;20;x;\n"),
+              "t.csv:2: 'x' is no threshold; a whole number of samples is needed");
+    for (const char* bad : {"-20", "20.5", " 20", "", "99999999999", "nan"})
+        EXPECT_NE(ErrorOf("a;" + std::string(bad) + ";20;"), "") << bad;
+    EXPECT_NE(ErrorOf("a;\n"), "");
+    EXPECT_NE(ErrorOf(";20;\n"), "");
+    EXPECT_NE(ErrorOf(";\n"), "");
+    EXPECT_EQ(ErrorOf("a;20;\n\na;40;\n"), "t.csv:3: 'a' has a row already");
+    EXPECT_THROW(ReadThresholds("/no/such/file.csv"), std::runtime_error);
+}
+
+TEST(Thresholds, WriteOnlyWhatCanBeRead) {
+    const ScratchFile file(".csv");
+    WriteThresholds(file.path, {{"one", {1, 2, 3}}, {"two", {10000}}});
+    const auto rows = ReadThresholds(file.path);
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[1].spp, std::vector<int>{10000});
+
+    std::ostringstream out;
+    EXPECT_THROW(WriteThresholds(out, {{"a;b", {1}}}), std::invalid_argument);
+    EXPECT_THROW(WriteThresholds(out, {{"", {1}}}), std::invalid_argument);
+    EXPECT_THROW(WriteThresholds(out, {{"a", {}}}), std::invalid_argument);
+    EXPECT_THROW(WriteThresholds(out, {{"a", {-1}}}), std::invalid_argument);
+    EXPECT_THROW(WriteThresholds("/no/such/folder/t.csv", {{"a", {1}}}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace lull
