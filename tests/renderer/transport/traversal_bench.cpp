@@ -14,6 +14,7 @@
 // The scenes are those of LULL_BENCH_SCENES (files, separated by colons), or our own.
 // LULL_BENCH_SPP sets the samples per pixel.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
