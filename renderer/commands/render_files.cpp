@@ -42,8 +42,8 @@ ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<
                       {"samples", std::to_string(samples)},
                       {"criterion", provenance.criterion},
                       {"seconds", float(seconds)},
-                      {"worldToCamera", WorldToCamera(scene.camera)},
-                      {"worldToNDC", WorldToNdc(scene.camera, scene.film)}};
+                      {"worldToCamera", WorldToCamera(scene.camera)}};
+    if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
     if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
     return exr;
 }

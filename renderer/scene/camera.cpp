@@ -6,7 +6,7 @@
 
 namespace lull {
 
-Ray Camera::GenerateRay(const Vec2f& film, const Vec2f& lens) const {
+Ray Camera::GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const {
     const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
     const Vec3f direction = Vec3f(plane.x(), plane.y(), 1).normalized();
     if (lensRadius == 0) return {position, rotation * direction, kInfinity};
@@ -18,17 +18,33 @@ Ray Camera::GenerateRay(const Vec2f& film, const Vec2f& lens) const {
     return {position + rotation * origin, rotation * (focus - origin).normalized(), kInfinity};
 }
 
-Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings) {
-    const Entity& entity = description.camera;
-    if (entity.name != "perspective")
-        throw Error(
-            entity.loc,
-            fmt::format("Camera \"{}\" is not modelled; only \"perspective\" is", entity.name));
+Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
+    const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
+    if (projection == Projection::Environment) {
+        const float phi = plane.x(), theta = plane.y(), sinTheta = std::sin(theta);
+        const Vec3f d(sinTheta * std::cos(phi), std::cos(theta), sinTheta * std::sin(phi));
+        return {position, rotation * d, kInfinity};
+    }
+    Vec3f origin(plane.x(), plane.y(), 0), direction = Vec3f::UnitZ();
+    if (lensRadius > 0) {
+        // As in pbrt-v3 there is one lens for all pixels, about the camera's axis, and not one
+        // about the origin of each pixel's ray: far from the plane of focus the image is that of
+        // a perspective camera which looks at the plane's window.
+        const Vec2f p = lensRadius * SampleConcentricDisk(lens);
+        const Vec3f focus(plane.x(), plane.y(), focalDistance);
+        origin = Vec3f(p.x(), p.y(), 0);
+        direction = (focus - origin).normalized();
+    }
+    return {position + rotation * origin, rotation * direction, kInfinity};
+}
+
+namespace {
+
+// Reads the screen window: [-1, 1] along the shorter axis unless the scene says otherwise.
+std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
     const Parameters& params = entity.parameters;
-    const Vec2i resolution = film.resolution;
     const float aspect =
         params.GetFloat("frameaspectratio", float(resolution.x()) / float(resolution.y()));
-    // The screen window holds [-1, 1] along the shorter axis.
     std::array<float, 4> screen = aspect > 1 ? std::array{-aspect, aspect, -1.f, 1.f}
                                              : std::array{-1.f, 1.f, -1 / aspect, 1 / aspect};
     if (const auto window = params.GetFloats(ParameterType::Float, "screenwindow");
@@ -37,27 +53,57 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
             throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
         std::copy(window.begin(), window.end(), screen.begin());
     }
-    float fov = params.GetFloat("fov", 90);
-    if (const float half = params.GetFloat("halffov", -1); half > 0) fov = 2 * half;
+    return screen;
+}
+
+float ReadFieldOfView(const Entity& entity) {
+    float fov = entity.parameters.GetFloat("fov", 90);
+    if (const float half = entity.parameters.GetFloat("halffov", -1); half > 0) fov = 2 * half;
     if (!(fov > 0 && fov < 180))
         throw Error(entity.loc, fmt::format("the field of view is {} degrees; it has to lie "
                                             "between 0 and 180",
                                             fov));
+    return fov;
+}
+
+Projection ReadProjection(const Entity& entity) {
+    if (entity.name == "perspective") return Projection::Perspective;
+    if (entity.name == "orthographic") return Projection::Orthographic;
+    if (entity.name == "environment") return Projection::Environment;
+    throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic "
+                                        "and environment are",
+                                        entity.name));
+}
+
+}  // namespace
+
+Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings) {
+    const Entity& entity = description.camera;
+    const Parameters& params = entity.parameters;
+    const Vec2i resolution = film.resolution;
+    Camera camera;
+    camera.projection = ReadProjection(entity);
+    const std::array<float, 4> screen = ReadScreen(entity, resolution);
+    const float fov = camera.projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
     // Nothing moves here, so the shutter has no effect.
     params.GetFloat("shutteropen", 0);
     params.GetFloat("shutterclose", 1);
-
-    Camera camera;
     camera.lensRadius = params.GetFloat("lensradius", 0);
     camera.focalDistance = params.GetFloat("focaldistance", 1e6f);
     if (!(camera.lensRadius >= 0) || !(camera.focalDistance > 0))
         throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
-    params.ReportUnused("Camera \"perspective\"", warnings);
+    params.ReportUnused("Camera \"" + entity.name + "\"", warnings);
 
-    const float scale = std::tan(fov * kPi / 360);
-    camera.planeOrigin = scale * Vec2f(screen[0], screen[3]);
-    camera.planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
-                                         (screen[2] - screen[3]) / resolution.y());
+    if (camera.projection == Projection::Environment) {
+        camera.lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
+        camera.planePerPixel = {2 * kPi / resolution.x(), kPi / resolution.y()};
+    } else {
+        const float scale =
+            camera.projection == Projection::Perspective ? std::tan(fov * kPi / 360) : 1;
+        camera.planeOrigin = scale * Vec2f(screen[0], screen[3]);
+        camera.planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
+                                             (screen[2] - screen[3]) / resolution.y());
+    }
     camera.worldFromCamera = description.cameraFromWorld.inverse();
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
@@ -70,17 +116,19 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
 
 Mat4d WorldToCamera(const Camera& camera) { return camera.worldFromCamera.inverse(); }
 
-Mat4d WorldToNdc(const Camera& camera, const FilmSettings& film) {
-    // Project onto the plane z = 1, then scale the image to [0, 1]^2.
+std::optional<Mat4d> WorldToNdc(const Camera& camera, const FilmSettings& film) {
+    if (camera.projection == Projection::Environment) return {};
+    const bool isPerspective = camera.projection == Projection::Perspective;
+    // Project onto the plane z = 1, or along z, then scale the image to [0, 1]^2.
     Mat4d ndcFromCamera = Mat4d::Zero();
     for (int i = 0; i < 2; ++i) {
         const double perUnit = 1.0 / (double(camera.planePerPixel[i]) * film.resolution[i]);
         ndcFromCamera(i, i) = perUnit;
-        ndcFromCamera(i, 2) = -camera.planeOrigin[i] * perUnit;
+        ndcFromCamera(i, isPerspective ? 2 : 3) = -camera.planeOrigin[i] * perUnit;
     }
     ndcFromCamera(2, 2) = 1;
-    ndcFromCamera(3, 2) = 1;
-    return ndcFromCamera * WorldToCamera(camera);
+    ndcFromCamera(3, isPerspective ? 2 : 3) = 1;
+    return Mat4d(ndcFromCamera * WorldToCamera(camera));
 }
 
 }  // namespace lull

@@ -1,4 +1,5 @@
-// Generates camera rays: pbrt-v3's perspective camera, with pinhole or thin lens.
+// Generates camera rays: pbrt-v3's perspective and orthographic cameras, with pinhole or thin lens,
+// and its environment camera.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -6,9 +7,13 @@
 
 namespace lull {
 
+enum class Projection { Perspective, Orthographic, Environment };
+
 struct Camera {
+    Projection projection = Projection::Perspective;
     Mat4d worldFromCamera = Mat4d::Identity();
-    // Maps the image [0, width] x [0, height] in pixels to the plane z = 1 of camera space.
+    // Maps the image [0, width] x [0, height] in pixels to the plane z = 1 of camera space
+    // (perspective), z = 0 (orthographic), or to the angles phi and theta (environment).
     Vec2f planeOrigin = Vec2f::Zero(), planePerPixel = Vec2f::Zero();
     float lensRadius = 0, focalDistance = 1e6f;
 
@@ -21,15 +26,23 @@ struct Camera {
     float sampleSpacing = 1;
 
     // Returns the ray through `film` (pixels) and the lens point that u chooses; direction unit.
-    Ray GenerateRay(const Vec2f& film, const Vec2f& lens) const;
+    Ray GenerateRay(const Vec2f& film, const Vec2f& lens) const {
+        return projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
+                                                     : GenerateOtherRay(film, lens);
+    }
+
+  private:
+    Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
+    Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
 };
 
-// Reads Camera "perspective". Throws Error for other cameras, a field of view outside (0, 180) or
-// a transform that cannot be inverted.
+// Reads Camera "perspective", "orthographic" or "environment". Throws Error for other cameras, a
+// field of view outside (0, 180) or a transform that cannot be inverted.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&);
 
-// Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's).
+// Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
+// is nothing where no matrix projects as the camera does.
 Mat4d WorldToCamera(const Camera&);
-Mat4d WorldToNdc(const Camera&, const FilmSettings&);
+std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
 
 }  // namespace lull

@@ -16,8 +16,10 @@ FilmSettings FilmOf(int width, int height) {
 }
 
 Camera MakeTestCamera(const FilmSettings& film, std::vector<Parameter> parameters,
-                      const Mat4d& cameraFromWorld = Mat4d::Identity()) {
+                      const Mat4d& cameraFromWorld = Mat4d::Identity(),
+                      const std::string& kind = "perspective") {
     Description description;
+    description.camera.name = kind;
     description.camera.loc = LocAt(3);
     description.cameraFromWorld = cameraFromWorld;
     for (Parameter& p : parameters) description.camera.parameters.Add(std::move(p));
@@ -83,7 +85,7 @@ TEST(Camera, StandsWhereItsTransformSays) {
 
     // What a ray meets is projected back to where the ray came from.
     const Vec3f p = ray.o + 7 * ray.d;
-    const Vec3f ndc = TransformPoint(WorldToNdc(camera, FilmOf(100, 100)), p);
+    const Vec3f ndc = TransformPoint(*WorldToNdc(camera, FilmOf(100, 100)), p);
     EXPECT_NEAR(ndc.x(), 0.2f, 1e-5);
     EXPECT_NEAR(ndc.y(), 0.7f, 1e-5);
 }
@@ -113,6 +115,62 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
         ASSERT_NEAR((o + d * (4 / d.z()) - straight * (4 / straight.z())).norm(), 0, 2e-4);
     }
     EXPECT_NEAR(radius2, 0.3 * 0.3 / 2, 0.001);
+}
+
+TEST(Camera, OrthographicRaysAreParallel) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const FilmSettings film = FilmOf(200, 100);
+    const Camera camera = MakeTestCamera(film, {FloatParameter("screenwindow", {-3, 1, -2, 4})},
+                                         worldFromCamera.inverse(), "orthographic");
+    const Vec2f lens(0.5f, 0.5f);
+    for (const Vec2f& p : {Vec2f(0, 0), Vec2f(200, 0), Vec2f(50, 70)}) {
+        const Ray ray = camera.GenerateRay(p, lens);
+        ExpectNear(ray.o, TransformPoint(worldFromCamera,
+                                         Vec3f(-3 + 4 * p.x() / 200, 4 - 6 * p.y() / 100, 0)));
+        ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f::UnitZ()));
+        // Any point of the ray is projected back to where the ray came from.
+        const Vec3f ndc = TransformPoint(*WorldToNdc(camera, film), Vec3f(ray.o + 3 * ray.d));
+        EXPECT_NEAR(ndc.x(), p.x() / 200, 1e-5);
+        EXPECT_NEAR(ndc.y(), p.y() / 100, 1e-5);
+    }
+    // The shorter axis holds [-1, 1] by default.
+    const Camera wide = MakeTestCamera(film, {}, Mat4d::Identity(), "orthographic");
+    ExpectNear(wide.GenerateRay({0, 0}, lens).o, Vec3f(-2, 1, 0));
+}
+
+TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
+    const Camera camera =
+        MakeTestCamera(FilmOf(10, 10),
+                       {FloatParameter("lensradius", {0.2f}), FloatParameter("focaldistance", {3})},
+                       Mat4d::Identity(), "orthographic");
+    test::Random random(2);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec2f p = 10 * random.Point();
+        const Ray ray = camera.GenerateRay(p, random.Point());
+        ASSERT_LE(ray.o.norm(), 0.2001f);
+        ASSERT_NEAR(ray.d.norm(), 1, 1e-5);
+        const Vec3f focus = ray.o + ray.d * (3 / ray.d.z());
+        ASSERT_NEAR((focus - Vec3f(-1 + p.x() / 5, 1 - p.y() / 5, 3)).norm(), 0, 1e-4);
+    }
+}
+
+TEST(Camera, EnvironmentSeesAllDirections) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const FilmSettings film = FilmOf(40, 20);
+    const Camera camera = MakeTestCamera(film, {FloatParameter("lensradius", {2})},
+                                         worldFromCamera.inverse(), "environment");
+    const auto inCamera = [&](float x, float y) {
+        const Ray ray = camera.GenerateRay({x, y}, {0.1f, 0.2f});
+        ExpectNear(ray.o, Vec3f(3, -2, 5));
+        return TransformVector(WorldToCamera(camera), ray.d);
+    };
+    // The first row looks up along y, the middle one around the horizon, from x towards z.
+    for (const float x : {0.f, 17.f}) ExpectNear(inCamera(x, 0), Vec3f(0, 1, 0));
+    ExpectNear(inCamera(0, 10), Vec3f(1, 0, 0));
+    ExpectNear(inCamera(10, 10), Vec3f(0, 0, 1));
+    ExpectNear(inCamera(30, 10), Vec3f(0, 0, -1));
+    ExpectNear(inCamera(5, 20), Vec3f(0, -1, 0));
+    EXPECT_FALSE(WorldToNdc(camera, film).has_value());
 }
 
 TEST(Camera, RefusesNonsense) {
