@@ -18,13 +18,15 @@ float Mitchell(float x, float b, float c) {
     return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
 }
 
+float Sinc(float x) { return std::abs(x) < 1e-5f ? 1 : std::sin(kPi * x) / (kPi * x); }
+
 }  // namespace
 
 Filter::Filter(const Description& description, Warnings& warnings) {
     const Entity& entity = description.filter;
     const Parameters& params = entity.parameters;
-    const bool isBox = entity.name == "box";
-    const float width = isBox ? 0.5f : 2.f;
+    const bool isBox = entity.name == "box", isSinc = entity.name == "sinc";
+    const float width = isBox ? 0.5f : isSinc ? 4.f : 2.f;
     radius = {params.GetFloat("xwidth", width), params.GetFloat("ywidth", width)};
     if (!(radius.minCoeff() > 0) || !radius.allFinite())
         throw Error(entity.loc, "the filter's \"xwidth\" and \"ywidth\" have to be positive");
@@ -40,9 +42,15 @@ Filter::Filter(const Description& description, Warnings& warnings) {
         evaluate = [=](float x, float r) { return Mitchell(x / r, b, c); };
     } else if (entity.name == "triangle") {
         evaluate = [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
+    } else if (isSinc) {
+        // As in pbrt-v3 the window has its own width, tau, and not the radius: beyond tau its
+        // lobes come back.
+        const float tau = params.GetFloat("tau", 3);
+        if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
+        evaluate = [=](float x, float) { return Sinc(x) * Sinc(x / tau); };
     } else if (!isBox) {
         throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
-                                            "mitchell and triangle are",
+                                            "mitchell, sinc and triangle are",
                                             entity.name));
     }
     params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);

@@ -17,7 +17,7 @@ class Filter {
   public:
     // Makes pbrt-v3's default: a box of half a pixel.
     Filter() = default;
-    // Reads PixelFilter box, gaussian, mitchell or triangle. Throws Error for others and for
+    // Reads PixelFilter box, gaussian, mitchell, sinc or triangle. Throws Error for others and for
     // widths that are not positive.
     Filter(const Description&, Warnings&);
 

@@ -105,6 +105,18 @@ TEST(Filter, MitchellHasNegativeLobes) {
     EXPECT_LT(least, 0);
 }
 
+TEST(Filter, SincIsWindowedBySinc) {
+    const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(M_PI * x) / (M_PI * x); };
+    const auto windowed = [&](double tau) -> Function {
+        return [=](double x) { return sinc(x) * sinc(x / tau); };
+    };
+    ExpectFilters(MakeFilter("sinc", {}), windowed(3), windowed(3), 4, 4);
+    ExpectFilters(
+        MakeFilter("sinc", {FloatParameter("tau", {1.5f}), FloatParameter("xwidth", {1.5f}),
+                            FloatParameter("ywidth", {2})}),
+        windowed(1.5), windowed(1.5), 1.5, 2);
+}
+
 TEST(Filter, TriangleIsATent) {
     const auto tent = [](double r) -> Function {
         return [=](double x) { return r - std::abs(x); };
@@ -122,7 +134,8 @@ TEST(Filter, PositiveOnesHaveWeightOne) {
 }
 
 TEST(Filter, RefusesWhatItCannotSample) {
-    EXPECT_TRUE(Contains(ErrorOf([] { MakeFilter("sinc", {}); }), "scene.pbrt:3: "));
+    EXPECT_TRUE(Contains(ErrorOf([] { MakeFilter("lanczos", {}); }), "scene.pbrt:3: "));
+    EXPECT_NE(ErrorOf([] { MakeFilter("sinc", {FloatParameter("tau", {0})}); }), "");
     for (const float width : {0.f, -1.f, std::nanf(""), kInfinity})
         EXPECT_NE(ErrorOf([&] { MakeFilter("box", {FloatParameter("xwidth", {width})}); }), "");
 }
