@@ -2,22 +2,31 @@
 
 #include <fmt/core.h>
 
+#include "renderer/scene/textures/bilerp.h"
 #include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/constant.h"
+#include "renderer/scene/textures/dots.h"
 #include "renderer/scene/textures/fbm.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/marble.h"
 #include "renderer/scene/textures/mix.h"
 #include "renderer/scene/textures/scale.h"
+#include "renderer/scene/textures/uv.h"
+#include "renderer/scene/textures/windy.h"
+#include "renderer/scene/textures/wrinkled.h"
 
 namespace lull {
 
 struct FloatTextureNode {
-    std::variant<Scale<float>, Mix<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>> kind;
+    std::variant<Scale<float>, Mix<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
+                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>>
+        kind;
 };
 
 struct SpectrumTextureNode {
-    std::variant<Scale<Rgb>, Mix<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble> kind;
+    std::variant<Scale<Rgb>, Mix<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
+                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors>
+        kind;
 };
 
 namespace {
@@ -54,13 +63,17 @@ constexpr Kind<FloatTextureNode> kFloatKinds[] = {
     {"constant", AddNode<MakeConstant<float>>}, {"scale", AddNode<MakeScale<float>>},
     {"mix", AddNode<MakeMix<float>>},           {"imagemap", AddNode<MakeImageMap<float>>},
     {"fbm", AddNode<MakeFbm<float>>},           {"checkerboard", AddNode<MakeCheckerboard<float>>},
+    {"bilerp", AddNode<MakeBilerp<float>>},     {"dots", AddNode<MakeDots<float>>},
+    {"windy", AddNode<MakeWindy<float>>},       {"wrinkled", AddNode<MakeWrinkled<float>>},
 };
 
 constexpr Kind<SpectrumTextureNode> kSpectrumKinds[] = {
     {"constant", AddNode<MakeConstant<Rgb>>}, {"scale", AddNode<MakeScale<Rgb>>},
     {"mix", AddNode<MakeMix<Rgb>>},           {"imagemap", AddNode<MakeImageMap<Rgb>>},
     {"fbm", AddNode<MakeFbm<Rgb>>},           {"checkerboard", AddNode<MakeCheckerboard<Rgb>>},
-    {"marble", AddNode<MakeMarble>},
+    {"marble", AddNode<MakeMarble>},          {"uv", AddNode<MakeUvColors>},
+    {"bilerp", AddNode<MakeBilerp<Rgb>>},     {"dots", AddNode<MakeDots<Rgb>>},
+    {"windy", AddNode<MakeWindy<Rgb>>},       {"wrinkled", AddNode<MakeWrinkled<Rgb>>},
 };
 
 // Makes one texture, or what stands for one of a kind that is not modelled.

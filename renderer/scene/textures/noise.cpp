@@ -73,10 +73,24 @@ float Noise(const Vec3f& p) {
     return Lerp(wz, planes[0], planes[1]);
 }
 
+namespace {
+
+// Returns how many octaves samples of that distance resolve.
+float ResolvedOctaves(float spacing2, int octaves) {
+    return spacing2 > 0 ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
+                        : float(octaves);
+}
+
+// Rises from 0 to 1 as the fraction of an octave that is resolved goes from 0.3 to 0.7.
+float Fade(float fraction) {
+    const float t = std::clamp((fraction - 0.3f) / 0.4f, 0.f, 1.f);
+    return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
 float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, int octaves) {
-    const float resolved = spacing2 > 0
-                               ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
-                               : float(octaves);
+    const float resolved = ResolvedOctaves(spacing2, octaves);
     const int whole = int(resolved);
     float sum = 0, frequency = 1, amplitude = 1;
     for (int i = 0; i < whole; ++i) {
@@ -84,8 +98,27 @@ float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, 
         frequency *= 1.99f;
         amplitude *= roughness;
     }
-    const float t = std::clamp((resolved - whole - 0.3f) / 0.4f, 0.f, 1.f);
-    if (t > 0) sum += amplitude * t * t * (3 - 2 * t) * Noise(frequency * p);
+    const float fade = Fade(resolved - whole);
+    if (fade > 0) sum += amplitude * fade * Noise(frequency * p);
+    return sum;
+}
+
+float Turbulence(const Vec3f& p, float spacing2, float roughness, int octaves) {
+    const float resolved = ResolvedOctaves(spacing2, octaves);
+    const int whole = int(resolved);
+    float sum = 0, frequency = 1, amplitude = 1;
+    for (int i = 0; i < whole; ++i) {
+        sum += amplitude * std::abs(Noise(frequency * p));
+        frequency *= 1.99f;
+        amplitude *= roughness;
+    }
+    // As in pbrt-v3 the octave that fades comes on top of the means, even where all are resolved.
+    constexpr float kMean = 0.2f;
+    sum += amplitude * Lerp(Fade(resolved - whole), kMean, std::abs(Noise(frequency * p)));
+    for (int i = whole; i < octaves; ++i) {
+        sum += amplitude * kMean;
+        amplitude *= roughness;
+    }
     return sum;
 }
 

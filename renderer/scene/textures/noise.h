@@ -15,4 +15,8 @@ float Noise(const Vec3f& p);
 // whose square is `spacing2`, are left out and the last one fades (pbrt-v3's FBm).
 float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, int octaves);
 
+// Sums the magnitudes of octaves in the same way; each octave that is left out counts with 0.2, the
+// mean of its magnitude (pbrt-v3's Turbulence).
+float Turbulence(const Vec3f& p, float spacing2, float roughness, int octaves);
+
 }  // namespace lull
