@@ -38,14 +38,21 @@ void FilterByAlpha(const RTCFilterFunctionNArguments* args, bool isShadow) {
 std::optional<float> IntersectQuadric(const ShapeUser& user, const Ray& ray) {
     const auto& geometry = user.shapes->shapes[user.shape].geometry;
     if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) return Intersect(*sphere, ray);
-    return Intersect(std::get<Disk>(geometry), ray);
+    if (const Disk* disk = std::get_if<Disk>(&geometry)) return Intersect(*disk, ray);
+    return Intersect(std::get<Revolved>(geometry), ray);
 }
 
 void QuadricBounds(const RTCBoundsFunctionArguments* args) {
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
     const auto& geometry = user.shapes->shapes[user.shape].geometry;
-    const Sphere* sphere = std::get_if<Sphere>(&geometry);
-    const Bounds3f b = sphere ? sphere->WorldBounds() : std::get<Disk>(geometry).WorldBounds();
+    const Bounds3f b = std::visit(
+        []<typename G>(const G& g) {
+            if constexpr (std::is_same_v<G, Mesh>)
+                return Bounds3f();  // meshes have bounds of Embree's own
+            else
+                return g.WorldBounds();
+        },
+        geometry);
     // Leave room for the rounding between the exact bounds and the boxes.
     const Vec3f pad = Gamma(16) * (b.lower.cwiseAbs().cwiseMax(b.upper.cwiseAbs()));
     const Vec3f lower = b.lower - pad, upper = b.upper + pad;

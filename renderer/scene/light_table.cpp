@@ -26,8 +26,10 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
     if (entity.name == "distant") return DistantLight::Make(entity, worldRadius);
     if (entity.name == "infinite" || entity.name == "exinfinite")
         return InfiniteLight::Make(description, entity, worldRadius, warnings);
-    throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; point, spot, distant "
-                                        "and infinite are",
+    if (entity.name == "goniometric") return GoniometricLight::Make(description, entity, warnings);
+    if (entity.name == "projection") return ProjectionLight::Make(description, entity, warnings);
+    throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; point, spot, distant, "
+                                        "infinite, goniometric and projection are",
                                         entity.name));
 }
 
@@ -71,8 +73,10 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, Warni
                 light.surface = mesh->Sampler(k);
             else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
                 light.surface = sphere;
+            else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
+                light.surface = disk;
             else
-                light.surface = &std::get<Disk>(shape.geometry);
+                light.surface = &std::get<Revolved>(shape.geometry);
             lights.push_back(light);
         }
     }
@@ -106,7 +110,10 @@ std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Ve
         return environment->Sample(u);
     if (const PointLight* point = std::get_if<PointLight>(&light)) return point->Sample(from);
     if (const SpotLight* spot = std::get_if<SpotLight>(&light)) return spot->Sample(from);
-    return std::get<DistantLight>(light).Sample();
+    if (const DistantLight* distant = std::get_if<DistantLight>(&light)) return distant->Sample();
+    if (const auto* goniometric = std::get_if<GoniometricLight>(&light))
+        return goniometric->Sample(from);
+    return std::get<ProjectionLight>(light).Sample(from);
 }
 
 }  // namespace lull

@@ -7,13 +7,16 @@
 #include "renderer/scene/light_distribution.h"
 #include "renderer/scene/lights/area.h"
 #include "renderer/scene/lights/distant.h"
+#include "renderer/scene/lights/goniometric.h"
 #include "renderer/scene/lights/infinite.h"
 #include "renderer/scene/lights/point.h"
+#include "renderer/scene/lights/projection.h"
 #include "renderer/scene/lights/spot.h"
 
 namespace lull {
 
-using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, AreaLight>;
+using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, AreaLight,
+                           GoniometricLight, ProjectionLight>;
 
 class LightTable {
   public:

@@ -111,8 +111,10 @@ void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
         const Ray local = hit.instance < 0 ? ray : IntoInstance(instances[hit.instance], ray);
         if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
             lull::Interact(*sphere, local, hit.t, needs, interaction);
+        else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
+            lull::Interact(*disk, local, hit.t, needs, interaction);
         else
-            lull::Interact(std::get<Disk>(shape.geometry), local, hit.t, needs, interaction);
+            lull::Interact(std::get<Revolved>(shape.geometry), local, hit.t, needs, interaction);
     }
     if (hit.instance >= 0) Place(instances[hit.instance], interaction);
     interaction->wo = -ray.d;

@@ -7,12 +7,13 @@
 #include "renderer/scene/material.h"
 #include "renderer/scene/shapes/mesh.h"
 #include "renderer/scene/shapes/quadric.h"
+#include "renderer/scene/shapes/revolved.h"
 #include "renderer/scene/texture.h"
 
 namespace lull {
 
 struct Shape {
-    std::variant<Mesh, Sphere, Disk> geometry;
+    std::variant<Mesh, Sphere, Disk, Revolved> geometry;
     int material = -1;
     int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
     std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)

@@ -10,8 +10,8 @@ struct AreaLight {
     Rgb L;
     bool twoSided = false;
     bool isHidden = false;  // its shape has alpha 0
-    // The emitting surface; spheres and disks belong to the shape table.
-    std::variant<TriangleSampler, const Sphere*, const Disk*> surface;
+    // The emitting surface; all but triangles belong to the shape table.
+    std::variant<TriangleSampler, const Sphere*, const Disk*, const Revolved*> surface;
 
     // Returns the radiance that leaves a point with normal n towards w.
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
@@ -40,14 +40,17 @@ struct AreaLight {
             return SolidAnglePdf(triangle->areaPdf, from, p, n);
         if (const auto* sphere = std::get_if<const Sphere*>(&surface))
             return lull::Pdf(**sphere, from, p, n);
-        return lull::Pdf(*std::get<const Disk*>(surface), from, p, n);
+        if (const auto* disk = std::get_if<const Disk*>(&surface))
+            return lull::Pdf(**disk, from, p, n);
+        return lull::Pdf(*std::get<const Revolved*>(surface), from, p, n);
     }
 
     float Area() const {
         if (const auto* triangle = std::get_if<TriangleSampler>(&surface))
             return 1 / triangle->areaPdf;
         if (const auto* sphere = std::get_if<const Sphere*>(&surface)) return (*sphere)->Area();
-        return std::get<const Disk*>(surface)->Area();
+        if (const auto* disk = std::get_if<const Disk*>(&surface)) return (*disk)->Area();
+        return std::get<const Revolved*>(surface)->Area();
     }
     Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L; }
 
@@ -57,7 +60,9 @@ struct AreaLight {
             return triangle->Sample(from, u);
         if (const auto* sphere = std::get_if<const Sphere*>(&surface))
             return lull::Sample(**sphere, from, u);
-        return lull::Sample(*std::get<const Disk*>(surface), from, u);
+        if (const auto* disk = std::get_if<const Disk*>(&surface))
+            return lull::Sample(**disk, from, u);
+        return lull::Sample(*std::get<const Revolved*>(surface), from, u);
     }
 };
 

@@ -4,6 +4,7 @@
 
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/scene/shapes/patches.h"
 
 namespace lull {
 namespace {
@@ -167,6 +168,39 @@ Disk MakeDisk(const ShapeEntity& entity) {
     return disk;
 }
 
+Revolved MakeRevolved(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    if (entity.areaLight && entity.name != "cylinder")
+        throw Error(entity.loc,
+                    fmt::format("a light of shape \"{}\" is not modelled; pbrt-v3 cannot "
+                                "sample it either, a mesh is",
+                                entity.name));
+    float scale;
+    const QuadricPlacement place = PlacementOf(entity, &scale);
+    const float phiMax = PhiMaxOf(params);
+    const auto size = [&](const char* name, float otherwise) {
+        return scale * params.GetFloat(name, otherwise);
+    };
+    Revolved shape;
+    if (entity.name == "cylinder") {
+        shape = MakeCylinder(size("radius", 1), size("zmin", -1), size("zmax", 1), phiMax);
+    } else if (entity.name == "cone") {
+        shape = MakeCone(size("radius", 1), size("height", 1), phiMax);
+        if (shape.end.z() <= 0) throw Error(entity.loc, "a cone's \"height\" has to be positive");
+    } else if (entity.name == "paraboloid") {
+        shape = MakeParaboloid(size("radius", 1), size("zmin", 0), size("zmax", 1), phiMax);
+    } else {
+        shape = MakeHyperboloid(scale * params.GetPoint3("p1", Vec3f(0, 0, 0)),
+                                scale * params.GetPoint3("p2", Vec3f(1, 1, 1)), phiMax);
+    }
+    shape.place = place;
+    if (!HasArea(shape))
+        throw Error(entity.loc, fmt::format("the {} has no area; its sizes and the range of its "
+                                            "heights have to be positive and finite",
+                                            entity.name));
+    return shape;
+}
+
 // Reads an alpha parameter, in which only 0 matters: such points are cut out.
 std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeEntity& entity,
                                       const char* name) {
@@ -199,9 +233,17 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
         shape.geometry = MakeSphere(entity);
     } else if (entity.name == "disk") {
         shape.geometry = MakeDisk(entity);
+    } else if (entity.name == "cylinder" || entity.name == "cone" || entity.name == "paraboloid" ||
+               entity.name == "hyperboloid") {
+        shape.geometry = MakeRevolved(entity);
+    } else if (entity.name == "heightfield") {
+        shape.geometry = PlaceMesh(HeightfieldMesh(entity), entity, warnings);
+    } else if (entity.name == "nurbs") {
+        shape.geometry = PlaceMesh(NurbsMesh(entity), entity, warnings);
     } else {
         const std::string message = fmt::format(
-            "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, sphere and disk are",
+            "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, heightfield, nurbs, "
+            "sphere, disk, cylinder, cone, paraboloid and hyperboloid are",
             entity.name);
         if (!substitute) throw Error(entity.loc, message);
         warnings.Add(entity.loc, message + "; it is left out");

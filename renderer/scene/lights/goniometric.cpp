@@ -1,0 +1,30 @@
+#include "renderer/scene/lights/goniometric.h"
+
+namespace lull {
+
+GoniometricLight GoniometricLight::Make(const Description& description, const LightEntity& entity,
+                                        Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    return {TransformPoint(entity.worldFromLight, Vec3f::Zero()), I,
+            entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
+            ReadLightImage(description, entity, warnings)};
+}
+
+std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    Rgb L = I / distance2;
+    if (image) {
+        const Vec3f w = (lightFromWorld * -wi).normalized();
+        const float phi = std::atan2(w.z(), w.x());
+        L *= image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
+                            std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
+    }
+    if (!IsFinite(L)) return {};
+    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+}
+
+}  // namespace lull

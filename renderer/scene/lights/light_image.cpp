@@ -1,0 +1,39 @@
+#include "renderer/scene/lights/light_image.h"
+
+#include "renderer/output/image_io.h"
+#include "renderer/scene/image_lookup.h"
+
+namespace lull {
+
+Rgb LightImage::Lookup(const Vec2f& st) const { return BilinearRgb(image, st, Wrap::Repeat); }
+
+std::shared_ptr<const LightImage> ReadLightImage(const Description& description,
+                                                 const LightEntity& entity, Warnings& warnings) {
+    const std::string file = entity.parameters.GetString("mapname", "");
+    if (file.empty()) return nullptr;
+    auto made = std::make_shared<LightImage>();
+    try {
+        made->image = ReadImage(ResolvePath(description, file));
+    } catch (const Error& error) {
+        throw Error(entity.loc, error.what());
+    }
+    Image& image = made->image;
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::visit(
+        [&](auto& texels) {
+            using T = std::decay_t<decltype(texels[0])>;
+            for (T& texel : texels) {
+                if (float(texel) >= 0 && std::isfinite(float(texel))) continue;
+                texel = T();
+                warnings.Add(entity.loc, "light map texel that is not finite or negative", file);
+            }
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x)
+                    sum += TexelRgb(image, texels, x, y).template cast<double>();
+        },
+        image.texels);
+    made->mean = (sum / (double(image.width) * image.height)).cast<float>();
+    return made;
+}
+
+}  // namespace lull

@@ -1,0 +1,24 @@
+// Holds the image that shapes the beam of a light.
+#pragma once
+
+#include <memory>
+
+#include "renderer/input/description.h"
+#include "renderer/output/image.h"
+
+namespace lull {
+
+struct LightImage {
+    Image image;
+    Rgb mean;  // of all texels
+
+    // Returns the texels around st, interpolated; they repeat. The first row is at st.y() = 0.
+    Rgb Lookup(const Vec2f& st) const;
+};
+
+// Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
+// Texels that are not finite or negative count as black, with a counted warning. Throws Error where
+// the image cannot be read.
+std::shared_ptr<const LightImage> ReadLightImage(const Description&, const LightEntity&, Warnings&);
+
+}  // namespace lull
