@@ -8,6 +8,11 @@ BsdfValue Finite(const BsdfValue& v) {
     return v.f.sum() < kInfinity && v.pdf < kInfinity ? v : BsdfValue();
 }
 
+template <typename L>
+constexpr bool IsTwoSided() {
+    return requires { L::kIsTwoSided; };
+}
+
 }  // namespace
 
 const Lobe& Bsdf::Choose(int choice, LobeSet set) const {
@@ -23,8 +28,8 @@ BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, L
     for (int i = 0; i < lobeCount; ++i) {
         VisitLobe(lobes[i], [&]<typename L>(const L& lobe) {
             if constexpr (!L::kIsSpecular) {
-                const bool scatters = reflects != L::kTransmits;
-                const bool isSampled = sameHemisphere != L::kTransmits;
+                const bool scatters = IsTwoSided<L>() || reflects != L::kTransmits;
+                const bool isSampled = IsTwoSided<L>() || sameHemisphere != L::kTransmits;
                 if (!scatters && !isSampled) return;
                 const BsdfValue v = lobe.Evaluate(wo, wi);
                 if (scatters) sum.f += v.f;
@@ -66,7 +71,7 @@ std::optional<BsdfSample> Bsdf::Sample(const Vec3f& woWorld, const Vec2f& u, Lob
                              BsdfValue value;
                              if (count > 1)
                                  value = EvaluateLocal(wo, wi, reflects, set);
-                             else if (reflects != L::kTransmits)
+                             else if (IsTwoSided<L>() || reflects != L::kTransmits)
                                  value = Finite(lobe.Evaluate(wo, wi));
                              if (!(value.pdf > 0) || IsBlack(value.f)) return {};
                              return BsdfSample{value.f, value.pdf, wiWorld, false, L::kTransmits};

@@ -7,39 +7,20 @@
 // a perfectly specular one has
 //     bool Sample(wo, u, &sample)      chooses among the few directions there are.
 // Both demand wo.z != 0 for Sample only. f is for radiance, not importance: transmission scales it
-// by the square of the indices' ratio. As in pbrt-v3, f of a reflecting lobe does not ask whether
-// wo and wi lie on the same side of the shading normal (Bsdf asks the geometric one), the density
-// does.
+// by the square of the indices' ratio. A lobe that has kIsTwoSided scatters to both sides. As in
+// pbrt-v3, f of a reflecting lobe does not ask whether wo and wi lie on the same side of the
+// shading normal (Bsdf asks the geometric one), the density does.
 #pragma once
 
 #include <variant>
 
-#include "renderer/base/sampling.h"
-#include "renderer/bsdf/fresnel.h"
-#include "renderer/bsdf/microfacet.h"
+#include "renderer/bsdf/disney_lobes.h"
+#include "renderer/bsdf/fourier_lobe.h"
+#include "renderer/bsdf/hair_lobe.h"
+#include "renderer/bsdf/lobe_basics.h"
+#include "renderer/bsdf/microfacet_lobes.h"
 
 namespace lull {
-
-struct BsdfValue {
-    Rgb f = Rgb::Zero();  // 1/sr
-    float pdf = 0;        // 1/sr
-};
-
-struct SpecularSample {
-    Rgb f;  // times |cos wi| / pdf is the weight
-    float pdf;
-    Vec3f wi;
-    bool isTransmission;
-};
-
-inline bool SameHemisphere(const Vec3f& a, const Vec3f& b) { return a.z() * b.z() > 0; }
-
-// Chooses wi by the cosine, on the side of wo or on the other.
-inline Vec3f SampleCosine(const Vec3f& wo, const Vec2f& u, bool otherSide) {
-    Vec3f wi = SampleCosineHemisphere(u);
-    if ((wo.z() < 0) != otherSide) wi.z() = -wi.z();
-    return wi;
-}
 
 struct LambertianReflection {
     static constexpr bool kIsSpecular = false, kTransmits = false;
@@ -92,68 +73,6 @@ struct OrenNayar {
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
         *wi = SampleCosine(wo, u, false);
         return true;
-    }
-};
-
-// Below this squared length a half vector is rounding error: wo and wi are opposite. Below this
-// cosine a direction lies in the surface. Together they keep all quotients within float.
-inline constexpr float kMinHalf2 = 1e-14f, kMinCosine = 1e-12f;
-
-// Reflects at microfacets (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20).
-template <typename Interface>
-struct MicrofacetReflection {
-    static constexpr bool kIsSpecular = false, kTransmits = false;
-    StoredRgb r;
-    TrowbridgeReitz distribution;
-    Interface interface;
-
-    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
-        const Vec3f h = wo + wi;
-        const float h2 = h.squaredNorm();
-        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
-        if (std::min(cosO, cosI) < kMinCosine || !(h2 > kMinHalf2)) return {};
-        const float d = distribution.D(h, h2);
-        const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
-        // wi . h / |h| is half of |h|; the interface wants it signed by the side of the normal.
-        const float cosH = std::copysign(0.5f * std::sqrt(h2), h.z());
-        const Rgb f = Rgb(r) * (interface(cosH) * (0.5f * d / (cosI * so + cosO * si)));
-        return {f, SameHemisphere(wo, wi) ? 0.5f * d / (cosO + so) : 0};
-    }
-    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
-        const Vec3f h = distribution.SampleVisibleNormal(wo, u);
-        *wi = (2 * wo.dot(h)) * h - wo;
-        return SameHemisphere(wo, *wi);
-    }
-};
-
-// Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side. As in
-// pbrt-v3, f and the density do not vanish for microfacets that wo sees from behind, though these
-// are never sampled: light sampling finds them, and the density integrates to more than 1.
-struct MicrofacetTransmission {
-    static constexpr bool kIsSpecular = false, kTransmits = true;
-    StoredRgb t;
-    TrowbridgeReitz distribution;
-    float eta;  // index beyond the surface
-
-    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
-        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
-        if (std::min(cosO, cosI) < kMinCosine || SameHemisphere(wo, wi)) return {};
-        const float ratio = wo.z() > 0 ? eta : 1 / eta;
-        const Vec3f h = wo + ratio * wi;  // its length is the root of the Jacobian's denominator
-        const float h2 = h.squaredNorm(), oh = wo.dot(h), ih = wi.dot(h);
-        if (!(h2 > kMinHalf2) || oh * ih > 0) return {};
-        const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
-        const float cosH = std::copysign(oh / std::sqrt(h2), oh * h.z());
-        const float common = 2 * distribution.D(h, h2) * std::abs(oh * ih) / Sqr(h2);
-        const float through = 1 - FresnelDielectric(cosH, eta);
-        return {Rgb(t) * (through * common / (cosI * so + cosO * si)),
-                common * Sqr(ratio) / (cosO + so)};
-    }
-    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
-        const Vec3f h = distribution.SampleVisibleNormal(wo, u);
-        if (!Refract(wo, h, wo.z() > 0 ? 1 / eta : eta, wi)) return false;
-        // A steep microfacet may refract back to where the light came from.
-        return !SameHemisphere(wo, *wi);
     }
 };
 
@@ -255,7 +174,8 @@ using Lobe =
                  MicrofacetReflection<ConductorInterface>, MicrofacetTransmission,
                  SpecularReflection<PerfectMirror>, SpecularReflection<DielectricInterface>,
                  SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
-                 FresnelBlend>;
+                 FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
+                 HairLobe, FourierLobe>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
@@ -278,10 +198,16 @@ auto VisitLobe(const Lobe& lobe, F&& f) {
         case 9: return f(*std::get_if<9>(&lobe));
         case 10: return f(*std::get_if<10>(&lobe));
         case 11: return f(*std::get_if<11>(&lobe));
-        default: return f(*std::get_if<12>(&lobe));
+        case 12: return f(*std::get_if<12>(&lobe));
+        case 13: return f(*std::get_if<13>(&lobe));
+        case 14: return f(*std::get_if<14>(&lobe));
+        case 15: return f(*std::get_if<15>(&lobe));
+        case 16: return f(*std::get_if<16>(&lobe));
+        case 17: return f(*std::get_if<17>(&lobe));
+        default: return f(*std::get_if<18>(&lobe));
             // clang-format on
     }
-    static_assert(std::variant_size_v<Lobe> == 13, "one case a kind");
+    static_assert(std::variant_size_v<Lobe> == 19, "one case a kind");
 }
 
 inline bool IsSpecular(const Lobe& lobe) {

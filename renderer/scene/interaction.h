@@ -13,6 +13,7 @@ enum SurfaceNeeds : uint8_t {
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
     kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise
+    kIsInterface = 16,            // nothing at all: paths go straight on, as no surface scatters
 };
 
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {

@@ -1,7 +1,11 @@
 #include "renderer/scene/material.h"
 
 #include "renderer/scene/materials/bump_map.h"
+#include "renderer/scene/materials/disney.h"
+#include "renderer/scene/materials/fourier.h"
 #include "renderer/scene/materials/glass.h"
+#include "renderer/scene/materials/hair.h"
+#include "renderer/scene/materials/interface.h"
 #include "renderer/scene/materials/matte.h"
 #include "renderer/scene/materials/metal.h"
 #include "renderer/scene/materials/mirror.h"
@@ -15,8 +19,8 @@ namespace lull {
 namespace {
 
 // Lists every kind; what a kind has to provide is in materials/material_inputs.h.
-using MaterialKind =
-    std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix>;
+using MaterialKind = std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate,
+                                  Translucent, Mix, Interface, Disney, Hair, Fourier>;
 
 }  // namespace
 
@@ -70,6 +74,12 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
             });
             if constexpr (requires { kind.roughness; })
                 if (!kind.roughness.IsIsotropic()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
+            if constexpr (requires { kind.NeedsTangents(); })
+                if (kind.NeedsTangents()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
+            if constexpr (requires { kind.NeedsUv(); }) {
+                m->lobeNeeds = m->lobeNeeds | kNeedsUv;
+                m->isConstant = false;
+            }
             if constexpr (std::is_same_v<Kind, Mix>) {
                 for (int operand : kind.operands) {
                     const Material& o = made[operand];
@@ -81,6 +91,10 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
                 m->bump = made[kind.operands[0]].bump;
             } else {
                 m->maxLobes = kind.MaxLobes();
+            }
+            if constexpr (std::is_same_v<Kind, Interface>) {
+                m->lobeNeeds = kIsInterface;
+                m->bump.reset();
             }
         },
         m->kind);
@@ -98,9 +112,10 @@ void Refuse(const MaterialEntity& entity, const std::string& problem, bool subst
     warnings.Add(entity.loc, problem + "; a matte material stands in");
 }
 
-Material MakeMaterial(const MaterialEntity& entity, const TextureTable& textures,
-                      std::span<const Material> made, bool substitute, Warnings& warnings) {
-    const MaterialReader in{entity, textures, made};
+Material MakeMaterial(const Description& description, const MaterialEntity& entity,
+                      const TextureTable& textures, std::span<const Material> made, bool substitute,
+                      Warnings& warnings) {
+    const MaterialReader in{entity, textures, made, description};
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
     const auto finish = [&](const MaterialKind& kind) {
         Material m(kind);
@@ -110,18 +125,29 @@ Material MakeMaterial(const MaterialEntity& entity, const TextureTable& textures
         return m;
     };
 
-    const std::optional<MaterialKind> kind = MakeKind(entity.name, in);
+    const std::optional<MaterialKind> kind =
+        MakeKind(entity.name.empty() ? Interface::kName : entity.name, in);
     if (!kind) {
         Refuse(entity, "material \"" + entity.name + "\" is not modelled", substitute, warnings);
         return finish(Matte(in));
     }
-    if (const Mix* mix = std::get_if<Mix>(&*kind)) {
-        if (const std::string problem = mix->Problem(in); !problem.empty()) {
-            Refuse(entity, problem, substitute, warnings);
-            return finish(Matte(in));
-        }
+    const std::string problem = std::visit(
+        [&](const auto& k) {
+            if constexpr (requires { k.Problem(in); })
+                return k.Problem(in);
+            else
+                return std::string();
+        },
+        *kind);
+    if (!problem.empty()) {
+        Refuse(entity, problem, substitute, warnings);
+        return finish(Matte(in));
     }
     Material m = finish(*kind);
+    if (std::holds_alternative<Mix>(*kind) && (m.needs & kIsInterface)) {
+        Refuse(entity, "a mix of a material and \"none\" is not modelled", substitute, warnings);
+        return finish(Matte(in));
+    }
     if (m.maxLobes > Bsdf::kMaxLobes) {
         Refuse(entity,
                "material \"" + entity.name + "\" can have more than " +
@@ -167,7 +193,7 @@ MaterialTable::MaterialTable(const Description& description, const TextureTable&
                              bool substitute, Warnings& warnings) {
     materials.reserve(description.materials.size());
     for (const MaterialEntity& entity : description.materials) {
-        Material m = MakeMaterial(entity, textures, materials, substitute, warnings);
+        Material m = MakeMaterial(description, entity, textures, materials, substitute, warnings);
         FoldConstants(textures, materials, &m);
         materials.push_back(std::move(m));
     }

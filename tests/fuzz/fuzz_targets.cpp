@@ -5,6 +5,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/scene/materials/fourier_file.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/thresholds.h"
@@ -34,6 +35,14 @@ void FuzzPly(std::span<const char> bytes) {
     Warnings warnings;
     try {
         LoadPly(path, warnings);
+    } catch (const Error&) {
+    }
+}
+
+void FuzzBsdf(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        LoadFourierTable(path);
     } catch (const Error&) {
     }
 }
@@ -78,6 +87,7 @@ void FuzzThresholds(std::span<const char> bytes) {
 std::vector<NamedFuzzTarget> FuzzTargets() {
     return {{"pbrt", FuzzPbrt},
             {"ply", FuzzPly},
+            {"bsdf", FuzzBsdf},
             {"model", FuzzModel},
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds}};

@@ -6,7 +6,11 @@
 //     explicit K(const MaterialReader&)                  reads the parameters;
 //     void AddLobes(const MaterialInputs&, Bsdf*) const  adds the lobes, sets eta if not 1;
 //     void VisitTextures(f) const                        calls f with every texture it evaluates;
-//     int MaxLobes() const                               how many lobes AddLobes can add.
+//     int MaxLobes() const                               how many lobes AddLobes can add,
+// and, where they apply,
+//     std::string Problem(const MaterialReader&) const   what is wrong or not modelled, "" if
+//     nothing; bool NeedsTangents() const, bool NeedsUv() const   whether the lobes depend on
+//     these.
 #pragma once
 
 #include <optional>
@@ -25,6 +29,7 @@ struct MaterialReader {
     const MaterialEntity& entity;
     const TextureTable& textures;
     std::span<const Material> made;
+    const Description& description;  // relative file names start at its directory
 
     FloatTexture Float(const std::string& name, float otherwise) const {
         return textures.GetFloat(entity, name, otherwise);

@@ -27,6 +27,13 @@ inline std::vector<NamedLobe> SpreadLobes() {
         {"Lambertian transmission", LambertianTransmission{color}},
         {"Oren-Nayar 20", OrenNayar(color, 20)},
         {"Oren-Nayar 90", OrenNayar(color, 90)},
+        {"Disney base", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::Base}},
+        {"Disney subsurface", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::FakeSubsurface}},
+        {"Disney retro", DisneyDiffuse{color, 0.8f, DisneyDiffuse::Part::RetroReflection}},
+        {"Disney sheen", DisneyDiffuse{color, 0, DisneyDiffuse::Part::Sheen}},
+        {"Disney clearcoat", DisneyClearcoat{color, 0.1f}},
+        {"Disney reflection",
+         DisneyReflection{color, {0.2f, 0.4f}, {Rgb(0.1f, 0.2f, 0.9f), 0.6f, 1.5f}}},
     };
     const Vec2f alphas[] = {{1e-4f, 1e-4f}, {0.01f, 0.01f}, {0.1f, 0.1f}, {0.5f, 0.5f},
                             {1.62f, 1.62f}, {0.05f, 0.4f},  {1, 0.2f}};

@@ -45,7 +45,7 @@ Lobe HardLobe(Random* random) {
     const TrowbridgeReitz d(ax, random->Below(2) ? ax : roughness[random->Below(7)]);
     const float eta = index[random->Below(8)];
     const Rgb c(random->Float(), 1, 0), e(0.01f + 3 * random->Float(), 1, 0);
-    switch (random->Below(12)) {
+    switch (random->Below(17)) {
         case 0:
             return LambertianReflection{c};
         case 1:
@@ -68,6 +68,16 @@ Lobe HardLobe(Random* random) {
             return SpecularTransmission{c, eta};
         case 10:
             return FresnelSpecular{c, c, eta};
+        case 11:
+            return DisneyDiffuse{c, random->Float(), DisneyDiffuse::Part(random->Below(4))};
+        case 12:
+            return DisneyReflection{c, d, {e, random->Float(), eta}};
+        case 13:
+            return DisneyTransmission{c, d, eta};
+        case 14:
+            return DisneyClearcoat{c, Lerp(random->Float(), 0.1f, 0.001f)};
+        case 15:
+            return HairLobe(c, 2 * random->Float() - 1, eta, ax, random->Float(), 3);
         default:
             return FresnelBlend{c, Rgb(1, random->Float(), 0), d};
     }

@@ -192,5 +192,88 @@ TEST(Translucent, Defaults) {
     EXPECT_EQ(bsdf.Eta(), 1.5f);
 }
 
+TEST(Disney, Defaults) {
+    MaterialScene b;
+    b.AddMaterial("disney");
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    using Part = DisneyDiffuse::Part;
+    ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 0).r, 0.5f);
+    EXPECT_EQ(LobeAt<DisneyDiffuse>(bsdf, 0).part, Part::Base);
+    EXPECT_EQ(LobeAt<DisneyDiffuse>(bsdf, 1).part, Part::RetroReflection);
+    const auto& reflection = LobeAt<DisneyReflection>(bsdf, 2);
+    EXPECT_FLOAT_EQ(reflection.distribution.AlphaX(), 0.25f);
+    EXPECT_FLOAT_EQ(reflection.distribution.AlphaY(), 0.25f);
+    ExpectGrey(reflection.interface.r0, 0.04f);
+    EXPECT_EQ(bsdf.Eta(), 1);
+}
+
+TEST(Disney, AddsWhatItsWeightsAskFor) {
+    MaterialScene b;
+    MaterialEntity& m = b.AddMaterial("disney");
+    AddBool(&m, "thin", true);
+    AddGrey(&m, "color", 0.64f);
+    for (const auto& [name, value] :
+         {std::pair("metallic", 0.5f), std::pair("anisotropic", 1.f), std::pair("roughness", 0.6f),
+          std::pair("sheen", 0.5f), std::pair("clearcoat", 0.7f), std::pair("clearcoatgloss", 0.f),
+          std::pair("spectrans", 0.2f), std::pair("flatness", 0.25f), std::pair("difftrans", 0.5f),
+          std::pair("eta", 1.3f)})
+        AddFloat(&m, name, value);
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 8);
+    const float diffuse = 0.5f * 0.8f * 0.64f;
+    ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 0).r, diffuse * 0.75f * 0.75f);
+    ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 1).r, diffuse * 0.25f * 0.75f);
+    ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 2).r, diffuse);
+    ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 3).r, 0.5f * 0.8f * 0.5f);
+    const float aspect = std::sqrt(0.1f);
+    EXPECT_NEAR(LobeAt<DisneyReflection>(bsdf, 4).distribution.AlphaX(), 0.36f / aspect, 1e-5);
+    EXPECT_NEAR(LobeAt<DisneyReflection>(bsdf, 4).distribution.AlphaY(), 0.36f * aspect, 1e-5);
+    EXPECT_FLOAT_EQ(LobeAt<DisneyClearcoat>(bsdf, 5).alpha, 0.1f);
+    ExpectGrey(LobeAt<MicrofacetTransmission>(bsdf, 6).t, 0.2f * 0.8f);
+    EXPECT_NEAR(LobeAt<MicrofacetTransmission>(bsdf, 6).distribution.AlphaX(),
+                Sqr((0.65f * 1.3f - 0.35f) * 0.6f) / aspect, 1e-5);
+    ExpectGrey(LobeAt<LambertianTransmission>(bsdf, 7).t, 0.25f * 0.64f);
+}
+
+TEST(Disney, RefusesScatteringBeneathTheSurface) {
+    MaterialScene b;
+    AddGrey(&b.AddMaterial("disney"), "scatterdistance", 0.1f);
+    try {
+        b.Make();
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("scene.pbrt:10: \"scatterdistance\""),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+TEST(Hair, ReadsWhatItAbsorbs) {
+    MaterialScene b;
+    b.AddMaterial("hair");
+    MaterialEntity& colored = b.AddMaterial("hair");
+    AddGrey(&colored, "color", 0.5f);
+    AddGrey(&b.AddMaterial("hair"), "sigma_a", 3);
+    const auto lobe = [&](int i) { return LobeAt<HairLobe>(b.MakeBsdf(i), 0); };
+    EXPECT_NEAR(lobe(0).sigmaA.r, 1.3f * 0.419f, 1e-5);
+    EXPECT_NEAR(lobe(1).sigmaA.g, HairAbsorptionOfColor(Rgb(0.5f, 0.5f, 0.5f), 0.3f).y(), 1e-5);
+    ExpectGrey(lobe(2).sigmaA, 3);
+    // uv.y() is 0.25.
+    EXPECT_FLOAT_EQ(lobe(0).h, -0.5f);
+    EXPECT_FLOAT_EQ(b.MakeBsdf(0).Eta(), 1.55f);
+    EXPECT_EQ(b.Make().Needs(0), kNeedsUv | kNeedsTangents);
+}
+
+TEST(Interface, IsNothing) {
+    MaterialScene b;
+    b.AddMaterial("none");
+    b.AddMaterial("");
+    for (const int i : {0, 1}) {
+        EXPECT_EQ(b.Make().Needs(i), kIsInterface);
+        EXPECT_EQ(b.MakeBsdf(i).LobeCount(LobeSet::All), 0);
+    }
+}
+
 }  // namespace
 }  // namespace lull::test

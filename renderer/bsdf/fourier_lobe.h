@@ -1,0 +1,55 @@
+// Holds scattering that was tabulated, isotropic, as splines over both cosines and a Fourier series
+// over the azimuth between the directions (Jakob et al. 2014). See lobes.h for what a lobe is.
+#pragma once
+
+#include <bit>
+#include <vector>
+
+#include "renderer/bsdf/lobe_basics.h"
+
+namespace lull {
+
+// Holds f times |cos wi|, between nodes of mu: the cosines of wo and of -wi. Entry (o, i) of a
+// table is at o * nodes + i.
+struct FourierTable {
+    static constexpr int kMaxOrder = 4096;
+
+    struct Series {
+        int first, order;  // in coefficients; each channel has `order` of them, luminance first
+    };
+
+    float eta = 1;           // index beyond the surface
+    int channels = 1;        // 1, or 3: luminance, red, blue
+    std::vector<float> mu;   // ascending
+    std::vector<float> cdf;  // integrals of the first coefficient over mu of i, by row
+    std::vector<Series> series;
+    std::vector<float> coefficients;
+
+    // Returns the first coefficient of luminance.
+    float Mean(int o, int i) const {
+        const Series& s = series[size_t(o) * mu.size() + i];
+        return s.order > 0 ? coefficients[s.first] : 0;
+    }
+};
+
+// Stores a pointer with the alignment of a float: with its own it would make every lobe longer.
+class StoredTable {
+  public:
+    StoredTable(const FourierTable* table) : bits(std::bit_cast<Bits>(table)) {}
+    const FourierTable& operator*() const { return *std::bit_cast<const FourierTable*>(bits); }
+
+  private:
+    using Bits = std::array<uint32_t, sizeof(void*) / sizeof(uint32_t)>;
+    Bits bits;
+};
+
+struct FourierLobe {
+    static constexpr bool kIsSpecular = false, kTransmits = false, kIsTwoSided = true;
+    StoredRgb r;         // scales f
+    StoredTable stored;  // outlives the lobe
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const;
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const;
+};
+
+}  // namespace lull

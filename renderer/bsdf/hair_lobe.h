@@ -1,0 +1,35 @@
+// Holds the scattering of a hair (Marschner et al. 2003; d'Eon et al. 2011; Chiang et al. 2016, as
+// pbrt-v3 has it). See lobes.h for what a lobe is.
+#pragma once
+
+#include "renderer/bsdf/lobe_basics.h"
+
+namespace lull {
+
+// Sums the light that a dielectric, absorbing cylinder reflects, and that which leaves it after one
+// passage, two, and all the others. The hair runs along x of the local frame. f is divided by
+// |cos wi|, so that with it, where it is used, light arrives at the cylinder as such.
+struct HairLobe {
+    static constexpr bool kIsSpecular = false, kTransmits = false, kIsTwoSided = true;
+    StoredRgb r;          // scales f
+    StoredRgb sigmaA;     // absorption for a radius of 1
+    float h;              // offset of the point across the hair, in [-1, 1]
+    float eta;            // index of refraction
+    float variance;       // along the hair, of the reflection
+    float logisticScale;  // around the hair
+    float sinTilt;        // of the scales on its surface
+
+    // `betaM` and `betaN` are the roughness along and around the hair, held in [0.01, 1]: at 0,
+    // which pbrt-v3 admits, its formulas are quotients of zeros. `alpha` is the tilt in degrees.
+    HairLobe(const Rgb& sigmaA, float h, float eta, float betaM, float betaN, float alpha);
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const;
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const;
+};
+
+// Return the absorption of concentrations of eumelanin and pheomelanin, and that with which hair of
+// azimuthal roughness betaN looks to have the colour c, each in (0, 1].
+Rgb HairAbsorption(float eumelanin, float pheomelanin);
+Rgb HairAbsorptionOfColor(const Rgb& c, float betaN);
+
+}  // namespace lull

@@ -1,0 +1,82 @@
+#include "renderer/scene/materials/disney.h"
+
+#include "renderer/base/color.h"
+
+namespace lull {
+
+Disney::Disney(const MaterialReader& in)
+    : color(in.Spectrum("color", 0.5f)),
+      scatterDistance(in.Spectrum("scatterdistance", 0)),
+      metallic(in.Float("metallic", 0)),
+      eta(in.Float("eta", 1.5f)),
+      rough(in.Float("roughness", 0.5f)),
+      specularTint(in.Float("speculartint", 0)),
+      anisotropic(in.Float("anisotropic", 0)),
+      sheen(in.Float("sheen", 0)),
+      sheenTint(in.Float("sheentint", 0.5f)),
+      clearcoat(in.Float("clearcoat", 0)),
+      clearcoatGloss(in.Float("clearcoatgloss", 1)),
+      specTrans(in.Float("spectrans", 0)),
+      thin(in.entity.parameters.GetBool("thin", false)),
+      flatness(in.Float("flatness", 0)),
+      diffTrans(in.Float("difftrans", 1)) {}
+
+int Disney::MaxLobes() const {
+    const auto canBe = [](const FloatTexture& t) { return !(t.IsConstant() && t.constant <= 0); };
+    // Base, retro-reflection and specular reflection; in addition of thin ones a flat base and
+    // transmission.
+    return 3 + 2 * thin + canBe(sheen) + canBe(clearcoat) + canBe(specTrans);
+}
+
+void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
+    using Part = DisneyDiffuse::Part;
+    const Rgb c = in.Color(color);
+    const float metal = in(metallic), index = in(eta), through = in(specTrans);
+    const float roughness = in(rough), transmitted = in(diffTrans) / 2;
+    const float diffuse = (1 - metal) * (1 - through);
+    const float luminance = Luminance(c);
+    const Rgb tint = luminance > 0 ? Rgb(c / luminance) : Rgb(Rgb::Ones());
+    const auto tinted = [&](float amount) { return Rgb((1 - amount) + amount * tint); };
+    // As in pbrt-v3 a part whose weight is black stays among those to choose from.
+    const auto add = [&](const Rgb& r, Part part) {
+        bsdf->Add(DisneyDiffuse{Rgb(r.max(0.f)), roughness, part});
+    };
+    if (diffuse > 0) {
+        if (thin) {
+            const float flat = in(flatness);
+            add(diffuse * (1 - flat) * (1 - transmitted) * c, Part::Base);
+            add(diffuse * flat * (1 - transmitted) * c, Part::FakeSubsurface);
+        } else {
+            add(diffuse * c, Part::Base);
+        }
+        add(diffuse * c, Part::RetroReflection);
+        if (const float weight = in(sheen); weight > 0)
+            add(diffuse * weight * tinted(in(sheenTint)), Part::Sheen);
+    }
+
+    const float aspect = std::sqrt(std::max(0.01f, 1 - in(anisotropic)*0.9f));
+    const auto distribution = [&](float r) {
+        return TrowbridgeReitz(Sqr(r) / aspect, Sqr(r) * aspect);
+    };
+    const Rgb dielectricR0 = Sqr((index - 1) / (index + 1)) * tinted(in(specularTint));
+    const Rgb r0 = (1 - metal) * dielectricR0 + metal * c;
+    bsdf->Add(
+        DisneyReflection{Rgb(1, 1, 1), distribution(roughness), DisneyInterface{r0, metal, index}});
+    if (const float weight = in(clearcoat); weight > 0) {
+        // A coat of alpha 1 would be a quotient of zeros.
+        const float alpha = std::clamp(Lerp(in(clearcoatGloss), 0.1f, 0.001f), 1e-4f, 0.99f);
+        bsdf->Add(DisneyClearcoat{Rgb(weight, weight, weight), alpha});
+    }
+    if (through > 0) {
+        // Its root, since light goes through two surfaces of a body.
+        const Rgb t = through * c.sqrt();
+        if (thin)
+            bsdf->Add(MicrofacetTransmission{t, distribution((0.65f * index - 0.35f) * roughness),
+                                             index});
+        else
+            bsdf->Add(DisneyTransmission{t, distribution(roughness), index});
+    }
+    if (thin) bsdf->Add(LambertianTransmission{Rgb((transmitted * c).max(0.f))});
+}
+
+}  // namespace lull

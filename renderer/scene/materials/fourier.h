@@ -1,0 +1,27 @@
+// Represents a layered or measured material that a file has tabulated.
+#pragma once
+
+#include <memory>
+
+#include "renderer/scene/materials/material_inputs.h"
+
+namespace lull {
+
+struct Fourier {
+    static constexpr const char* kName = "fourier";
+
+    std::shared_ptr<const FourierTable> table;
+    std::string problem;  // why there is no table
+
+    explicit Fourier(const MaterialReader& in);
+
+    // Returns why the file could not be read, "" where it was.
+    std::string Problem(const MaterialReader&) const { return problem; }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+
+    template <typename F>
+    void VisitTextures(F&&) const {}
+    int MaxLobes() const { return 1; }
+};
+
+}  // namespace lull
