@@ -85,8 +85,10 @@ void PrintView(const Description& description, const Scene& scene) {
     Line("sampler",
          fmt::format("{} as {}, {} samples per pixel in the file", description.sampler.name,
                      NameOf(scene.sampler), scene.samplesPerPixel));
-    Line("integrator", fmt::format("{} as path, maximum depth {}, roulette threshold {:g}",
-                                   description.integrator.name, scene.maxDepth, scene.rrThreshold));
+    Line("integrator",
+         fmt::format("{} as {}, maximum depth {}, roulette threshold {:g}",
+                     description.integrator.name, scene.isVolumetric ? "volpath" : "path",
+                     scene.maxDepth, scene.rrThreshold));
 }
 
 void PrintCosts(const Scene& scene, double parseSeconds) {

@@ -118,6 +118,10 @@ void Parameters::ReportUnused(const std::string& owner, Warnings& warnings) cons
                          "'" + parameter.name + "' of " + owner + " has no effect");
 }
 
+bool IntegratorSeesMedia(const std::string& name) {
+    return name == "volpath" || name == "bdpt" || name == "mlt";
+}
+
 std::string ResolvePath(const Description& description, const std::string& file) {
     if (file.empty() || description.directory.empty()) return file;
     // An absolute path replaces the directory.

@@ -101,11 +101,18 @@ struct LightEntity : Entity {
     Mat4d worldFromLight = Mat4d::Identity();
 };
 
+struct MediumEntity : Entity {
+    std::string mediumName;
+    Mat4d worldFromMedium = Mat4d::Identity();
+};
+
 struct ShapeEntity : Entity {
     Mat4d worldFromObject = Mat4d::Identity();  // inside an object definition: objectFromShape
     bool reverseOrientation = false;
     int material = -1;                // into Description::materials
     std::optional<Entity> areaLight;  // of AreaLightSource, in force at the shape
+    // Of MediumInterface, into Description::media; -1: vacuum.
+    int insideMedium = -1, outsideMedium = -1;
 };
 
 // Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the
@@ -127,6 +134,8 @@ struct Description {
         sampler{"halton", {}, {}}, integrator{"path", {}, {}};
     Mat4d cameraFromWorld = Mat4d::Identity();
 
+    std::vector<MediumEntity> media;  // none where the integrator does not see them
+    int cameraMedium = -1;            // what the camera is in; -1: vacuum
     std::vector<TextureEntity> textures;
     std::vector<MaterialEntity> materials;
     std::vector<LightEntity> lights;
@@ -136,6 +145,9 @@ struct Description {
 
     std::string directory;  // of the scene's file; relative file names start there
 };
+
+// Says whether the integrator of that name shows participating media: pbrt-v3's path does not.
+bool IntegratorSeesMedia(const std::string& name);
 
 // Returns `file` as named in a parameter, made relative to the description's directory.
 std::string ResolvePath(const Description& description, const std::string& file);

@@ -45,6 +45,9 @@ class Hasher {
         Number(shape.reverseOrientation);
         Number(shape.material);
         if (shape.areaLight) Of(*shape.areaLight);
+        if (description.media.empty()) return;
+        Number(shape.insideMedium);
+        Number(shape.outsideMedium);
     }
 
     uint32_t Result() const { return uint32_t(crc); }
@@ -112,6 +115,11 @@ std::string SceneHash(const Description& d) {
         hash.Number(instance.object);
         hash.Matrix(instance.worldFromInstance);
     }
+    for (const MediumEntity& medium : d.media) {
+        hash.Of(medium);
+        hash.Matrix(medium.worldFromMedium);
+    }
+    if (!d.media.empty()) hash.Number(d.cameraMedium);
     return fmt::format("crc32:{:08x}", hash.Result());
 }
 

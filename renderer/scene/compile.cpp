@@ -31,17 +31,27 @@ void ReadSampler(const Entity& entity, Scene* scene, Warnings& warnings) {
         throw Error(entity.loc, "the number of samples a pixel has to be at least 1");
 }
 
+// Says whether a material is none, so that shadow rays of volpath pass through its surfaces.
+bool HasInterfaces(const Description& description) {
+    return std::any_of(description.materials.begin(), description.materials.end(),
+                       [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
+}
+
 void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& warnings) {
     const Parameters& params = entity.parameters;
-    if (entity.name != "path")
-        warnings.Add(entity.loc,
-                     fmt::format("Integrator \"{}\" is rendered as \"path\"", entity.name));
+    const bool seesMedia = IntegratorSeesMedia(entity.name);
+    // volpath is path where there is nothing else for it to see.
+    scene->isVolumetric = seesMedia && scene->isVolumetric;
+    if (entity.name != "path" && entity.name != "volpath")
+        warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"", entity.name,
+                                             seesMedia ? "volpath" : "path"));
     scene->maxDepth = params.GetInt("maxdepth", 5);
     scene->rrThreshold = params.GetFloat("rrthreshold", 1);
     if (maxDepth >= 0) scene->maxDepth = maxDepth;
     if (scene->maxDepth < 0) throw Error(entity.loc, "\"maxdepth\" has to be at least 0");
     params.GetString("lightsamplestrategy", "");  // the light table reads it
-    if (entity.name == "path") params.ReportUnused("Integrator \"path\"", warnings);
+    if (entity.name == "path" || entity.name == "volpath")
+        params.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
 }
 
 }  // namespace
@@ -54,6 +64,8 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     scene->camera = MakeCamera(description, scene->film, warnings);
     ReadSampler(description.sampler, scene.get(), warnings);
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
+    scene->media = MediumTable(description, warnings);
+    scene->isVolumetric = !scene->media.media.empty() || HasInterfaces(description);
     ReadIntegrator(description.integrator, options.maxDepth, scene.get(), warnings);
 
     scene->textureSeconds = Timed([&] {

@@ -10,6 +10,7 @@
 #include "renderer/scene/filter.h"
 #include "renderer/scene/light_table.h"
 #include "renderer/scene/material.h"
+#include "renderer/scene/medium_table.h"
 #include "renderer/scene/shape_table.h"
 #include "renderer/scene/texture.h"
 
@@ -25,10 +26,12 @@ struct Scene {
     int samplesPerPixel = 16;
     int maxDepth = 5;
     float rrThreshold = 1;
+    bool isVolumetric = false;  // media, or interfaces that shadow rays pass, are to be seen
 
     TextureTable textures;
     MaterialTable materials;
     ShapeTable shapes;
+    MediumTable media;
     LightTable lights;
     Accelerator accelerator;
 

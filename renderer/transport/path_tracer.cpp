@@ -1,23 +1,12 @@
 #include "renderer/transport/path_tracer.h"
 
 #include "renderer/base/color.h"
-#include "renderer/base/sampling.h"
 #include "renderer/scene/footprint.h"
+#include "renderer/transport/path_state.h"
+#include "renderer/transport/volume_path_tracer.h"
 
 namespace lull {
 namespace {
-
-// Carries the state of a path from one vertex to the next.
-struct Path {
-    Ray ray;
-    Rgb beta = Rgb::Ones();  // product of f cos / pdf so far
-    float etaScale = 1;      // undoes the radiance scaling of refractions for Russian roulette
-    bool seesLights = true;  // emission counts in full: camera ray, or after a specular bounce
-    // Of the BSDF sample that made `ray`, for Estimator::Combined:
-    float pdf = 0;                 // 1/sr
-    Vec3f origin = Vec3f::Zero();  // the vertex
-    LightChoice choice{};          // of lights there
-};
 
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
 // the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
@@ -97,60 +86,12 @@ Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
     return L;
 }
 
-// Returns the weight of emission that the path's own ray has found on light `index`, where light
-// sampling at the last vertex would have found it with density `lightPdf`.
-float EmissionWeight(Estimator estimator, const Path& path, int index, float lightPdf) {
-    if (path.seesLights) return 1;
-    if (estimator == Estimator::PbrtV3) return 0;  // counted at the last vertex
-    return PowerHeuristic(path.pdf, lightPdf * path.choice.Pmf(index));
-}
-
-// Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
-// scene.
-Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
-             const SurfaceInteraction* hit) {
-    if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
-    Rgb sum = Rgb::Zero();
-    if (!hit) {
-        for (const int i : scene.lights.Infinite()) {
-            const auto& light = std::get<InfiniteLight>(scene.lights[i]);
-            const float pdf = path.seesLights ? 0 : light.Pdf(path.ray.d);
-            sum += light.Le(path.ray.d) * EmissionWeight(estimator, path, i, pdf);
-        }
-    } else if (hit->areaLight >= 0) {
-        const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
-        const Rgb L = light.Le(hit->n, hit->wo);
-        if (IsBlack(L)) return sum;
-        const float pdf = path.seesLights ? 0 : light.Pdf(path.origin, hit->p, hit->n);
-        sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
-    }
-    return sum;
-}
-
-// Continues the path with a BSDF sample. Returns false where it ends.
-bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path) {
-    const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
-    if (!sample) return false;
-    path->beta *= sample->f * (std::abs(sample->wi.dot(hit.ns)) / sample->pdf);
-    path->seesLights = sample->isSpecular;
-    path->pdf = sample->pdf;
-    path->origin = hit.p;
-    if (sample->isSpecular && sample->isTransmission) {
-        const float eta2 = Sqr(bsdf.Eta());
-        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
-    }
-    path->ray = hit.SpawnRay(sample->wi);
-    return true;
-}
-
-// Ends dim paths at random and makes up for it in the others. Returns false where it ends.
-bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
-    const float brightest = path->beta.maxCoeff() * path->etaScale;
-    if (brightest >= threshold) return true;
-    const float q = std::max(0.05f, 1 - brightest);
-    if (sampler.Get1D() < q) return false;
-    path->beta /= 1 - q;
-    return true;
+// Carries the ray on behind an interface. As with pbrt-v3's path integrator, which blocks shadow
+// rays there, lights behind it are seen only by rays for which emission counts in full.
+void GoThrough(const SurfaceInteraction& hit, Path* path) {
+    path->ray = hit.SpawnRay(path->ray.d);
+    path->pdf = 0;
+    path->wentThrough = true;
 }
 
 }  // namespace
@@ -177,10 +118,15 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         scene.shapes.Interact(path.ray, found, needs, &hit);
         scene.lights.Prefetch(hit.p);
-        if (bounces == 0 && (needs & kNeedsFootprint))
+        if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
         if (isLast) break;
+        if (needs & kIsInterface) {
+            GoThrough(hit, &path);
+            --bounces;
+            continue;
+        }
 
         // Sample the light that arrives directly from lights.
         const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
@@ -201,7 +147,8 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
     const Vec2f lens = scene.camera.lensRadius > 0 ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
-    Rgb L = Radiance(scene, estimator, sampler, film, lens);
+    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, film, lens)
+                               : Radiance(scene, estimator, sampler, film, lens);
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;

@@ -92,7 +92,11 @@ void PbrtBuilder::WorldBegin() {
     coordinateSystems["world"] = state.ctm;
     if (earlyMedium) {
         loc = earlyMedium->second;
-        LeaveOutMedium(earlyMedium->first);
+        if (!SeesMedium(earlyMedium->first)) {
+            description.media.clear();
+            media.clear();
+            state.insideMedium = state.outsideMedium = "";
+        }
     }
 }
 
@@ -101,6 +105,8 @@ void PbrtBuilder::WorldEnd() {
         throw Error(loc, std::string("WorldEnd where the ") + ScopeName(int(scopes.back().kind)) +
                              "Begin of line " + std::to_string(scopes.back().loc.line) +
                              " is still open");
+    // pbrt-v3 makes its camera only here, in the medium that is then in force.
+    description.cameraMedium = MediumNamed(state.outsideMedium);
     stage = Stage::Done;
 }
 
@@ -156,6 +162,8 @@ void PbrtBuilder::Shape() {
     shape.worldFromObject = StaticTransform("Shape");
     shape.reverseOrientation = state.reverseOrientation;
     shape.material = CurrentMaterial();
+    shape.insideMedium = MediumNamed(state.insideMedium);
+    shape.outsideMedium = MediumNamed(state.outsideMedium);
     if (currentObject < 0) {
         if (state.areaLight) shape.areaLight = *state.areaLight;
         description.shapes.push_back(std::move(shape));
@@ -234,35 +242,56 @@ void PbrtBuilder::NamedMaterial() {
 // Media.
 
 void PbrtBuilder::MakeNamedMedium() {
-    ReadEntity();
-    LeaveOutMedium("MakeNamedMedium");
+    auto medium = ReadAs<MediumEntity>();
+    if (!SeesMedium("MakeNamedMedium")) return;
+    medium.mediumName = std::exchange(medium.name, {});
+    const std::string name = medium.mediumName;
+    if (!medium.parameters.Find(ParameterType::String, "type"))
+        throw Error(loc, "MakeNamedMedium \"" + Printable(name) +
+                             "\" has no \"string type\"; add one, such as \"homogeneous\"");
+    medium.name = medium.parameters.GetString("type", "");
+    medium.worldFromMedium = StaticTransform("MakeNamedMedium");
+    if (!media.insert_or_assign(name, int(description.media.size())).second)
+        warnings.Add(loc, "named medium redefined", "\"" + Printable(name) + "\"");
+    description.media.push_back(std::move(medium));
 }
 
 void PbrtBuilder::MediumInterface() {
-    const std::string inside = ReadString("the name of a medium");
+    std::string inside = ReadString("the name of a medium");
     const bool hasOutside = lexer.Peek().kind == TokenKind::String;
-    const std::string outside = hasOutside ? lexer.Take().text : inside;
-    // Vacuum on both sides is what there is anyway.
-    if (!inside.empty() || !outside.empty()) LeaveOutMedium("MediumInterface");
+    std::string outside = hasOutside ? lexer.Take().text : inside;
+    // Vacuum on both sides is what there is anyway, if nothing else was said before.
+    const bool isVacuum = inside.empty() && outside.empty();
+    if (!isVacuum && !SeesMedium("MediumInterface")) return;
+    state.insideMedium = std::move(inside);
+    state.outsideMedium = std::move(outside);
 }
 
-// Leaves media out where pbrt-v3 does so itself: of its integrators only three look at them, and
-// it warns of media with the others. The integrator is known from WorldBegin on.
-void PbrtBuilder::LeaveOutMedium(const std::string& directive) {
+// Finds a medium by its name when it is used, since it may be made after MediumInterface.
+int PbrtBuilder::MediumNamed(const std::string& name) {
+    if (name.empty()) return -1;
+    const auto it = media.find(name);
+    if (it == media.end())
+        throw Error(loc, "medium \"" + Printable(name) +
+                             "\" of MediumInterface: no MakeNamedMedium before defines it");
+    return it->second;
+}
+
+// Says whether media count, or warns that they do not: pbrt-v3 leaves them out with all but three
+// integrators. Which one it is, is known from WorldBegin on; until then they count.
+bool PbrtBuilder::SeesMedium(const std::string& directive) {
     if (stage == Stage::Options) {
         if (!earlyMedium) earlyMedium = {directive, loc};
-        return;
+        return true;
     }
     const std::string& integrator = description.integrator.name;
-    if (integrator != "volpath" && integrator != "bdpt" && integrator != "mlt")
-        warnings.Add(loc, "participating medium ignored",
-                     directive +
-                         " has no effect with "
-                         "Integrator \"" +
-                         Printable(integrator) + "\", in pbrt-v3 as well");
-    else
-        Refuse("participating media (" + directive + ") are",
-               "use Integrator \"path\", which ignores them, or --substitute");
+    if (IntegratorSeesMedia(integrator)) return true;
+    warnings.Add(loc, "participating medium ignored",
+                 directive +
+                     " has no effect with "
+                     "Integrator \"" +
+                     Printable(integrator) + "\", in pbrt-v3 as well");
+    return false;
 }
 
 }  // namespace lull

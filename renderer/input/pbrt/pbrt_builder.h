@@ -98,7 +98,8 @@ class PbrtBuilder {
     void Begin(ScopeKind kind);
     void End(ScopeKind kind);
     void Refuse(const std::string& what, const std::string& remedy);
-    void LeaveOutMedium(const std::string& directive);
+    bool SeesMedium(const std::string& directive);
+    int MediumNamed(const std::string& name);
     int AddMaterial(MaterialEntity material);
     int CurrentMaterial();
 
@@ -116,6 +117,7 @@ class PbrtBuilder {
     int currentObject = -1;  // the one being defined, into Description::objects
     std::map<std::string, TransformPair> coordinateSystems;
     std::map<std::string, FileLoc> optionsSeen;
+    std::map<std::string, int> media;                            // into Description::media
     std::optional<std::pair<std::string, FileLoc>> earlyMedium;  // the first before WorldBegin
 };
 

@@ -52,6 +52,7 @@ struct GraphicsState {
     int material = -1;  // into Description::materials; -1 is the default
     bool reverseOrientation = false;
     std::shared_ptr<const Entity> areaLight;
+    std::string insideMedium, outsideMedium;  // by name; empty: vacuum
     size_t floatTextureMark = 0, spectrumTextureMark = 0, materialMark = 0;
 };
 

@@ -321,12 +321,27 @@ TEST_F(Directives, MediaAreIgnoredByThePathIntegrator) {
     EXPECT_EQ(warnings.Counts().at("participating medium ignored"), 3);
 }
 
-TEST_F(Directives, MediaAreLeftOutOnDemand) {
-    folder.Parse(
-        "Integrator \"volpath\" WorldBegin MakeNamedMedium \"m\" MediumInterface \"m\" "
-        "MediumInterface \"\" \"\" WorldEnd",
-        &warnings, {.substitute = true});
-    EXPECT_EQ(warnings.Total(), 2);
+TEST_F(Directives, MediaLieOnBothSidesOfShapes) {
+    const auto d = folder.Parse(
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"\" \"fog\" "
+        "Integrator \"volpath\" WorldBegin Translate 1 2 3 "
+        "MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" "
+        "AttributeBegin MediumInterface \"m\" \"fog\" Shape \"sphere\" "
+        "MediumInterface \"m\" Shape \"disk\" MediumInterface \"\" Shape \"disk\" AttributeEnd "
+        "Shape \"sphere\" WorldEnd",
+        &warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    ASSERT_EQ(d.media.size(), 2u);
+    EXPECT_EQ(d.media[1].name, "heterogeneous");
+    EXPECT_EQ(d.media[1].mediumName, "m");
+    EXPECT_EQ(d.media[1].worldFromMedium(1, 3), 2);
+    EXPECT_EQ(d.cameraMedium, 0);
+    const int sides[][2] = {{1, 0}, {1, 1}, {-1, -1}, {-1, 0}};
+    ASSERT_EQ(d.shapes.size(), std::size(sides));
+    for (size_t i = 0; i < d.shapes.size(); ++i) {
+        EXPECT_EQ(d.shapes[i].insideMedium, sides[i][0]) << i;
+        EXPECT_EQ(d.shapes[i].outsideMedium, sides[i][1]) << i;
+    }
 }
 
 }  // namespace

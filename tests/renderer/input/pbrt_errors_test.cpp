@@ -181,12 +181,12 @@ TEST_F(PbrtErrors, Spectra) {
 
 TEST_F(PbrtErrors, Refusals) {
     const std::string path = "Integrator \"volpath\" WorldBegin\n";
-    Expect(path + "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"",
-           "scene.pbrt:2: participating media (MakeNamedMedium) are not modelled; use ");
-    Expect(path + "MediumInterface \"a\" \"b\"",
-           "scene.pbrt:2: participating media (MediumInterface) are not modelled; use ");
-    Expect("\nMediumInterface \"a\"\nIntegrator \"bdpt\" WorldBegin",
-           "scene.pbrt:2: participating media (MediumInterface) are not modelled");
+    Expect(path + "MakeNamedMedium \"m\" \"string kind\" \"homogeneous\"",
+           "scene.pbrt:2: MakeNamedMedium \"m\" has no \"string type\"");
+    Expect(path + "MediumInterface \"a\" \"b\" Shape \"sphere\"",
+           "scene.pbrt:2: medium \"a\" of MediumInterface: no MakeNamedMedium before defines it");
+    Expect("MediumInterface \"\" \"fog\"\nIntegrator \"bdpt\" WorldBegin\nWorldEnd",
+           "scene.pbrt:3: medium \"fog\" of MediumInterface");
     ExpectInWorld("ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\"",
                   "moving transforms (ActiveTransform) of Shape are not modelled; give the same");
     ExpectInWorld(

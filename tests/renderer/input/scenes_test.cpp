@@ -234,23 +234,14 @@ INSTANTIATE_TEST_SUITE_P(Shared, Scenes, testing::ValuesIn(Inventories()), [](co
     return name;
 });
 
-TEST(Scenes, MediumWithVolpathIsRefusedByName) {
+TEST(Scenes, MediumIsReadWithVolpath) {
     const auto file = SharedFolder() / "pbrt-scenes/coffee-splash/scene-volpath.pbrt";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared scene at " << file;
     Warnings warnings;
-    try {
-        ParsePbrt(file.string(), {}, warnings);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(
-            std::string(error.what())
-                .find("materials.pbrt:24: participating media (MakeNamedMedium) are not modelled"),
-            std::string::npos)
-            << error.what();
-    }
-    const Description d = ParsePbrt(file.string(), {.substitute = true}, warnings);
+    const Description d = ParsePbrt(file.string(), {}, warnings);
     EXPECT_EQ(d.shapes.size(), 9u);
-    EXPECT_EQ(warnings.Total(), 4);
+    EXPECT_EQ(d.media.size(), 1u);
+    EXPECT_EQ(warnings.Total(), 0);
 }
 
 }  // namespace

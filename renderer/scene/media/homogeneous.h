@@ -1,0 +1,34 @@
+// Represents a medium that is the same everywhere.
+#pragma once
+
+#include "renderer/base/sampler.h"
+#include "renderer/scene/media/medium_sample.h"
+
+namespace lull {
+
+struct HomogeneousMedium {
+    Rgb sigmaS, sigmaT;  // scattering and extinction, per unit of length
+    float g;             // of the phase function
+
+    // Returns the share of light that goes `length` through the medium, which may be infinite.
+    Rgb Transmittance(float length) const {
+        return (-sigmaT * std::min(length, std::numeric_limits<float>::max())).exp();
+    }
+
+    // Samples a distance by the extinction of one channel, chosen evenly (pbrt 3rd ed., 15.2.1).
+    // `length` is that of the ray to the next surface.
+    MediumSample Sample(float length, Sampler& sampler) const {
+        const int channel = std::min(int(sampler.Get1D() * 3), 2);
+        const float depth = -std::log1p(-sampler.Get1D());
+        const float distance = sigmaT[channel] > 0 ? depth / sigmaT[channel] : kInfinity;
+        const bool scatters = distance < length;
+        const Rgb through = Transmittance(std::min(distance, length));
+        const Rgb density = scatters ? Rgb(sigmaT * through) : through;
+        const float pdf = density.mean();
+        if (!(pdf > 0)) return {.weight = Rgb::Zero()};
+        if (!scatters) return {.weight = through / pdf};
+        return {.t = distance, .weight = through * sigmaS / pdf};
+    }
+};
+
+}  // namespace lull

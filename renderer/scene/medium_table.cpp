@@ -1,0 +1,127 @@
+#include "renderer/scene/medium_table.h"
+
+#include <fmt/format.h>
+
+#include "renderer/scene/media/presets.h"
+
+namespace lull {
+namespace {
+
+// Returns the ray with a unit direction, and what its t is to be multiplied by for the other's.
+std::pair<Ray, float> Normalised(const Ray& ray) {
+    const float length = ray.d.norm();
+    return {{ray.o, ray.d / length, ray.tMax * length}, 1 / length};
+}
+
+void CheckCoefficient(const MediumEntity& entity, const char* name, const Rgb& value) {
+    if (!(value >= 0).all() || !IsFinite(value))
+        throw Error(entity.loc, fmt::format("\"{}\" of medium \"{}\" has to be finite and at least "
+                                            "0",
+                                            name, entity.mediumName));
+}
+
+GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& sigmaS, float g) {
+    const Parameters& params = entity.parameters;
+    GridMedium grid;
+    const Rgb sigmaT = sigmaA + sigmaS;
+    if (sigmaT.maxCoeff() - sigmaT.minCoeff() > 1e-5f * sigmaT.maxCoeff())
+        throw Error(entity.loc, fmt::format("medium \"{}\": \"sigma_a\" plus \"sigma_s\" of a "
+                                            "heterogeneous medium has to be the same in red, green "
+                                            "and blue",
+                                            entity.mediumName));
+    grid.sigmaT = sigmaT.x();
+    grid.albedo = grid.sigmaT > 0 ? Rgb(sigmaS / grid.sigmaT) : Rgb(Rgb::Zero());
+    grid.g = g;
+    grid.size = {params.GetInt("nx", 1), params.GetInt("ny", 1), params.GetInt("nz", 1)};
+    const auto values = params.GetFloats(ParameterType::Float, "density");
+    constexpr int kMaxSide = 1 << 16;
+    if (grid.size.minCoeff() < 1 || grid.size.maxCoeff() > kMaxSide ||
+        size_t(grid.size.x()) * grid.size.y() * grid.size.z() != values.size())
+        throw Error(entity.loc, fmt::format("medium \"{}\" has {} values of \"density\" for a grid "
+                                            "of {}x{}x{}",
+                                            entity.mediumName, values.size(), grid.size.x(),
+                                            grid.size.y(), grid.size.z()));
+    grid.density.assign(values.begin(), values.end());
+    for (const float d : grid.density) {
+        if (!(d >= 0) || !std::isfinite(d))
+            throw Error(entity.loc,
+                        fmt::format("medium \"{}\": a density is not finite or negative",
+                                    entity.mediumName));
+        grid.maxDensity = std::max(grid.maxDensity, d);
+    }
+    const Vec3f p0 = params.GetPoint3("p0", Vec3f::Zero());
+    const Vec3f p1 = params.GetPoint3("p1", Vec3f::Ones());
+    Mat4d worldFromGrid = Mat4d::Identity();
+    worldFromGrid.topLeftCorner<3, 3>() = (p1 - p0).cast<double>().asDiagonal();
+    worldFromGrid.topRightCorner<3, 1>() = p0.cast<double>();
+    grid.gridFromWorld = Mat4d(entity.worldFromMedium * worldFromGrid).inverse();
+    if (!grid.gridFromWorld.allFinite())
+        throw Error(entity.loc, fmt::format("medium \"{}\": \"p0\" and \"p1\" have to span a box",
+                                            entity.mediumName));
+    return grid;
+}
+
+Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    params.GetString("type", "");  // already in entity.name
+    Rgb sigmaA(0.0011f, 0.0024f, 0.014f), sigmaS(2.55f, 3.21f, 3.77f);
+    const std::string preset = params.GetString("preset", "");
+    if (!preset.empty() && !FindMediumPreset(preset, &sigmaA, &sigmaS))
+        warnings.Add(entity.loc, "unknown medium preset, pbrt-v3's default is used", preset);
+    const float scale = params.GetFloat("scale", 1);
+    const float g = params.GetFloat("g", 0);
+    sigmaA = params.GetSpectrum("sigma_a", sigmaA) * scale;
+    sigmaS = params.GetSpectrum("sigma_s", sigmaS) * scale;
+    CheckCoefficient(entity, "sigma_a", sigmaA);
+    CheckCoefficient(entity, "sigma_s", sigmaS);
+    if (!(std::abs(g) < 1))
+        throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",
+                                            entity.mediumName));
+    std::optional<Medium> made;
+    if (entity.name == "homogeneous")
+        made = HomogeneousMedium{sigmaS, sigmaA + sigmaS, g};
+    else if (entity.name == "heterogeneous")
+        made = MakeGrid(entity, sigmaA, sigmaS, g);
+    else
+        throw Error(entity.loc, fmt::format("medium \"{}\": kind \"{}\" is not modelled; "
+                                            "homogeneous and heterogeneous are",
+                                            entity.mediumName, entity.name));
+    params.ReportUnused("medium \"" + entity.mediumName + "\"", warnings);
+    return *made;
+}
+
+}  // namespace
+
+MediumTable::MediumTable(const Description& description, Warnings& warnings) {
+    for (const MediumEntity& entity : description.media)
+        media.push_back(MakeMedium(entity, warnings));
+    if (media.empty()) return;
+    ofCamera = description.cameraMedium;
+    const auto add = [&](const ShapeEntity& shape) {
+        ofShapes.push_back({shape.insideMedium, shape.outsideMedium});
+    };
+    // In the order of ShapeTable::shapes.
+    for (const ShapeEntity& shape : description.shapes) add(shape);
+    for (const ObjectEntity& object : description.objects)
+        for (const ShapeEntity& shape : object.shapes) add(shape);
+}
+
+MediumSample MediumTable::Sample(int medium, const Ray& ray, Sampler& sampler) const {
+    const auto [unit, scale] = Normalised(ray);
+    MediumSample sample;
+    if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&media[medium]))
+        sample = homogeneous->Sample(unit.tMax, sampler);
+    else
+        sample = std::get<GridMedium>(media[medium]).Sample(unit, sampler);
+    if (sample.t) *sample.t *= scale;
+    return sample;
+}
+
+Rgb MediumTable::Transmittance(int medium, const Ray& ray, Sampler& sampler) const {
+    if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&media[medium]))
+        return homogeneous->Transmittance(ray.tMax * ray.d.norm());
+    return Rgb::Constant(
+        std::get<GridMedium>(media[medium]).Transmittance(Normalised(ray).first, sampler));
+}
+
+}  // namespace lull

@@ -1,0 +1,52 @@
+// Owns the participating media of a scene, and knows what lies on which side of which shape.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "renderer/input/description.h"
+#include "renderer/scene/media/grid.h"
+#include "renderer/scene/media/homogeneous.h"
+
+namespace lull {
+
+using Medium = std::variant<HomogeneousMedium, GridMedium>;
+
+constexpr int kVacuum = -1;
+
+struct MediumTable {
+    // The media on both sides of a shape; where they are the same, the ray's own medium goes on
+    // (pbrt-v3).
+    struct Sides {
+        int inside = kVacuum, outside = kVacuum;
+    };
+
+    std::vector<Medium> media;
+    std::vector<Sides> ofShapes;  // by the shapes of the scene; empty where there are no media
+    int ofCamera = kVacuum;
+
+    MediumTable() = default;
+    // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
+    // or infinite coefficients and extinction that differs between channels of a grid.
+    MediumTable(const Description&, Warnings&);
+
+    // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;
+    // `current` is that of the ray that met it.
+    int Beyond(int shape, bool onNormalSide, int current) const {
+        if (ofShapes.empty()) return current;
+        const Sides& sides = ofShapes[shape];
+        if (sides.inside == sides.outside) return current;
+        return onNormalSide ? sides.outside : sides.inside;
+    }
+
+    float PhaseParameter(int medium) const {
+        return std::visit([](const auto& m) { return m.g; }, media[medium]);
+    }
+
+    // Samples where the ray scatters before its tMax.
+    MediumSample Sample(int medium, const Ray& ray, Sampler& sampler) const;
+    // Estimates the share of light that gets along the ray up to its tMax.
+    Rgb Transmittance(int medium, const Ray& ray, Sampler& sampler) const;
+};
+
+}  // namespace lull

@@ -1,0 +1,78 @@
+// Shares what the loops over paths with and without media both need.
+#pragma once
+
+#include "renderer/base/sampling.h"
+#include "renderer/transport/path_tracer.h"
+
+namespace lull {
+
+// Carries the state of a path from one vertex to the next.
+struct Path {
+    Ray ray;
+    Rgb beta = Rgb::Ones();  // product of f cos / pdf so far
+    float etaScale = 1;      // undoes the radiance scaling of refractions for Russian roulette
+    bool seesLights = true;  // emission counts in full: camera ray, or after a specular bounce
+    // Of the BSDF sample that made `ray`, for Estimator::Combined:
+    float pdf = 0;                 // 1/sr
+    Vec3f origin = Vec3f::Zero();  // the vertex
+    LightChoice choice{};          // of lights there
+    bool wentThrough = false;      // an interface, where the ray goes on but nothing scatters
+};
+
+// Returns the weight of emission that the path's own ray has found on light `index`, where light
+// sampling at the last vertex would have found it with density `lightPdf`.
+inline float EmissionWeight(Estimator estimator, const Path& path, int index, float lightPdf) {
+    if (path.seesLights) return 1;
+    if (estimator == Estimator::PbrtV3) return 0;  // counted at the last vertex
+    return PowerHeuristic(path.pdf, lightPdf * path.choice.Pmf(index));
+}
+
+// Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
+// scene.
+inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
+                    const SurfaceInteraction* hit) {
+    if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
+    Rgb sum = Rgb::Zero();
+    if (!hit) {
+        for (const int i : scene.lights.Infinite()) {
+            const auto& light = std::get<InfiniteLight>(scene.lights[i]);
+            const float pdf = path.seesLights ? 0 : light.Pdf(path.ray.d);
+            sum += light.Le(path.ray.d) * EmissionWeight(estimator, path, i, pdf);
+        }
+    } else if (hit->areaLight >= 0) {
+        const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
+        const Rgb L = light.Le(hit->n, hit->wo);
+        if (IsBlack(L)) return sum;
+        const float pdf = path.seesLights ? 0 : light.Pdf(path.origin, hit->p, hit->n);
+        sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
+    }
+    return sum;
+}
+
+// Continues the path with a BSDF sample. Returns false where it ends.
+inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path) {
+    const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
+    if (!sample) return false;
+    path->beta *= sample->f * (std::abs(sample->wi.dot(hit.ns)) / sample->pdf);
+    path->seesLights = sample->isSpecular;
+    path->pdf = sample->pdf;
+    path->origin = hit.p;
+    if (sample->isSpecular && sample->isTransmission) {
+        const float eta2 = Sqr(bsdf.Eta());
+        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+    }
+    path->ray = hit.SpawnRay(sample->wi);
+    return true;
+}
+
+// Ends dim paths at random and makes up for it in the others. Returns false where it ends.
+inline bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
+    const float brightest = path->beta.maxCoeff() * path->etaScale;
+    if (brightest >= threshold) return true;
+    const float q = std::max(0.05f, 1 - brightest);
+    if (sampler.Get1D() < q) return false;
+    path->beta /= 1 - q;
+    return true;
+}
+
+}  // namespace lull

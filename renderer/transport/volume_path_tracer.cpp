@@ -1,0 +1,255 @@
+#include "renderer/transport/volume_path_tracer.h"
+
+#include "renderer/scene/footprint.h"
+#include "renderer/scene/phase.h"
+#include "renderer/transport/path_state.h"
+
+namespace lull {
+namespace {
+
+// Represents where a path scatters: at a surface or in a medium.
+struct Vertex {
+    const SurfaceInteraction* hit = nullptr;  // null in a medium
+    const Bsdf* bsdf = nullptr;
+    int shape = -1;
+    Vec3f p, wo;
+    int medium;   // of the ray that came
+    float g = 0;  // in a medium: of its phase function
+
+    // Returns f times the cosine at a surface, the phase function in a medium, and the density.
+    BsdfValue Evaluate(const Vec3f& wi, LobeSet set) const {
+        if (!hit) {
+            const float phase = PhaseHenyeyGreenstein(wo.dot(wi), g);
+            return {Rgb::Constant(phase), phase};
+        }
+        BsdfValue value = bsdf->Evaluate(wo, wi, set);
+        value.f *= std::abs(wi.dot(hit->ns));
+        return value;
+    }
+
+    int MediumTowards(const MediumTable& media, const Vec3f& wi) const {
+        return hit ? media.Beyond(shape, wi.dot(hit->n) > 0, medium) : medium;
+    }
+};
+
+// Returns the point where a ray in direction w leaves the vertex.
+Vec3f OriginTowards(const Vertex& v, const Vec3f& w) {
+    return v.hit ? OffsetRayOrigin(v.hit->p, v.hit->pError, v.hit->n, w) : v.p;
+}
+
+// Follows a ray through interfaces and adds up what its media leave of the light.
+class Beam {
+  public:
+    Beam(const Scene& scene, Sampler& sampler, const Ray& ray, int medium)
+        : ray(ray), scene(scene), sampler(sampler), medium(medium) {}
+
+    // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
+    bool Advance() {
+        Hit found;
+        const bool isHit = scene.accelerator.Intersect(ray, &found);
+        if (medium != kVacuum) {
+            Ray segment = ray;
+            if (isHit) segment.tMax = found.t;
+            transmittance *= scene.media.Transmittance(medium, segment, sampler);
+        }
+        if (!isHit) return false;
+        const int material = scene.shapes.shapes[found.shape].material;
+        isInterface = scene.materials.Needs(material) & kIsInterface;
+        light = scene.shapes.LightAt(found);
+        scene.shapes.Interact(ray, found, kNeedsNothing, &hit);
+        medium = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, medium);
+        return true;
+    }
+
+    Ray ray;
+    Rgb transmittance = Rgb::Ones();
+    // Of the surface where the beam is now:
+    bool isInterface = false;
+    int light = -1;
+    SurfaceInteraction hit;
+
+  private:
+    const Scene& scene;
+    Sampler& sampler;
+    int medium;
+};
+
+// Estimates the share of the light's sample that reaches the vertex.
+Rgb Visibility(const Scene& scene, Sampler& sampler, const Vertex& v, const LightSample& light) {
+    const int medium = v.MediumTowards(scene.media, light.wi);
+    const Vec3f origin = OriginTowards(v, light.isAtInfinity ? light.wi : Vec3f(light.p - v.p));
+    const Vec3f target = light.isAtInfinity
+                             ? light.p
+                             : OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
+    const auto rayFrom = [&](const Vec3f& o) {
+        return light.isAtInfinity ? Ray{o, light.wi, kInfinity} : Ray{o, target - o, 1 - 0.0001f};
+    };
+    Ray ray = rayFrom(origin);
+    // A grazing ray that rounding turns to the other side would pass through the surface.
+    if (v.hit && (ray.d.dot(v.hit->n) < 0) != (light.wi.dot(v.hit->n) < 0)) return Rgb::Zero();
+    Beam beam(scene, sampler, ray, medium);
+    while (beam.Advance()) {
+        if (!beam.isInterface || IsBlack(beam.transmittance)) return Rgb::Zero();
+        beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
+    }
+    return beam.transmittance;
+}
+
+// Returns the light that sampling light `index` brings to the vertex, weighted against sampling of
+// directions. `pmf` is the probability of having chosen the light.
+Rgb SampleLight(const Scene& scene, Estimator estimator, Sampler& sampler, const Vertex& v,
+                int index, float pmf, const Vec2f& u) {
+    const auto light = scene.lights.Sample(index, v.p, u);
+    if (!light || IsBlack(light->L)) return Rgb::Zero();
+    // As in the loop without media.
+    const bool hasOwnRay = estimator == Estimator::PbrtV3 || light->isHidden;
+    const BsdfValue value = v.Evaluate(light->wi, hasOwnRay ? LobeSet::NonSpecular : LobeSet::All);
+    if (IsBlack(value.f)) return Rgb::Zero();
+    const float weight =
+        light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
+    const Rgb L = value.f * light->L * (weight / (light->pdf * pmf));
+    if (IsBlack(L)) return Rgb::Zero();
+    return L * Visibility(scene, sampler, v, *light);
+}
+
+// Returns the light that a direction sampled for it finds on light `index`: the other half of
+// pbrt-v3's direct light.
+Rgb SampleDirectionForLight(const Scene& scene, Sampler& sampler, const Vertex& v, int index,
+                            float pmf, const Vec2f& u) {
+    const AreaLight* area = std::get_if<AreaLight>(&scene.lights[index]);
+    const InfiniteLight* environment = std::get_if<InfiniteLight>(&scene.lights[index]);
+    if (!area && !environment) return Rgb::Zero();  // a direction cannot be found by chance
+    if (area && area->isHidden) return Rgb::Zero();
+    Vec3f wi;
+    Rgb f = Rgb::Ones();  // over the density
+    float pdf;
+    if (v.hit) {
+        const auto sample = v.bsdf->Sample(v.wo, u, LobeSet::NonSpecular);
+        if (!sample) return Rgb::Zero();
+        wi = sample->wi;
+        pdf = sample->pdf;
+        f = sample->f * (std::abs(wi.dot(v.hit->ns)) / pdf);
+    } else {
+        wi = SampleHenyeyGreenstein(v.wo, v.g, u);
+        pdf = PhaseHenyeyGreenstein(v.wo.dot(wi), v.g);
+    }
+    Beam beam(scene, sampler, {OriginTowards(v, wi), wi, kInfinity},
+              v.MediumTowards(scene.media, wi));
+    bool isHit;
+    while ((isHit = beam.Advance()) && beam.isInterface) {
+        if (IsBlack(beam.transmittance)) return Rgb::Zero();
+        beam.ray = beam.hit.SpawnRay(wi);
+    }
+    Rgb L;
+    float lightPdf;
+    if (environment) {
+        if (isHit) return Rgb::Zero();
+        lightPdf = environment->Pdf(wi);
+        L = environment->Le(wi);
+    } else {
+        if (!isHit || beam.light != index) return Rgb::Zero();
+        lightPdf = area->Pdf(v.p, beam.hit.p, beam.hit.n);
+        L = area->Le(beam.hit.n, -wi);
+    }
+    if (lightPdf == 0) return Rgb::Zero();
+    return f * L * beam.transmittance * (PowerHeuristic(pdf, lightPdf) / pmf);
+}
+
+// Samples direct light as the estimator says: chooses one light of the table `choice`.
+Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler, const Vertex& v,
+                      const LightChoice& choice) {
+    float pmf;
+    const int index = choice.Sample(sampler.Get1D(), &pmf);
+    if (!(pmf > 0)) return Rgb::Zero();
+    Rgb L = SampleLight(scene, estimator, sampler, v, index, pmf, sampler.Get2D());
+    if (estimator == Estimator::PbrtV3)
+        L += SampleDirectionForLight(scene, sampler, v, index, pmf, sampler.Get2D());
+    return L;
+}
+
+// Continues the path from a point in a medium.
+void ScatterInMedium(const Vertex& v, Sampler& sampler, Path* path) {
+    const Vec3f wi = SampleHenyeyGreenstein(v.wo, v.g, sampler.Get2D());
+    path->pdf = PhaseHenyeyGreenstein(v.wo.dot(wi), v.g);
+    path->origin = v.p;
+    path->seesLights = false;
+    path->ray = {v.p, wi, kInfinity};
+}
+
+}  // namespace
+
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
+                   const Vec2f& lens) {
+    Rgb L = Rgb::Zero();
+    Path path{.ray = scene.camera.GenerateRay(film, lens)};
+    int medium = scene.media.ofCamera;
+    const auto direct = [&](const Vertex& v) {
+        if (scene.lights.Count() == 0) return;
+        path.choice = scene.lights.Choice(v.p);
+        L += path.beta * SampleDirectLight(scene, estimator, sampler, v, path.choice);
+    };
+    for (int bounces = 0;; ++bounces) {
+        // Stop where the ray could only add emission that has been counted or cannot be found.
+        const bool isLast = bounces >= scene.maxDepth;
+        const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
+        if (isLast && !(emissionCounts && scene.lights.AnyVisible())) break;
+
+        // Find the next vertex: a surface, or a point in the medium before it.
+        Hit found;
+        const bool isHit = scene.accelerator.Intersect(path.ray, &found);
+        MediumSample inMedium;
+        if (medium != kVacuum) {
+            Ray segment = path.ray;
+            if (isHit) segment.tMax = found.t;
+            inMedium = scene.media.Sample(medium, segment, sampler);
+            path.beta *= inMedium.weight;
+            if (IsBlack(path.beta)) break;
+        }
+        if (inMedium.t) {
+            if (isLast) break;
+            const Vertex v{.p = path.ray.o + *inMedium.t * path.ray.d,
+                           .wo = -path.ray.d.normalized(),
+                           .medium = medium,
+                           .g = scene.media.PhaseParameter(medium)};
+            direct(v);
+            ScatterInMedium(v, sampler, &path);
+        } else {
+            if (!isHit) {
+                L += path.beta * Emission(scene, estimator, path, nullptr);
+                break;
+            }
+            SurfaceInteraction hit;
+            const SurfaceNeeds needs =
+                scene.materials.Needs(scene.shapes.shapes[found.shape].material);
+            scene.shapes.Interact(path.ray, found, needs, &hit);
+            if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
+                ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
+            if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
+            if (needs & kIsInterface) {
+                // What lies behind still belongs to the last vertex, whose shadow rays see it; rays
+                // that count in full end here, as with pbrt-v3.
+                if (isLast && path.seesLights) break;
+                medium = scene.media.Beyond(found.shape, path.ray.d.dot(hit.n) > 0, medium);
+                path.ray = hit.SpawnRay(path.ray.d);
+                path.wentThrough = true;
+                --bounces;
+                continue;
+            }
+            if (isLast) break;
+            const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+            const Vertex v{.hit = &hit,
+                           .bsdf = &bsdf,
+                           .shape = found.shape,
+                           .p = hit.p,
+                           .wo = hit.wo,
+                           .medium = medium};
+            if (bsdf.LobeCount(LobeSet::NonSpecular) > 0) direct(v);
+            if (!Scatter(bsdf, hit, sampler, &path)) break;
+            medium = v.MediumTowards(scene.media, path.ray.d);
+        }
+        if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
+    }
+    return L;
+}
+
+}  // namespace lull
