@@ -39,12 +39,11 @@ bool HasInterfaces(const Description& description) {
 
 void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& warnings) {
     const Parameters& params = entity.parameters;
-    const bool seesMedia = IntegratorSeesMedia(entity.name);
     // volpath is path where there is nothing else for it to see.
-    scene->isVolumetric = seesMedia && scene->isVolumetric;
+    scene->isVolumetric &= IntegratorSeesMedia(entity.name);
     if (entity.name != "path" && entity.name != "volpath")
         warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"", entity.name,
-                                             seesMedia ? "volpath" : "path"));
+                                             scene->isVolumetric ? "volpath" : "path"));
     scene->maxDepth = params.GetInt("maxdepth", 5);
     scene->rrThreshold = params.GetFloat("rrthreshold", 1);
     if (maxDepth >= 0) scene->maxDepth = maxDepth;
