@@ -155,7 +155,7 @@ Shape "sphere" "float radius" .5'''),
   "float anisotropic" .6 "float sheen" .7 "float sheentint" .3 "float clearcoat" .8 "float clearcoatgloss" .6'''),
     'material-disney-glass': material('Material "disney" "rgb color" [.9 .8 .7] "float spectrans" .8 "float roughness" .4 "float eta" 1.4'),
     'material-disney-thin': material('''Material "disney" "bool thin" "true" "rgb color" [.6 .8 .5] "float difftrans" 1.2 "float flatness" .5
-  "float spectrans" .4 "float roughness" .3'''),
+  "float clearcoat" .5 "float roughness" .3'''),
     'material-hair': material('Material "hair" "float eumelanin" .4 "float beta_m" .4 "float beta_n" .5 "float alpha" 3', '''AttributeBegin
 Material "hair" "rgb color" [.7 .4 .2]
 Translate -1.4 0 .2

@@ -98,7 +98,7 @@ TEST_P(Plugins, LookAsInPbrt) {
             c.energySigma, 100 * c.pixelsOut, 100 * c.tilesOut);
         fmt::print("{}\n", line);
         EXPECT_TRUE(std::abs(c.energyRatio - 1) < 0.002 || std::abs(c.energySigma) < 3.5) << line;
-        EXPECT_LE(c.pixelsOut, 0.004) << line;  // single samples have tails that the normal has not
+        EXPECT_LE(c.pixelsOut, 0.01) << line;  // single samples have tails that the normal has not
         EXPECT_EQ(c.tilesOut, 0) << line;
         EXPECT_EQ(ours.rejected, 0);
     }

@@ -55,7 +55,7 @@ void ExpectBeerLambert(const MediumTable& table, const Ray& ray, const Eigen::Ar
         transmitted.Add(table.Transmittance(0, ray, sampler));
         const MediumSample s = table.Sample(0, ray, sampler);
         ASSERT_TRUE((s.weight >= 0).all() && IsFinite(s.weight));
-        if (s.t) ASSERT_TRUE(*s.t >= 0 && *s.t <= ray.tMax * 1.00001f);
+        ASSERT_TRUE(!s.t || (*s.t >= 0 && *s.t <= ray.tMax * 1.00001f));
         passed.Add(s.t ? Rgb(Rgb::Zero()) : s.weight);
         scattered.Add(s.t ? s.weight : Rgb(Rgb::Zero()));
     }
@@ -210,7 +210,9 @@ TEST(HenyeyGreenstein, IsSampledAsItIs) {
             cosine -= wi.dot(wo) / kSamples;
         }
         EXPECT_NEAR(cosine, g, 0.01);  // the mean cosine of the deflection
-        if (g < 0.9f) EXPECT_GT(test::ChiSquarePValue(expected, observed, kSamples), 1e-4) << g;
+        if (g < 0.9f) {
+            EXPECT_GT(test::ChiSquarePValue(expected, observed, kSamples), 1e-4) << g;
+        }
     }
 }
 
