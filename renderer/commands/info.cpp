@@ -62,6 +62,7 @@ void PrintGeometry(const Description& description, const Scene& scene) {
 void PrintAppearance(const Description& description, const Scene& scene) {
     Line("materials", CountsText(CountKinds(description.materials)));
     Line("textures", CountsText(CountKinds(description.textures)));
+    if (!description.media.empty()) Line("media", CountsText(CountKinds(description.media)));
     Counts lights = CountKinds(description.lights);
     const int area = scene.lights.Count() - int(description.lights.size());
     if (area > 0) lights["area (one a primitive)"] = area;
