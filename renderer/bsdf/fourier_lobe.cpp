@@ -161,7 +161,9 @@ BsdfValue FourierLobe::Evaluate(const Vec3f& wo, const Vec3f& wi) const {
     const WeightedSeries sum(table, *o, *i);
     std::array<double, 3> values{};
     double before = cosPhi, now = 1;
-    for (int k = 0; k < sum.order; ++k) {
+    // Seen along the normal there is no azimuth, and only the mean over all counts.
+    const int order = lengths > 0 ? sum.order : std::min(sum.order, 1);
+    for (int k = 0; k < order; ++k) {
         for (int c = 0; c < table.channels; ++c) values[c] += sum.Coefficient(table, c, k) * now;
         const double next = 2 * cosPhi * now - before;
         before = now;
@@ -195,8 +197,9 @@ bool FourierLobe::Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
     std::array<float, FourierTable::kMaxOrder> a;  // only the first are set
     for (int k = 0; k < sum.order; ++k) a[k] = sum.Coefficient(table, 0, k);
     if (sum.order == 0 || !(a[0] > 0)) return false;
-    const double phi = SampleAzimuth({a.data(), size_t(sum.order)}, u.x());
     const float length = wo.head<2>().norm();
+    const int order = length > 0 ? sum.order : 1;
+    const double phi = SampleAzimuth({a.data(), size_t(order)}, u.x());
     const Vec2f across = length > 0 ? Vec2f(wo.head<2>() / length) : Vec2f(1, 0);
     const float s = SafeSqrt(1 - Sqr(muI));
     const auto cosPhi = float(std::cos(phi)), sinPhi = float(std::sin(phi));

@@ -200,7 +200,9 @@ std::string WriteBeam(const TemporaryDirectory& directory) {
 
 LightSample SampleOf(const Scene& scene, const Vec3f& from) {
     const auto s = scene.lights.Sample(0, from, {0.5f, 0.5f});
-    return s ? *s : LightSample{};
+    return s ? *s
+             : LightSample{
+                   .L = Rgb::Zero(), .wi = {}, .pdf = 0, .isDelta = true, .isHidden = false};
 }
 
 TEST(GoniometricLight, ShinesAsItsImageSays) {

@@ -11,11 +11,11 @@
 namespace lull {
 namespace {
 
-constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
+constexpr Estimator kBothEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
 
-std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::string& before = "",
-                                       int depth = 1000,
-                                       const char* view = "0 0 -2.5  0 0 0  0 1 0") {
+std::unique_ptr<const Scene> MakeMediumScene(const std::string& world,
+                                             const std::string& before = "", int depth = 1000,
+                                             const char* view = "0 0 -2.5  0 0 0  0 1 0") {
     const TemporaryDirectory directory;
     Warnings warnings;
     const std::string text = fmt::format(
@@ -50,17 +50,18 @@ std::string Medium(double absorption, double scattering, double g = 0) {
         absorption, scattering, g);
 }
 
-constexpr const char* kSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-constexpr const char* kBall =
+constexpr const char* kWhiteSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+constexpr const char* kMediumBall =
     "Material \"none\"\nMediumInterface \"m\" \"\"\nShape \"sphere\" \"float radius\" 2\n";
 
 // Nothing is lost in a medium of albedo 1, however often it scatters: 1,000 times and more.
 TEST(Medium, WhiteFurnace) {
-    for (const Estimator estimator : kEstimators)
+    for (const Estimator estimator : kBothEstimators)
         for (const auto& [scattering, g, samples] :
              {std::tuple(0.3, 0.0, 256), std::tuple(3.0, 0.7, 128), std::tuple(20.0, -0.5, 8)})
-            ExpectMean(*MakeScene(Medium(0, scattering, g) + kSky + kBall, "", 100000), estimator,
-                       1, samples, 2e-3);
+            ExpectMean(
+                *MakeMediumScene(Medium(0, scattering, g) + kWhiteSky + kMediumBall, "", 100000),
+                estimator, 1, samples, 2e-3);
 }
 
 // A grid as white, and a glass ball full of it.
@@ -69,12 +70,13 @@ TEST(Medium, WhiteFurnaceOfGridsAndGlass) {
         "MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"integer nx\" 2 "
         "\"float density\" [1 4] \"point p0\" [-2 -2 -2] \"point p1\" [2 2 2] "
         "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [.7 .7 .7] \"float g\" .2\n";
-    for (const Estimator estimator : kEstimators) {
-        ExpectMean(*MakeScene(grid + kSky + kBall, "", 100000), estimator, 1, 128, 2e-3);
-        ExpectMean(*MakeScene(Medium(0, 1) + kSky +
-                                  "Material \"glass\"\nMediumInterface \"m\" \"\"\n"
-                                  "Shape \"sphere\" \"float radius\" 2\n",
-                              "", 100000),
+    for (const Estimator estimator : kBothEstimators) {
+        ExpectMean(*MakeMediumScene(grid + kWhiteSky + kMediumBall, "", 100000), estimator, 1, 128,
+                   2e-3);
+        ExpectMean(*MakeMediumScene(Medium(0, 1) + kWhiteSky +
+                                        "Material \"glass\"\nMediumInterface \"m\" \"\"\n"
+                                        "Shape \"sphere\" \"float radius\" 2\n",
+                                    "", 100000),
                    estimator, 1, 128, 2e-3);
     }
 }
@@ -89,10 +91,10 @@ TEST(Medium, AbsorbsByBeerAndLambert) {
         "Translate 0 0 .5\nReverseOrientation\nShape \"disk\" \"float radius\" 50\n"
         "AttributeEnd\nAttributeBegin\nMaterial \"none\"\nMediumInterface \"m\" \"\"\n"
         "Translate 0 0 1\nShape \"disk\" \"float radius\" 50\nAttributeEnd\n";
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kBothEstimators) {
         // A pencil of rays along z: those of the narrow view differ by less than 1e-4 in length.
         const auto narrow = [&](const std::string& world, const std::string& before) {
-            return MakeScene(world, "Scale 100 100 1\n" + before, 5);
+            return MakeMediumScene(world, "Scale 100 100 1\n" + before, 5);
         };
         ExpectMean(*narrow(Medium(1.5, 0) + slab + lamp, ""), estimator, std::exp(-0.75), 64, 2e-4);
         // The lamp is at distance 4.5 from the camera, which is in the medium.
@@ -105,13 +107,13 @@ TEST(Medium, AbsorbsByBeerAndLambert) {
 TEST(Medium, OfDensityZeroChangesNothing) {
     const std::string floor = "Material \"matte\"\nShape \"sphere\" \"float radius\" 1\n";
     const std::string light = "LightSource \"point\" \"point from\" [1 2 -4] \"rgb I\" [9 9 9]\n";
-    const auto plain = MakeScene(light + floor, "", 5);
+    const auto plain = MakeMediumScene(light + floor, "", 5);
     const auto pixels = MeasurePixels(*plain, Estimator::PbrtV3, SamplerKind::Random, 256, 3);
     double expected = 0;
     for (const auto& mean : pixels.mean) expected += mean.y() / double(pixels.mean.size());
     EXPECT_FALSE(plain->isVolumetric);
-    for (const Estimator estimator : kEstimators) {
-        const auto scene = MakeScene(Medium(0, 0) + light + floor + kBall, "", 5);
+    for (const Estimator estimator : kBothEstimators) {
+        const auto scene = MakeMediumScene(Medium(0, 0) + light + floor + kMediumBall, "", 5);
         EXPECT_TRUE(scene->isVolumetric);
         ExpectMean(*scene, estimator, expected, 256, 3e-2);
     }
@@ -120,13 +122,13 @@ TEST(Medium, OfDensityZeroChangesNothing) {
 // The two estimators agree where neither surfaces nor media alone would.
 TEST(Medium, EstimatorsAgree) {
     const std::string world =
-        Medium(0.2, 0.8, 0.3) + kSky +
+        Medium(0.2, 0.8, 0.3) + kWhiteSky +
         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 1 1.5 -1\n"
         "Shape \"sphere\" \"float radius\" .2\nAttributeEnd\n"
         "AttributeBegin\nMaterial \"plastic\"\nMediumInterface \"m\" \"m\"\n"
         "Shape \"sphere\" \"float radius\" .7\nAttributeEnd\n" +
-        kBall;
-    const auto scene = MakeScene(world, "", 12);
+        kMediumBall;
+    const auto scene = MakeMediumScene(world, "", 12);
     const auto a = MeasurePixels(*scene, Estimator::Combined, SamplerKind::Random, 1000, 1);
     const auto b = MeasurePixels(*scene, Estimator::PbrtV3, SamplerKind::Random, 1000, 2);
     double difference = 0, variance = 0;
