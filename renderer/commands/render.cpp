@@ -4,11 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/shortfall.h"
+#include "renderer/render/time_limit.h"
 
 namespace lull {
 
@@ -16,6 +19,7 @@ namespace {
 
 struct Options {
     RenderSettings render;
+    ClockOptions clock;
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
@@ -42,6 +46,12 @@ Examples:
   lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
+  lull render scene.pbrt --until 09:00                 # as clean as it gets until then
+
+With --time or --until, blocks stop as without; when that is not enough for all, the worst is as
+good as it can be. Every block gets its first pass, even if that takes longer. How many samples
+the others got depends on the machine: --stop thresholds:OUT.thresholds.csv repeats the image. A
+checkpoint is kept, to go on from.
 
 Ctrl-C ends the render early and writes what there is; twice, it ends at once.
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
@@ -64,6 +74,7 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--report", o->report,
                    "Write what happened to each block: .html to look at, else JSON")
         ->type_name("R.html|R.json");
+    AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
     app.footer(kFooter);
 }
@@ -92,8 +103,10 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
 void PrintSummary(const RenderResult& result, const Film& film, int cap) {
     const Savings savings = ComputeSavings(result, cap);
     fmt::print(stderr, "{}{} of {} blocks stopped, median {} spp; {} samples in {}",
-               result.cancelled ? "interrupted: " : "", result.progress.stoppedBlocks,
-               result.progress.blocks, result.progress.medianSpp,
+               result.cancelled ? "interrupted: "
+               : result.timeUp  ? "the time is up: "
+                                : "",
+               result.progress.stoppedBlocks, result.progress.blocks, result.progress.medianSpp,
                FormatCount(double(savings.samples)), FormatDuration(result.progress.seconds));
     if (!result.cancelled && savings.samples < savings.samplesAtCap)
         fmt::print(stderr, "; against {} spp everywhere {:.1f}% fewer samples, {:.1f}% less time",
@@ -103,6 +116,26 @@ void PrintSummary(const RenderResult& result, const Film& film, int cap) {
         fmt::print(stderr,
                    "lull: warning: {} samples were not finite or negative: taken as black\n",
                    rejected);
+}
+
+// Says what was missing when the time was up.
+void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
+    constexpr size_t shown = 8;
+    const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    if (noisy.empty()) return;
+    fmt::print(stderr, "still noisy, in lightness of 0 to 100:\n");
+    for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
+        const Block& block = result.blocks[size_t(noisy[i].block)].block;
+        fmt::print(stderr, "  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n",
+                   noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise,
+                   block.spp, noisy[i].neededSpp,
+                   FormatDuration(noisy[i].neededSeconds / std::max(1, result.threads)));
+    }
+    if (noisy.size() > shown)
+        fmt::print(stderr, "  and {} others, of {:.2f} or less\n", noisy.size() - shown,
+                   noisy[shown].noise);
+    fmt::print(stderr, "about {} more would have been enough for all\n",
+               FormatDuration(NeededSeconds(noisy, result)));
 }
 
 void PrintFiles(const RenderFiles& files, const RenderResult& result) {
@@ -128,6 +161,7 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
 ExitCode RunRender(Options options) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
     RenderSettings& settings = options.render;
+    const std::function<double()> clock = StartClock(options.clock);
 
     // Check all that can be wrong before the work begins.
     SceneInput input(settings.scene);
@@ -146,6 +180,7 @@ ExitCode RunRender(Options options) {
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = factory.rule;
     provenance.checksum = factory.checksum;
+    provenance.clock = options.clock.Text();
     const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
     if (!settings.checkpoint.file.empty()) {
@@ -160,17 +195,22 @@ ExitCode RunRender(Options options) {
     CatchInterrupts();
     RenderOptions renderOptions = MakeRenderOptions(settings, provenance.sampler, &printer);
     renderOptions.makeCriterion = MakeCriteria(factory, withCurves, &histories);
+    if (clock)
+        renderOptions.secondsLeft = [&, reserve = SecondsToWrite(region.Area())] {
+            return clock() - reserve;
+        };
     WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions);
     const RenderResult result = Render(SamplesOf(*scene, settings.estimator), renderOptions, &film,
                                        interrupted ? &*interrupted : nullptr);
     printer.Finish(result.progress);
 
     if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
+    if (!settings.quiet && result.timeUp) PrintShortfall(provenance, result);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 
     WriteFiles(files, *scene, film, provenance, result, input.warnings, histories);
     PrintFiles(files, result);
-    if (!result.cancelled && !settings.checkpoint.file.empty())
+    if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())
         std::filesystem::remove(settings.checkpoint.file);
     return result.cancelled ? kInterrupted : kDone;
 }

@@ -1,5 +1,7 @@
 #include "renderer/commands/render_files.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <sstream>
 
@@ -55,6 +57,12 @@ ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provena
     exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
+    if (!provenance.clock.empty()) exr.attributes["clock"] = provenance.clock;
+    if (result.timeUp)
+        exr.attributes["note"] = fmt::format(
+            "the time was up when {} of {} blocks had stopped: the samples of the others depend on "
+            "the machine; --stop thresholds: with the file beside the image repeats it",
+            result.progress.stoppedBlocks, result.progress.blocks);
     return exr;
 }
 
@@ -75,7 +83,8 @@ void WriteThresholdsRow(const std::string& file, const Provenance& provenance,
                         const RenderResult& result) {
     ThresholdsRow row{SceneName(provenance.scene), {}};
     for (const BlockResult& b : result.blocks)
-        row.spp.push_back(b.block.stoppedByVote ? b.block.spp : provenance.schedule.cap);
+        row.spp.push_back(b.block.stoppedByVote || !b.block.stopped ? b.block.spp
+                                                                    : provenance.schedule.cap);
     std::ostringstream text;
     WriteThresholds(text, {row});
     WriteFileAtomically(file, text.str());

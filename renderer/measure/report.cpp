@@ -1,26 +1,43 @@
 #include "renderer/measure/report.h"
 
+#include <cmath>
+
 #include "renderer/measure/report_json.h"
+#include "renderer/measure/shortfall.h"
 
 namespace lull {
 
 namespace {
 
-const char* EndOf(const Block& block) {
-    return !block.stopped ? "interrupted" : block.stoppedByVote ? "stopped" : "cap";
+const char* EndOf(const Block& block, bool timeUp) {
+    if (!block.stopped) return timeUp ? "time" : "interrupted";
+    return block.stoppedByVote ? "stopped" : "cap";
 }
 
-Json BlockJson(const BlockResult& result, int cap) {
+Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
     const Block& block = result.block;
     Json json = RectJson(block.pixels);
     json["spp"] = block.spp;
-    json["threshold"] = block.stoppedByVote ? block.spp : cap;
-    json["end"] = EndOf(block);
+    json["threshold"] = block.stoppedByVote || (timeUp && !block.stopped) ? block.spp : cap;
+    json["end"] = EndOf(block, timeUp);
+    if (std::isfinite(block.noise)) json["visibleNoise"] = block.noise;
     if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
     json["seconds"] = result.seconds;
     json["criterionSeconds"] = result.criterionSeconds;
     if (!result.decisions.empty()) json["decisions"] = DecisionsJson(result.decisions);
     return json;
+}
+
+// Adds what was missing when the time was up.
+void AddShortfall(const Provenance& provenance, const RenderResult& result, Json* report) {
+    const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    (*report)["totals"]["timeUp"] = true;
+    (*report)["totals"]["neededSeconds"] = NeededSeconds(noisy, result);
+    for (const NoisyBlock& block : noisy) {
+        Json& json = (*report)["blocks"][size_t(block.block)];
+        json["neededSpp"] = block.neededSpp;
+        json["neededSeconds"] = block.neededSeconds;
+    }
 }
 
 Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
@@ -59,22 +76,24 @@ Json RectJson(const PixelRect& r) {
 }
 
 Json ProvenanceJson(const Provenance& p) {
-    return {{"renderer", "lull"},
-            {"version", p.version},
-            {"scene", p.scene},
-            {"seed", p.seed},
-            {"sampler", NameOf(p.sampler)},
-            {"estimator", NameOf(p.estimator)},
-            {"criterion", p.criterion},
-            {"modelChecksum", p.checksum},
-            {"cap", p.schedule.cap},
-            {"pass", p.schedule.passLength},
-            {"blockSize", p.schedule.blockSize},
-            {"maxDepth", p.maxDepth},
-            {"threads", p.threads},
-            {"substitute", p.substitute},
-            {"resolution", {p.resolution.x(), p.resolution.y()}},
-            {"crop", RectJson(p.crop)}};
+    Json json = {{"renderer", "lull"},
+                 {"version", p.version},
+                 {"scene", p.scene},
+                 {"seed", p.seed},
+                 {"sampler", NameOf(p.sampler)},
+                 {"estimator", NameOf(p.estimator)},
+                 {"criterion", p.criterion},
+                 {"modelChecksum", p.checksum},
+                 {"cap", p.schedule.cap},
+                 {"pass", p.schedule.passLength},
+                 {"blockSize", p.schedule.blockSize},
+                 {"maxDepth", p.maxDepth},
+                 {"threads", p.threads},
+                 {"substitute", p.substitute},
+                 {"resolution", {p.resolution.x(), p.resolution.y()}},
+                 {"crop", RectJson(p.crop)}};
+    if (!p.clock.empty()) json["clock"] = p.clock;
+    return json;
 }
 
 Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
@@ -97,7 +116,8 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
     report["blocks"] = Json::array();
     for (const BlockResult& block : result.blocks)
-        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap));
+        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap, result.timeUp));
+    if (result.timeUp) AddShortfall(provenance, result, &report);
     report["warnings"] = warnings;
     return report;
 }

@@ -14,6 +14,17 @@ double Fraction(const RenderProgress& p) {
     return all > 0 ? double(p.samples) / all : 1;
 }
 
+// Returns the seconds until the end, at most; nothing where nobody knows.
+std::optional<double> Remaining(const RenderProgress& p, double rate) {
+    std::optional<double> seconds;
+    if (p.samplesToCap == 0)
+        seconds = 0;
+    else if (rate > 0)
+        seconds = double(p.samplesToCap) / rate;
+    if (p.secondsLeft) seconds = std::max(0.0, std::min(seconds.value_or(1e15), *p.secondsLeft));
+    return seconds;
+}
+
 // Rounds down, so that 100 means done.
 int Percent(const RenderProgress& p) { return int(100 * Fraction(p)); }
 
@@ -58,16 +69,17 @@ std::string ProgressText(const RenderProgress& p, double rate, bool adaptive) {
     std::string text = fmt::format(
         "{:3}%  {}/{} blocks stopped  median {} spp  {} samples/s  {} elapsed", Percent(p),
         p.stoppedBlocks, p.blocks, p.medianSpp, FormatCount(rate), FormatDuration(p.seconds));
-    if (p.samplesToCap > 0 && rate > 0)
-        text += fmt::format("  {}{} left", adaptive ? "at most " : "",
-                            FormatDuration(double(p.samplesToCap) / rate));
+    const std::optional<double> left = Remaining(p, rate);
+    if (p.samplesToCap > 0 && left)
+        text += fmt::format("  {}{} left", adaptive ? "at most " : "", FormatDuration(*left));
     return text;
 }
 
 std::string ProgressJson(const RenderProgress& p, double rate, bool adaptive) {
+    const std::optional<double> left = Remaining(p, rate);
     const std::string remaining = p.samplesToCap == 0 ? "0"
-                                  : rate > 0 ? fmt::format("{:.3f}", double(p.samplesToCap) / rate)
-                                             : "null";
+                                  : left              ? fmt::format("{:.3f}", *left)
+                                                      : "null";
     return fmt::format(
         R"({{"percent":{:.2f},"blocks":{},"stoppedBlocks":{},"medianSpp":{},"samples":{},)"
         R"("samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},"remainingSeconds":{},)"

@@ -4,16 +4,18 @@
 #include <cstdint>
 #include <cstdio>
 #include <deque>
+#include <optional>
 #include <string>
 
 namespace lull {
 
 struct RenderProgress {
     int blocks = 0, stoppedBlocks = 0;
-    int medianSpp = 0;         // over the blocks
-    int64_t samples = 0;       // taken so far
-    int64_t samplesToCap = 0;  // still to take if no block stops before the cap
-    double seconds = 0;        // since the start
+    int medianSpp = 0;                       // over the blocks
+    int64_t samples = 0;                     // taken so far
+    int64_t samplesToCap = 0;                // still to take if no block stops before the cap
+    double seconds = 0;                      // since the start
+    std::optional<double> secondsLeft = {};  // of a clock that ends the render
 };
 
 // Estimates the speed from what was done lately, since the blocks that are left can be slower

@@ -21,6 +21,7 @@ struct Provenance {
     bool substitute = false;
     Vec2i resolution = {0, 0};
     PixelRect crop;
+    std::string clock = {};  // that ends the render, in words; empty: none
 };
 
 std::string NameOf(SamplerKind);

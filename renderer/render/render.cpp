@@ -13,7 +13,10 @@
 #include <stdexcept>
 
 #include "renderer/base/thread_clock.h"
+#include "renderer/render/undo.h"
 #include "stopping/base/parallel.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/signals/lightness_noise.h"
 
 namespace lull {
 
@@ -45,11 +48,38 @@ int64_t RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler
     return samples;
 }
 
-std::vector<BlockStart> StartsOf(const RenderState* interrupted) {
+constexpr int smallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
+
+bool HasSamplesBeyond(int spp, const PixelRect& rect, const Film& film) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x)
+            if (film.At({x, y}).count > uint32_t(spp)) return true;
+    return false;
+}
+
+// Returns the visible noise of a block, of any size, both of whose means are in the view.
+double NoiseOf(const BlockView& view) {
+    if (std::min(view.width, view.height) >= smallestNoiseSide) return VisibleNoise(view);
+    const LightnessNoise noise = ComputeLightnessNoise(view);
+    return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
+}
+
+// Says where blocks are that an interrupted render has left; with a clock, also how noisy.
+std::vector<BlockStart> StartsOf(const RenderState* interrupted, bool hasClock, const Film& film) {
     std::vector<BlockStart> starts;
-    if (interrupted)
-        for (const BlockResult& b : interrupted->blocks)
-            starts.push_back({b.block.spp, b.block.stopped, b.block.stoppedByVote});
+    if (!interrupted) return starts;
+    for (const BlockResult& b : interrupted->blocks) {
+        const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
+        BlockStart start{
+            .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
+        if (hasClock && spp > 0) {
+            FilmView view;
+            film.Extract(rect, true, &view);
+            start.noise = NoiseOf({view.width, view.height, spp, view.mean, view.halfMean});
+            start.begun = HasSamplesBeyond(spp, rect, film);
+        }
+        starts.push_back(start);
+    }
     return starts;
 }
 
@@ -64,7 +94,8 @@ class Executor {
           options(options),
           film(film),
           secondsBefore(interrupted ? interrupted->seconds : 0),
-          schedule(film->Region(), options.schedule, StartsOf(interrupted)),
+          hasClock(options.secondsLeft),
+          schedule(film->Region(), ScheduleFor(options), StartsOf(interrupted, hasClock, *film)),
           results(interrupted ? interrupted->blocks
                               : std::vector<BlockResult>(schedule.Blocks().size())),
           criteria(MakeCriteria(interrupted)),
@@ -84,14 +115,19 @@ class Executor {
             Spawn(schedule.ReadyTiles());
             group.wait();
             task.order.Enter();
+            if (timeCalled && !pausing && !IsCancelled()) Undo();
             if (options.onCheckpoint && (!schedule.Done() || options.checkpointAtEnd))
                 options.onCheckpoint(State());
         } while (pausing && !IsCancelled());
 
         NoteBlocks();
-        const RenderProgress progress = CurrentProgress();
-        if (options.onProgress) options.onProgress(progress);
-        return {std::move(results), progress, !schedule.Done(), 0};
+        RenderResult result;
+        result.progress = CurrentProgress();
+        if (options.onProgress) options.onProgress(result.progress);
+        result.timeUp = timeCalled && !schedule.Done() && !IsCancelled();
+        result.cancelled = !schedule.Done() && !result.timeUp;
+        result.blocks = std::move(results);
+        return result;
     }
 
   private:
@@ -114,13 +150,23 @@ class Executor {
 
     void RunTile() {
         if (pausing || IsCancelled()) return;
-        const Tile tile = TakeTile();
+        const std::optional<Tile> tile = TakeTile();
+        if (tile) RunTile(*tile);
+    }
+
+    void RunTile(const Tile& tile) {
         const double tileStart = ThreadSeconds();
         const int64_t taken =
             RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
         if (FinishTile(tile, taken, ThreadSeconds() - tileStart)) Spawn(DecideBlock(tile.block));
         ReportProgress();
         if (options.onCheckpoint && Seconds() >= nextCheckpoint) pausing = true;
+    }
+
+    static ScheduleOptions ScheduleFor(const RenderOptions& options) {
+        ScheduleOptions schedule = options.schedule;
+        schedule.worstFirst = bool(options.secondsLeft);
+        return schedule;
     }
 
     bool IsCancelled() const { return options.isCancelled && options.isCancelled(); }
@@ -140,9 +186,23 @@ class Executor {
         return state;
     }
 
-    Tile TakeTile() {
+    // There are never more tasks than tiles, but when time has been called.
+    std::optional<Tile> TakeTile() {
+        const bool isTimeUp = hasClock && !(options.secondsLeft() > 0);
         std::lock_guard lock(mutex);
-        return schedule.Next().value();  // there are never more tasks than tiles
+        if (isTimeUp) {
+            schedule.CallTime();
+            timeCalled = true;
+        }
+        const std::optional<Tile> tile = schedule.Next();
+        if (tile && hasClock) undo.Keep(tile->block, schedule.Blocks()[tile->block].pixels, *film);
+        return tile;
+    }
+
+    // Forgets the samples of passes that the time did not suffice for.
+    void Undo() {
+        undo.UndoAll(film);
+        samples = film->SampleCount();
     }
 
     // Returns true if the tile was the last of its pass.
@@ -155,10 +215,14 @@ class Executor {
 
     // Asks the criterion and returns how many tiles have become ready.
     int DecideBlock(int i) {
-        const bool stop = AskCriterion(i);
+        Judgement judgement;
+        // Isolation keeps a criterion that waits for tasks of its own from running a tile here,
+        // which would fill the same view.
+        tbb::this_task_arena::isolate([&] { judgement = Judge(i); });
         std::lock_guard lock(mutex);
         const int readyBefore = schedule.ReadyTiles();
-        schedule.Decide(i, stop);
+        schedule.Decide(i, judgement.stop, judgement.noise);
+        if (hasClock) undo.Forget(i);
         return schedule.ReadyTiles() - readyBefore;
     }
 
@@ -176,28 +240,36 @@ class Executor {
         return made;
     }
 
+    struct Judgement {
+        bool stop = false;
+        double noise = unknownNoise;
+    };
+
     // Nobody else touches a block between the end of its pass and the decision.
-    bool AskCriterion(int i) {
-        if (!criteria[i]) return false;
+    Judgement Judge(int i) {
+        if (!criteria[i] && !hasClock) return {};
         const double start = ThreadSeconds();
-        Decision decision;
-        // Isolation keeps a criterion that waits for tasks of its own from running a tile here,
-        // which would fill the same view.
-        tbb::this_task_arena::isolate([&] { decision = Observe(i); });
         const Block& block = schedule.Blocks()[i];
+        const BlockView view = ViewOf(i);
+        const Decision decision = criteria[i] ? criteria[i]->Observe(view) : Decision();
         if (decision.judged) results[i].decisions.push_back({block.spp, decision});
+        Judgement judgement{.stop = decision.stop};
+        if (hasClock)
+            judgement.noise = decision.visibleNoise ? *decision.visibleNoise : NoiseOf(view);
         results[i].criterionSeconds += ThreadSeconds() - start;
-        return decision.stop;
+        return judgement;
     }
 
-    Decision Observe(int i) {
+    // Returns what the criterion and the clock need to see of a block.
+    BlockView ViewOf(int i) {
         const Block& block = schedule.Blocks()[i];
         BlockView blockView;
         blockView.width = block.pixels.Width();
         blockView.height = block.pixels.Height();
         blockView.spp = block.spp;
         blockView.seconds = results[i].seconds;
-        if (const ViewNeed need = criteria[i]->Need(block.spp); need != ViewNeed::Nothing) {
+        const ViewNeed need = hasClock ? ViewNeed::MeanAndHalf : criteria[i]->Need(block.spp);
+        if (need != ViewNeed::Nothing) {
             const double start = ThreadSeconds();
             FilmView& view = views.local();
             film->Extract(block.pixels, need == ViewNeed::MeanAndHalf, &view);
@@ -205,7 +277,7 @@ class Executor {
             blockView.halfMean = view.halfMean;
             blockView.viewSeconds = ThreadSeconds() - start;
         }
-        return criteria[i]->Observe(blockView);
+        return blockView;
     }
 
     void ReportProgress() {
@@ -222,9 +294,11 @@ class Executor {
     }
 
     RenderProgress CurrentProgress() const {
-        return {int(schedule.Blocks().size()), schedule.StoppedBlocks(),
-                schedule.MedianSpp(),          samples,
-                schedule.SamplesToCap(),       Seconds()};
+        RenderProgress progress{int(schedule.Blocks().size()), schedule.StoppedBlocks(),
+                                schedule.MedianSpp(),          samples,
+                                schedule.SamplesToCap(),       Seconds()};
+        if (hasClock) progress.secondsLeft = options.secondsLeft();
+        return progress;
     }
 
     const SampleSource& source;
@@ -234,12 +308,15 @@ class Executor {
     const double secondsBefore;         // of the runs before this one
     std::atomic<bool> pausing = false;  // takes no more tiles, for a checkpoint
     double nextCheckpoint = 0;
+    const bool hasClock;
 
-    std::mutex mutex;  // guards the schedule, `samples` and the tiles' seconds in `results`
+    std::mutex mutex;  // guards the schedule, `samples`, the tiles' seconds in `results`, `undo`
     Schedule schedule;
     std::vector<BlockResult> results;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     int64_t samples;
+    PassUndo undo;            // for renders that have a clock
+    bool timeCalled = false;  // it has run down
 
     std::mutex progressMutex;  // guards `nextProgress`, and lets one thread report at a time
     double nextProgress = 0;

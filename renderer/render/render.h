@@ -18,8 +18,9 @@ struct DecisionRecord {
 
 struct BlockResult {
     Block block;
-    double seconds = 0;           // of processors, spent on its samples
-    double criterionSeconds = 0;  // spent on its criterion, the view of the pixels included
+    double seconds = 0;  // of processors, spent on its samples
+    // Spent on its criterion and, with a clock, on its noise, the view of the pixels included.
+    double criterionSeconds = 0;
     std::vector<DecisionRecord> decisions;  // those for which the block was looked at
 };
 
@@ -30,6 +31,8 @@ struct RenderState {
     std::vector<std::vector<std::byte>> criteria;  // of each block, as Criterion::Save() has it
     double seconds = 0;                            // since the start of the first run
 };
+
+class Peers;
 
 struct RenderOptions {
     ScheduleOptions schedule;
@@ -50,12 +53,22 @@ struct RenderOptions {
     bool checkpointAtEnd = false;  // also when every block has stopped
     // Is asked before every tile; true ends the render after the tiles under way. Can be empty.
     std::function<bool()> isCancelled;
+    // A clock: returns the seconds that are left, and is asked before every tile. Can be empty.
+    // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
+    // given the next pass. Then the render ends after the tiles under way: passes that are not
+    // complete by then are undone, but the first of each block is always completed. What criteria
+    // say of a block does not depend on the clock.
+    std::function<double()> secondsLeft;
+    // The processes that share the work, each with the same scene and options (peers.h). Null: this
+    // one does all.
+    Peers* peers = nullptr;
 };
 
 struct RenderResult {
     std::vector<BlockResult> blocks;
     RenderProgress progress;  // at the end
     bool cancelled = false;   // before every block had stopped
+    bool timeUp = false;      // the clock ended it before every block had stopped
     int threads = 0;          // that it could use
 };
 
@@ -65,7 +78,8 @@ using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint
 // Renders the film's region, from the start or from where an interrupted render left film and
 // state. The pixels are the same bits for any
 // number of threads and, at equal samples per pixel, for any size of blocks and length of passes.
-// Passes on what criteria and callbacks throw.
+// A clock decides how many samples blocks get that have not stopped, and nothing else. Passes on
+// what criteria and callbacks throw.
 //
 // A block whose `stopped` is set in a state without samples is left out.
 RenderResult Render(const SampleSource&, const RenderOptions&, Film*,

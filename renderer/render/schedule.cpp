@@ -6,7 +6,24 @@ namespace lull {
 
 namespace {
 
+// How many times the samples of another block may be before that one goes first.
+constexpr int largestLead = 16;
+
 int CeilDiv(int a, int b) { return (a + b - 1) / b; }
+
+// Returns the first tile of block `index` that is in the share.
+int FirstTileOf(int index, const TileShare& share) { return (share.rank + index) % share.ranks; }
+
+int CountTiles(const PixelRect& r, int tileSize) {
+    return CeilDiv(r.Width(), tileSize) * CeilDiv(r.Height(), tileSize);
+}
+
+// Returns the pixels of a block's tile, of all of them row by row.
+PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
+    const int columns = CeilDiv(block.Width(), tileSize);
+    const Vec2i min = block.min + tileSize * Vec2i(tile % columns, tile / columns);
+    return {min, (min + Vec2i(tileSize, tileSize)).cwiseMin(block.max)};
+}
 
 }  // namespace
 
@@ -31,11 +48,20 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
     return blocks;
 }
 
+std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize, TileShare share) {
+    std::vector<PixelRect> tiles;
+    for (int i = FirstTileOf(index, share); i < CountTiles(block, tileSize); i += share.ranks)
+        tiles.push_back(TileAt(block, tileSize, i));
+    return tiles;
+}
+
 Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
-                   std::span<const BlockStart> starts)
-    : options(options), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
+                   std::span<const BlockStart> starts, TileShare share)
+    : options(options), share(share), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
     for (size_t i = 0; i < starts.size(); ++i) {
-        blocks[i].spp = starts[i].spp;
+        blocks[i].spp = progress[i].decidedSpp = starts[i].spp;
+        blocks[i].noise = starts[i].noise;
+        progress[i].mustEnd = starts[i].begun;
         if (starts[i].stopped) Stop(int(i), starts[i].stoppedByVote);
     }
     for (int i = 0; i < int(blocks.size()); ++i)
@@ -53,8 +79,8 @@ void Schedule::GoOn(int i) {
 }
 
 int Schedule::TileCount(int block) const {
-    const PixelRect& r = blocks[block].pixels;
-    return CeilDiv(r.Width(), options.tileSize) * CeilDiv(r.Height(), options.tileSize);
+    const int all = CountTiles(blocks[block].pixels, options.tileSize);
+    return CeilDiv(std::max(0, all - FirstTileOf(block, share)), share.ranks);
 }
 
 void Schedule::StartPass(int block, int target) {
@@ -62,36 +88,78 @@ void Schedule::StartPass(int block, int target) {
     pass.target = target;
     pass.tilesGiven = pass.tilesFinished = 0;
     pass.underWay = true;
-    ready.insert({blocks[block].spp, block});
+    pass.mustEnd |= blocks[block].spp == 0;
+    if ((timeCalled && !pass.mustEnd) || TileCount(block) == 0) return;
+    MakeReady(block);
     readyTiles += TileCount(block);
+}
+
+std::tuple<double, int, int> Schedule::ByNoise(int block) const {
+    return {-blocks[block].noise, blocks[block].spp, block};
+}
+
+void Schedule::MakeReady(int block) {
+    ready.insert({blocks[block].spp, block});
+    if (options.worstFirst) readyByNoise.insert(ByNoise(block));
+}
+
+void Schedule::MakeUnready(int block) {
+    ready.erase({blocks[block].spp, block});
+    readyByNoise.erase(ByNoise(block));
+    if (current == block) current = -1;
+}
+
+int Schedule::NextBlock() const {
+    const auto [fewest, first] = *ready.begin();
+    if (!options.worstFirst) return first;
+    if (current >= 0) return current;
+    const auto [noise, spp, worst] = *readyByNoise.begin();
+    return int64_t(fewest) * largestLead < spp ? first : worst;
+}
+
+bool Schedule::MustGoOn() const {
+    for (int i = 0; i < int(blocks.size()); ++i)
+        if (!blocks[i].stopped && (blocks[i].spp == 0 || progress[i].mustEnd)) return true;
+    return false;
+}
+
+void Schedule::CallTime() {
+    if (timeCalled) return;
+    timeCalled = true;
+    for (int i = 0; i < int(blocks.size()); ++i) {
+        if (progress[i].mustEnd || !ready.contains({blocks[i].spp, i})) continue;
+        readyTiles -= TileCount(i) - progress[i].tilesGiven;
+        MakeUnready(i);
+    }
 }
 
 std::optional<Tile> Schedule::Next() {
     if (ready.empty()) return {};
-    const int i = ready.begin()->second;
+    const int i = NextBlock();
+    if (options.worstFirst) current = i;
     const Block& block = blocks[i];
     Progress& pass = progress[i];
 
-    const int size = options.tileSize, columns = CeilDiv(block.pixels.Width(), size);
-    const Vec2i min =
-        block.pixels.min + size * Vec2i(pass.tilesGiven % columns, pass.tilesGiven / columns);
-    const Vec2i max = (min + Vec2i(size, size)).cwiseMin(block.pixels.max);
+    const int tile = FirstTileOf(i, share) + pass.tilesGiven * share.ranks;
+    const PixelRect pixels = TileAt(block.pixels, options.tileSize, tile);
     ++pass.tilesGiven;
     --readyTiles;
-    if (pass.tilesGiven == TileCount(i)) ready.erase(ready.begin());
-    return Tile{i, {min, max}, block.spp, pass.target - block.spp};
+    if (pass.tilesGiven == TileCount(i)) MakeUnready(i);
+    return Tile{i, pixels, block.spp, pass.target - block.spp};
 }
 
 bool Schedule::Finish(const Tile& tile) {
     Progress& pass = progress[tile.block];
     if (++pass.tilesFinished < TileCount(tile.block)) return false;
     blocks[tile.block].spp = pass.target;
-    pass.underWay = false;
     return true;
 }
 
-void Schedule::Decide(int i, bool stop) {
-    const Block& block = blocks[i];
+void Schedule::Decide(int i, bool stop, double noise) {
+    Block& block = blocks[i];
+    block.noise = noise;
+    progress[i].underWay = progress[i].mustEnd = false;
+    block.spp = progress[i].decidedSpp = progress[i].target;
     if (block.leader >= 0) return CatchUp(i);
 
     stop &= block.votes;

@@ -2,9 +2,11 @@
 // carries out what is decided here.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "renderer/output/film.h"
@@ -19,22 +21,40 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (small_blocks.h)
+    // For renders that have a clock: the next pass is that of the block with the most visible
+    // noise, so that at any moment the worst block is as good as it can be.
+    bool worstFirst = false;
 };
+
+// The noise of a block of which nobody knows it: more than that of any other.
+inline constexpr double unknownNoise = std::numeric_limits<double>::infinity();
 
 struct Block {
     PixelRect pixels;
-    int spp = 0;                 // samples per pixel of all finished passes
-    bool votes = true;           // false: too small for its criterion to be asked
-    int leader = -1;             // of a block that does not vote: the one it stops with, if any
-    bool stopped = false;        // takes no more samples
-    bool stoppedByVote = false;  // stopped by its own vote or its leader's, not by the cap
+    int spp = 0;                  // samples per pixel of all finished passes
+    bool votes = true;            // false: too small for its criterion to be asked
+    int leader = -1;              // of a block that does not vote: the one it stops with, if any
+    bool stopped = false;         // takes no more samples
+    bool stoppedByVote = false;   // stopped by its own vote or its leader's, not by the cap
+    double noise = unknownNoise;  // visible at the end of the last pass, as Decide() was told
 };
+
+// Says which tiles of each block are one's own, where several machines share the work: every
+// `ranks`-th, beginning at another one in each block.
+struct TileShare {
+    int rank = 0, ranks = 1;
+};
+
+// Returns the tiles of block `index` that are in the share, row by row.
+std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize, TileShare = {});
 
 // Says where a block is when a schedule begins.
 struct BlockStart {
     int spp = 0;  // samples per pixel of all finished passes
     bool stopped = false;
     bool stoppedByVote = false;
+    double noise = unknownNoise;
+    bool begun = false;  // some pixels have samples of the next pass
 };
 
 // Holds a piece of a block's pass: `count` samples from `first` on for each of the pixels.
@@ -49,7 +69,10 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 
 // Knows how far every block is. Blocks are independent of each other: a block's next pass is
 // ready as soon as its last one has been decided on. Of the tiles that are ready, those of the
-// block with the fewest samples come first, so that an interrupted image is even.
+// block with the fewest samples come first, so that an interrupted image is even; or, with
+// `worstFirst`, those of a pass that is under way, then those of the noisiest block. A block that
+// has less than a sixteenth of the samples of that one goes before it, whatever its noise, since
+// an estimate from few samples does not know of what is rare.
 //
 // A block too small to vote takes the passes that its leader has finished, and ends at the same
 // samples per pixel; so that depends on no order of execution either.
@@ -57,11 +80,17 @@ class Schedule {
   public:
     // `starts` is empty, or has as many as there are blocks: to go on where an earlier schedule
     // was, or to leave blocks out.
+    // Only tiles of the share are given out and waited for.
     Schedule(const PixelRect& region, const ScheduleOptions&,
-             std::span<const BlockStart> starts = {});
+             std::span<const BlockStart> starts = {}, TileShare share = {});
 
     std::span<const Block> Blocks() const { return blocks; }
     const ScheduleOptions& Options() const { return options; }
+
+    // Returns the samples per pixel of all passes of the block that have been decided on.
+    int DecidedSpp(int block) const { return progress[block].decidedSpp; }
+    // Says whether a pass is left that has to be finished though time is called.
+    bool MustGoOn() const;
 
     // Returns how many tiles Next() would give out before the next Decide().
     int ReadyTiles() const { return readyTiles; }
@@ -70,9 +99,13 @@ class Schedule {
     // Notes that a tile has been rendered. Returns true if that was the last of its block's pass:
     // the block then has its new spp, and waits for Decide().
     bool Finish(const Tile&);
-    // Says whether `block`, whose pass has just been finished, stops here. Ignored for blocks
-    // that do not vote. Makes the tiles of the next pass ready (its own and those of followers).
-    void Decide(int block, bool stop);
+    // Says whether `block`, whose pass has just been finished, stops here, which is ignored for
+    // blocks that do not vote, and how much noise it shows. Makes the tiles of the next pass ready
+    // (its own and those of followers).
+    void Decide(int block, bool stop, double noise = unknownNoise);
+    // Gives out no more tiles, but those of passes that have to be finished: the first of each
+    // block, so that no part of the image is black, and those begun before this schedule was.
+    void CallTime();
 
     bool Done() const { return stoppedBlocks == int(blocks.size()); }
     int StoppedBlocks() const { return stoppedBlocks; }
@@ -82,23 +115,33 @@ class Schedule {
 
   private:
     struct Progress {
+        int decidedSpp = 0;
         int target = 0;      // the spp at the end of the pass under way
         int tilesGiven = 0;  // of this pass
         int tilesFinished = 0;
-        bool underWay = false;
+        bool underWay = false;       // from its start to the decision
+        bool mustEnd = false;        // though time has been called
         std::vector<int> followers;  // of the block
     };
 
     int TileCount(int block) const;
+    int NextBlock() const;
+    std::tuple<double, int, int> ByNoise(int block) const;
     void StartPass(int block, int target);
+    void MakeReady(int block);
+    void MakeUnready(int block);
     void GoOn(int block);
     void Stop(int block, bool byVote);
     void CatchUp(int follower);
 
     ScheduleOptions options;
+    TileShare share;
     std::vector<Block> blocks;
     std::vector<Progress> progress;
-    std::set<std::pair<int, int>> ready;  // (spp, block) with tiles to give out
+    std::set<std::pair<int, int>> ready;                  // (spp, block) with tiles to give out
+    std::set<std::tuple<double, int, int>> readyByNoise;  // the same, where the worst is first
+    int current = -1;  // the block whose pass is being given out, where the worst is first
+    bool timeCalled = false;
     int readyTiles = 0;
     int stoppedBlocks = 0;
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct Decision {
     double value = 0;      // what was compared: an error estimate, P(noisy) or the spp
     double threshold = 0;  // what it was compared with
     int votes = 0;         // noiseless votes in a row (rules that vote only)
+    // The block's VisibleNoise() (lnoise.h), from rules that compute it anyhow.
+    std::optional<double> visibleNoise = {};
 };
 
 // Judges one block over all its passes and holds what that needs to remember. Different criteria

@@ -29,7 +29,8 @@ class LightnessNoiseCriterion final : public Criterion {
                 .judged = true,
                 .value = value,
                 .threshold = threshold,
-                .votes = votes.inRow};
+                .votes = votes.inRow,
+                .visibleNoise = value};
     }
 
     std::vector<std::byte> Save() const override {

@@ -1,0 +1,58 @@
+#include "renderer/commands/clock_options.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "renderer/render/time_limit.h"
+
+namespace lull {
+
+namespace {
+
+// Makes a validator of a function that throws.
+template <typename Parse>
+std::function<std::string(const std::string&)> CheckBy(const Parse& parse) {
+    return [parse](const std::string& text) -> std::string {
+        try {
+            parse(text);
+            return "";
+        } catch (const std::invalid_argument& e) {
+            return e.what();
+        }
+    };
+}
+
+}  // namespace
+
+std::string ClockOptions::Text() const {
+    return !time.empty() ? time : !until.empty() ? "until " + until : "";
+}
+
+void AddClockOptions(CLI::App& app, ClockOptions* options) {
+    auto* time = app.add_option("--time", options->time,
+                                "End after this time, such as 90s, 10m or 1h30m, with files "
+                                "written; until then the noisiest block goes on")
+                     ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
+                     ->type_name("TIME");
+    app.add_option("--until", options->until, "The same, when the clock here shows this")
+        ->check(CheckBy([](const std::string& text) { NextTimeOfDay(text, 0); }))
+        ->type_name("HH:MM")
+        ->excludes(time);
+}
+
+std::function<double()> StartClock(const ClockOptions& options) {
+    if (!options.time.empty()) {
+        // Of the steady clock, as nobody sets that; of `until`, the one that people look at.
+        using Clock = std::chrono::steady_clock;
+        return [end = ParseDuration(options.time), start = Clock::now()] {
+            return end - std::chrono::duration<double>(Clock::now() - start).count();
+        };
+    }
+    if (options.until.empty()) return {};
+    using Clock = std::chrono::system_clock;
+    const auto end =
+        Clock::from_time_t(NextTimeOfDay(options.until, Clock::to_time_t(Clock::now())));
+    return [end] { return std::chrono::duration<double>(end - Clock::now()).count(); };
+}
+
+}  // namespace lull

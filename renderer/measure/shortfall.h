@@ -1,0 +1,26 @@
+// Says what a render whose time was up still lacks.
+#pragma once
+
+#include "renderer/render/provenance.h"
+#include "renderer/render/render.h"
+
+namespace lull {
+
+// Holds a block that has not stopped.
+struct NoisyBlock {
+    int block;             // its place in the list of all
+    double noise;          // visible, in lightness of 0 to 100
+    int neededSpp;         // at which it would probably stop; at most the cap
+    double neededSeconds;  // of processors, until then
+};
+
+// Returns the blocks that have not stopped, the noisiest first. Rules that count samples say where
+// a block will stop; otherwise noise is taken to fall as 1 / sqrt(spp), to the threshold of
+// `lnoise`, or to what blocks had that have been stopped by the rule (their median), or to the
+// default of `lnoise` where there are none. For results of a render with a clock.
+std::vector<NoisyBlock> FindShortfall(const Provenance&, const RenderResult&);
+
+// Returns the seconds that all of them need, of a clock, with the threads that the render had.
+double NeededSeconds(const std::vector<NoisyBlock>&, const RenderResult&);
+
+}  // namespace lull

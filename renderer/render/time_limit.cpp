@@ -1,0 +1,83 @@
+#include "renderer/render/time_limit.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+double SecondsIn(char unit) { return unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0; }
+
+// Takes two digits below `limit`, and `end` after them, off the text. Returns -1 for others.
+int TakeTwoDigits(std::string_view* text, int limit) {
+    int value = 0;
+    if (text->size() < 2) return -1;
+    const auto [rest, error] = std::from_chars(text->data(), text->data() + 2, value);
+    if (error != std::errc() || rest != text->data() + 2 || value < 0 || value >= limit) return -1;
+    text->remove_prefix(2);
+    return value;
+}
+
+}  // namespace
+
+double ParseDuration(const std::string& text) {
+    const auto refuse = [&] {
+        throw std::invalid_argument(
+            fmt::format("'{}' is no time; 90s, 10m, 2h or 1h30m are, for example", text));
+    };
+    double seconds = 0;
+    const char *at = text.data(), *end = at + text.size();
+    double largerUnit = INFINITY;
+    while (at != end) {
+        double value = 0;
+        const auto [rest, error] = std::from_chars(at, end, value, std::chars_format::fixed);
+        if (error != std::errc() || rest == end) refuse();
+        const double unit = SecondsIn(*rest);
+        if (unit == 0 || unit >= largerUnit || !(value >= 0)) refuse();
+        seconds += value * unit;
+        largerUnit = unit;
+        at = rest + 1;
+    }
+    if (!(seconds > 0) || seconds > 1e9) refuse();
+    return seconds;
+}
+
+std::time_t NextTimeOfDay(const std::string& text, std::time_t now) {
+    std::string_view left = text;
+    const int hour = TakeTwoDigits(&left, 24);
+    int minute = -1, second = 0;
+    if (hour >= 0 && left.starts_with(':')) {
+        left.remove_prefix(1);
+        minute = TakeTwoDigits(&left, 60);
+    }
+    if (minute >= 0 && left.starts_with(':')) {
+        left.remove_prefix(1);
+        second = TakeTwoDigits(&left, 60);
+    }
+    if (minute < 0 || second < 0 || !left.empty())
+        throw std::invalid_argument(
+            fmt::format("'{}' is no time of day; 09:00 is, for example", text));
+
+    std::tm today = {};
+    localtime_r(&now, &today);
+    // A day more until it is in the future; mktime() knows of the ends of months, and finds out
+    // about summer time.
+    for (int day = 0;; ++day) {
+        std::tm then = today;
+        then.tm_mday += day;
+        then.tm_hour = hour;
+        then.tm_min = minute;
+        then.tm_sec = second;
+        then.tm_isdst = -1;
+        const std::time_t time = std::mktime(&then);
+        if (time > now) return time;
+    }
+}
+
+double SecondsToWrite(int64_t pixels) { return 0.1 + 1e-6 * double(pixels); }
+
+}  // namespace lull
