@@ -2,7 +2,7 @@
 
 build_packages="g++ cmake ninja-build libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev
     libimath-dev libopenimageio-dev libtbb-dev nlohmann-json3-dev zlib1g-dev"
-test_packages="clang-format libbenchmark-dev libgtest-dev"
+test_packages="clang-format libbenchmark-dev libgtest-dev libopenmpi-dev openmpi-bin"
 
 # install_packages NAME...: does nothing, not even a call of apt-get, where all are there.
 install_packages() {

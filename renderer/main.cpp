@@ -2,29 +2,33 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <new>
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
+#include "renderer/ranks/job.h"
 
 namespace lull {
 
 namespace {
 
-ExitCode Fail(const std::string& message) {
-    fmt::print(stderr, "lull: error: {}\n", message);
+ExitCode Run(Job* job, const Command& command) {
+    std::string message;
+    try {
+        return command();
+    } catch (const OtherRankFailed&) {
+        return kFailed;
+    } catch (const std::bad_alloc&) {
+        message = "out of memory";
+    } catch (const std::exception& e) {
+        message = e.what();
+    }
+    job->Fail(message);
     return kFailed;
 }
 
-ExitCode Run(const Command& command) try { return command(); } catch (const Error& e) {
-    return Fail(e.what());
-} catch (const std::bad_alloc&) {
-    return Fail("out of memory");
-} catch (const std::exception& e) {
-    return Fail(e.what());
-}
-
-ExitCode Main(int argc, char** argv) {
+ExitCode Main(Job* job, int argc, char** argv) {
     CLI::App app("lull renders pbrt-v3 scenes and stops each part of the image by itself.", "lull");
     app.set_version_flag("--version", "lull " LULL_VERSION);
     app.require_subcommand(1);
@@ -33,7 +37,7 @@ ExitCode Main(int argc, char** argv) {
         "Each subcommand has its own --help.");
 
     Command command;
-    AddRenderCommand(app, &command);
+    AddRenderCommand(app, &command, job);
     AddInfoCommand(app, &command);
     AddDatasetCommand(app, &command);
     AddTrainCommand(app, &command);
@@ -46,7 +50,22 @@ ExitCode Main(int argc, char** argv) {
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? kDone : kWrongUsage;
     }
-    return Run(command);
+    if (job->Count() > 1 && !app.got_subcommand("render"))
+        command = []() -> ExitCode {
+            throw Error("only `lull render` runs on several ranks; start this one by itself");
+        };
+    return Run(job, command);
+}
+
+ExitCode Main(int argc, char** argv) {
+    std::unique_ptr<Job> job;
+    try {
+        job = std::make_unique<Job>();
+    } catch (const Error& e) {
+        fmt::print(stderr, "lull: error: {}\n", e.what());
+        return kFailed;
+    }
+    return Main(job.get(), argc, argv);
 }
 
 }  // namespace

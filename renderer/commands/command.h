@@ -9,10 +9,13 @@ namespace lull {
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
 
+class Job;
+
 // Does the work of a subcommand and returns the exit code. Throws what went wrong.
 using Command = std::function<ExitCode()>;
 
-void AddRenderCommand(CLI::App& app, Command* command);
+// The only one that several ranks can share.
+void AddRenderCommand(CLI::App& app, Command* command, Job* job);
 void AddInfoCommand(CLI::App& app, Command* command);
 void AddDatasetCommand(CLI::App& app, Command* command);
 void AddTrainCommand(CLI::App& app, Command* command);

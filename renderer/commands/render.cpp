@@ -11,6 +11,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/shortfall.h"
+#include "renderer/ranks/job.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -47,6 +48,7 @@ Examples:
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
   lull render scene.pbrt --until 09:00                 # as clean as it gets until then
+  mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
 With --time or --until, blocks stop as without; when that is not enough for all, the worst is as
 good as it can be. Every block gets its first pass, even if that takes longer. How many samples
@@ -144,6 +146,12 @@ void PrintFiles(const RenderFiles& files, const RenderResult& result) {
     if (!files.report.empty()) fmt::print("{}\n", files.report);
 }
 
+std::string TextOf(const RenderIdentity& identity) {
+    std::string text;
+    for (const auto& [key, value] : identity) text += key + "=" + value + "\n";
+    return text;
+}
+
 bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
 
 // Makes the criteria; for a page, they also keep the curves of each block.
@@ -158,9 +166,10 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
     };
 }
 
-ExitCode RunRender(Options options) {
+ExitCode RunRender(Options options, Job* job) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
     RenderSettings& settings = options.render;
+    const bool leads = job->Rank() == 0;  // prints, and has to do with files
     const std::function<double()> clock = StartClock(options.clock);
 
     // Check all that can be wrong before the work begins.
@@ -170,8 +179,8 @@ ExitCode RunRender(Options options) {
     CheckBlocks(region, settings.schedule, input.warnings);
     const RenderFiles files =
         NameFiles(options.output.empty() ? input.film.filename : options.output, options.report);
-    CheckWritable(files, settings.scene.file);
-    CheckCheckpoint(settings.checkpoint);
+    if (leads) CheckWritable(files, settings.scene.file);
+    if (leads) CheckCheckpoint(settings.checkpoint);
 
     const std::unique_ptr<const Scene> scene =
         Compile(input.description, settings.scene.compile, input.warnings);
@@ -183,12 +192,13 @@ ExitCode RunRender(Options options) {
     provenance.clock = options.clock.Text();
     const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
-    if (!settings.checkpoint.file.empty()) {
+    if (!settings.checkpoint.file.empty() || job->Count() > 1) {
         identity = IdentityOf(provenance, SceneHash(input.description));
         identity["curves"] = withCurves ? "yes" : "no";
     }
     Film film(region);
-    const std::optional<RenderState> interrupted = Resume(settings.checkpoint, identity, &film);
+    std::optional<RenderState> interrupted;
+    if (leads) interrupted = Resume(settings.checkpoint, identity, &film);
 
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
     ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
@@ -200,8 +210,12 @@ ExitCode RunRender(Options options) {
             return clock() - reserve;
         };
     WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions);
+    renderOptions.peers = job->ThePeers();
+    job->Begin(TextOf(identity));
     const RenderResult result = Render(SamplesOf(*scene, settings.estimator), renderOptions, &film,
                                        interrupted ? &*interrupted : nullptr);
+    job->End();
+    if (!leads) return kDone;
     printer.Finish(result.progress);
 
     if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
@@ -217,14 +231,14 @@ ExitCode RunRender(Options options) {
 
 }  // namespace
 
-void AddRenderCommand(CLI::App& app, Command* command) {
+void AddRenderCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* render =
         app.add_subcommand("render",
                            "Renders a scene, 20 samples per pixel a pass, until each\n"
                            "block of the image has stopped or is at the cap.");
     auto options = std::make_shared<Options>();
     AddOptions(*render, options.get());
-    render->callback([=] { *command = [=] { return RunRender(*options); }; });
+    render->callback([=] { *command = [=] { return RunRender(*options, job); }; });
 }
 
 }  // namespace lull

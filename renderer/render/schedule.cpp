@@ -174,8 +174,9 @@ void Schedule::CatchUp(int follower) {
     const Block& block = blocks[follower];
     const Block& leader = blocks[block.leader];
     if (progress[follower].underWay || block.stopped) return;
-    if (block.spp < leader.spp)
-        StartPass(follower, std::min(block.spp + options.passLength, leader.spp));
+    const int leaderSpp = progress[block.leader].decidedSpp;
+    if (block.spp < leaderSpp)
+        StartPass(follower, std::min(block.spp + options.passLength, leaderSpp));
     else if (leader.stopped)
         Stop(follower, leader.stoppedByVote);
 }

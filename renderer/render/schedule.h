@@ -89,6 +89,10 @@ class Schedule {
 
     // Returns the samples per pixel of all passes of the block that have been decided on.
     int DecidedSpp(int block) const { return progress[block].decidedSpp; }
+    // Returns the samples per pixel at the end of the pass under way.
+    int PassEnd(int block) const { return progress[block].target; }
+    // Says whether the block's pass has to be finished though time is called.
+    bool MustEnd(int block) const { return progress[block].mustEnd; }
     // Says whether a pass is left that has to be finished though time is called.
     bool MustGoOn() const;
 

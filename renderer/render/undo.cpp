@@ -2,25 +2,34 @@
 
 namespace lull {
 
-void PassUndo::Keep(int block, const PixelRect& rect, const Film& film) {
-    const auto [entry, isNew] = kept.try_emplace(block, Pixels{rect, {}});
-    if (!isNew) return;
-    std::vector<FilmPixel>& values = entry->second.values;
-    values.reserve(size_t(rect.Area()));
+void CopyPixels(const Film& film, const PixelRect& rect, std::vector<FilmPixel>* to) {
     for (int y = rect.min.y(); y < rect.max.y(); ++y) {
         const FilmPixel* row = &film.At({rect.min.x(), y});
-        values.insert(values.end(), row, row + rect.Width());
+        to->insert(to->end(), row, row + rect.Width());
     }
 }
 
-void PassUndo::UndoAll(Film* film) {
+const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect& rect, Film* film) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y, from += rect.Width())
+        std::copy_n(from, rect.Width(), &film->At({rect.min.x(), y}));
+    return from;
+}
+
+void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film) {
+    Pixels& pixels = kept[block];
+    pixels.tiles = tiles;
+    for (const PixelRect& tile : tiles) CopyPixels(film, tile, &pixels.values);
+}
+
+std::vector<int> PassUndo::UndoAll(Film* film) {
+    std::vector<int> blocks;
     for (const auto& [block, pixels] : kept) {
-        const PixelRect& rect = pixels.rect;
         const FilmPixel* from = pixels.values.data();
-        for (int y = rect.min.y(); y < rect.max.y(); ++y, from += rect.Width())
-            std::copy_n(from, rect.Width(), &film->At({rect.min.x(), y}));
+        for (const PixelRect& tile : pixels.tiles) from = SetPixels(from, tile, film);
+        blocks.push_back(block);
     }
     kept.clear();
+    return blocks;
 }
 
 }  // namespace lull

@@ -11,19 +11,25 @@ namespace lull {
 // pixels of a block have the same samples.
 class PassUndo {
   public:
-    // Copies the pixels of a block, unless they have been kept already.
-    void Keep(int block, const PixelRect& rect, const Film& film);
+    bool Has(int block) const { return kept.contains(block); }
+    // Copies the pixels of the block that are in these tiles.
+    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&);
     // The pass has come to its end.
     void Forget(int block) { kept.erase(block); }
-    // Puts all that is kept back.
-    void UndoAll(Film* film);
+    // Puts all that is kept back. Returns the blocks.
+    std::vector<int> UndoAll(Film*);
 
   private:
     struct Pixels {
-        PixelRect rect;
-        std::vector<FilmPixel> values;
+        std::vector<PixelRect> tiles;
+        std::vector<FilmPixel> values;  // tile by tile, each row by row
     };
     std::map<int, Pixels> kept;
 };
+
+// Appends the pixels of a rectangle, row by row.
+void CopyPixels(const Film&, const PixelRect&, std::vector<FilmPixel>* to);
+// Sets the pixels of a rectangle, row by row; returns what comes after those in `from`.
+const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect&, Film*);
 
 }  // namespace lull

@@ -14,16 +14,16 @@
 namespace lull {
 namespace {
 
-// Blocks of 40x40 pixels in a row, of which block i has noise of 1, 2, 4, ...
+// Blocks of 20x20 pixels in a row, of which block i has noise of 1, 2, 4, ...
 PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
     sampler.StartSample(pixel, index);
     const float u = sampler.Get1D() - 0.5f;
-    const float deviation = 0.02f * float(1 << (pixel.x() / 40));
+    const float deviation = 0.02f * float(1 << (pixel.x() / 20));
     return {Rgb(1, 1, 1) * (0.4f + deviation * u), false};
 }
 
 struct Clocked {
-    Film film{{{0, 0}, {160, 40}}};
+    Film film{{{0, 0}, {80, 20}}};
     std::atomic<int64_t> taken = 0;
     RenderOptions options;
     RenderResult result;
@@ -31,12 +31,12 @@ struct Clocked {
     // `samples` is how many fit in the time; 0: all.
     explicit Clocked(int64_t samples, int threads = 1, const RenderState* state = nullptr,
                      const std::function<void(RenderOptions*)>& change = {}) {
-        options.schedule = {.blockSize = 40, .passLength = 20, .cap = 4000, .smallestSide = 10};
+        options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
         options.sampler = SamplerKind::Random;
         options.threads = threads;
         if (samples > 0)
             options.secondsLeft = [this, samples] { return double(samples - taken) / 1e6; };
-        options.makeCriterion = [](const BlockInfo&) { return MakeLightnessNoise(0.25); };
+        options.makeCriterion = [](const BlockInfo&) { return MakeLightnessNoise(0.07); };
         if (change) change(&options);
         const auto source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
             ++taken;
@@ -49,7 +49,7 @@ struct Clocked {
     double Noise(int block) const { return result.blocks[size_t(block)].block.noise; }
 };
 
-int64_t Pixels(int passes) { return int64_t(passes) * 20 * 40 * 40; }
+int64_t Pixels(int passes) { return int64_t(passes) * 20 * 20 * 20; }
 
 void ExpectEvenBlocks(const Clocked& render) {
     for (const BlockResult& b : render.result.blocks)
@@ -133,16 +133,16 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     {
         Clocked first(0, 1, nullptr, [&](RenderOptions* o) {
             o->onCheckpoint = [&](const RenderState& s) { state = s; };
-            o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 170; };
+            o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 50; };
         });
         EXPECT_TRUE(first.result.cancelled);
         film = std::make_unique<Film>(first.film);
     }
     RenderOptions options;
-    options.schedule = {.blockSize = 40, .passLength = 20, .cap = 4000, .smallestSide = 10};
+    options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
     options.sampler = SamplerKind::Random;
     options.threads = 2;
-    options.makeCriterion = [](const BlockInfo&) { return MakeLightnessNoise(0.25); };
+    options.makeCriterion = [](const BlockInfo&) { return MakeLightnessNoise(0.07); };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
     const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {

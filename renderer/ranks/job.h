@@ -1,0 +1,44 @@
+// Knows whether this process is one of several that share a render, as mpirun or srun start them.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "renderer/render/peers.h"
+
+namespace lull {
+
+// Is thrown where another rank has failed, which says so itself.
+struct OtherRankFailed {};
+
+// Starts MPI where this is one of several processes, and nowhere else. The output of all ranks but
+// the first goes nowhere. There can be one; used by the main thread.
+class Job {
+  public:
+    // Throws Error where there are several processes but this program was built without MPI.
+    Job();
+    ~Job();
+
+    int Rank() const { return rank; }
+    int Count() const { return count; }
+    // Returns what speaks with the others; null where there are none.
+    Peers* ThePeers() { return peers.get(); }
+
+    // Waits until all ranks are ready to begin and checks that all are about to render the same,
+    // of which `what` is a text that says it all. Throws Error, or OtherRankFailed.
+    void Begin(const std::string& what);
+    // Says that the others are not needed any longer.
+    void End() { phase = Phase::After; }
+    // Prints an error, once for all ranks, and ends them all if others would wait for this one.
+    void Fail(const std::string& message);
+
+  private:
+    enum class Phase { Before, Working, After };
+
+    int rank = 0, count = 1;
+    Phase phase = Phase::Before;
+    int errorOutput = 2;  // the stream for errors, which is closed to all ranks but the first
+    std::unique_ptr<Peers> peers;
+};
+
+}  // namespace lull

@@ -1,0 +1,31 @@
+// The few calls of MPI that there are; without MPI they do nothing. All by the main thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "renderer/render/peers.h"
+
+namespace lull {
+
+extern const bool hasMpi;  // whether the program was built with it
+
+struct MpiWorld {
+    int rank = 0, count = 1;
+};
+
+// Holds what all ranks have said together.
+struct MpiAgreement {
+    int failed = -1;     // the first rank that has failed; -1: none
+    int different = -1;  // the first whose value is not that of rank 0; -1: none
+};
+
+MpiWorld StartMpi();
+void EndMpi();  // if it was started
+// Waits for all ranks.
+MpiAgreement AgreeByMpi(bool failed, uint64_t value);
+// Ends all ranks with exit code 1.
+void AbortMpi();
+std::unique_ptr<Peers> MakeMpiPeers();
+
+}  // namespace lull

@@ -1,0 +1,48 @@
+// Lets several processes share a render.
+//
+// Each rank has the same scene and the same options. The tiles of every block are dealt out
+// (TileShare in schedule.h), so that the last live block still has all ranks; a pixel's samples are
+// summed by the rank that owns it and by nobody else, in the order of their indices. Hence the
+// image is the same bits for any number of ranks.
+//
+//     rank 0                                    rank r
+//       Start: where blocks are, their sums  ->   renders its tiles of a block's pass
+//       asks the criterion when the parts    <-   Part: the means of its pixels
+//       of all ranks are there
+//       Answer: stop or go on                ->   begins the block's next pass
+//
+// No rank waits for another block. To write a checkpoint or to end, rank 0 says
+//
+//       Pause                                ->   finishes the tiles under way
+//       (asks for blocks that are complete)  <-   Quiet
+//       Collect                              ->
+//       has all pixels, writes the files     <-   Pixels ..., Collected
+//       Resume, or End                       ->
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace lull {
+
+struct PeerMessage {
+    int from = 0;
+    std::vector<std::byte> bytes;
+};
+
+// Carries messages between the ranks. Used by one thread.
+class Peers {
+  public:
+    virtual ~Peers() = default;
+    virtual int Rank() const = 0;   // 0 decides
+    virtual int Count() const = 0;  // > 0
+    // Sends without waiting for anybody. What one rank sends to another arrives in this order.
+    virtual void Send(int to, std::vector<std::byte> message) = 0;
+    // Returns the next message that has arrived; nothing if there is none.
+    virtual std::optional<PeerMessage> Receive() = 0;
+    // Waits until all that was sent has left.
+    virtual void Flush() = 0;
+};
+
+}  // namespace lull

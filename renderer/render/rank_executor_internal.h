@@ -1,0 +1,65 @@
+// Carries out a schedule together with other ranks (peers.h).
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <condition_variable>
+
+#include "renderer/render/executor_internal.h"
+#include "renderer/render/peers.h"
+#include "renderer/render/rank_messages_internal.h"
+
+namespace lull {
+
+// The calling thread speaks with the other ranks, and those of the arena do the work.
+class RankExecutor : public Executor {
+  public:
+    // Runs `body`; what it throws leaves no task at work.
+    template <typename Body>
+    RenderResult Guarded(const Body& body) try {
+        return body();
+    } catch (...) {
+        Quiesce();
+        throw;
+    }
+
+  protected:
+    RankExecutor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
+                 std::span<const BlockStart> starts, tbb::task_arena*);
+
+    // Leaves a message to be sent. From any thread.
+    void Post(int to, std::vector<std::byte> message);
+    void PostToAll(const std::vector<std::byte>& message);
+    // Sends what was posted and handles what has arrived, or waits a little if there is neither.
+    // Throws what a task has thrown.
+    void Exchange();
+    virtual void Handle(int from, RankWord, StateReader&) = 0;
+
+    // Runs `work` on a thread of the arena; what it throws, Exchange() throws.
+    void Enqueue(std::function<void()> work);
+    void EnqueueTiles();
+    // Lets no more tiles begin, and waits for those under way.
+    void Quiesce();
+
+    std::vector<PixelRect> TilesOfRank(int block, int rank) const;
+    bool TakeException(std::exception_ptr) override;
+
+    Peers& peers;
+    tbb::task_arena* arena;
+
+  private:
+    void Wait();
+
+    std::mutex outboxMutex;  // guards `outbox` and `failure`
+    std::condition_variable changed;
+    std::vector<std::pair<int, std::vector<std::byte>>> outbox;
+    std::exception_ptr failure;
+    std::chrono::microseconds patience{0};
+};
+
+// Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
+RenderResult LeadRanks(const SampleSource&, const RenderOptions&, Film*,
+                       const RenderState* interrupted, tbb::task_arena*);
+RenderResult FollowRanks(const SampleSource&, const RenderOptions&, Film*, tbb::task_arena*);
+
+}  // namespace lull

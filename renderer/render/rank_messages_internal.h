@@ -1,0 +1,74 @@
+// Puts what ranks say to each other (peers.h) into bytes.
+#pragma once
+
+#include "renderer/output/film.h"
+#include "renderer/render/schedule.h"
+#include "stopping/base/block_view.h"
+#include "stopping/base/state.h"
+
+namespace lull {
+
+enum class RankWord : uint8_t {
+    // From rank 0.
+    Start,    // StartMessage
+    Begin,    // all sums have been sent
+    Answer,   // AnswerMessage
+    TimeUp,   // no more passes
+    Pause,    // finish the tiles under way, and say Quiet
+    Collect,  // then send pixels: CollectMessage
+    Resume,
+    End,
+    // To rank 0.
+    Part,   // PartMessage
+    Quiet,  // all parts have been sent
+    Collected,
+    Interrupted,  // a signal has come
+    // Both ways.
+    Pixels  // sums of a block's tiles
+};
+
+// Says where all blocks are when a rank begins.
+struct StartMessage {
+    std::vector<BlockStart> blocks;
+    std::vector<ViewNeed> needs;  // what the judge will look at after each block's next pass
+};
+
+// Says how a block goes on.
+struct AnswerMessage {
+    int block;
+    bool stop;
+    double noise;
+    ViewNeed need;  // after its next pass
+};
+
+// Holds what a rank has of a block after a pass.
+struct PartMessage {
+    int block;
+    int64_t samples;            // taken
+    double seconds;             // of processors
+    std::vector<float> values;  // the means of its tiles, then the half means, as far as needed
+};
+
+std::vector<std::byte> Pack(RankWord);
+std::vector<std::byte> Pack(const StartMessage&);
+std::vector<std::byte> Pack(const AnswerMessage&);
+std::vector<std::byte> Pack(const PartMessage&);
+std::vector<std::byte> PackCollect(bool undo);
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
+
+// Read what follows on the word. Throw std::runtime_error for what was not packed so.
+StartMessage GetStart(StateReader&);
+AnswerMessage GetAnswer(StateReader&);
+PartMessage GetPart(StateReader&);
+// Reads the number of a block, below `blocks`.
+int GetBlock(StateReader&, size_t blocks);
+// Reads sums of these tiles into the film.
+void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
+
+// Returns the means of tiles, pixel by pixel, then the half means if they are wanted.
+std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed, const Film&);
+// Puts them where they are in a view of `block`. Throws std::runtime_error if the sizes differ.
+void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,
+              const PixelRect& block, FilmView*);
+
+}  // namespace lull

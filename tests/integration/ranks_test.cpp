@@ -1,0 +1,116 @@
+// Renders under mpirun, and compares with what one process makes.
+#include <fmt/format.h>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kRender =
+    "LULL render scene.pbrt --resolution 100x90 --block 40 --threads 1 --quiet ";
+constexpr const char* kShort = "--stop lnoise:0.4 --cap 400 ";
+
+struct RanksTest : testing::Test {
+    void SetUp() override {
+        if (std::string(LULL_MPIRUN).empty()) GTEST_SKIP() << "there is no MPI";
+        directory.Write("scene.pbrt", SceneText(kSphere));
+    }
+
+    // Open MPI leaves memory behind, and takes no root and no more ranks than cores without asking.
+    static std::string Ranks(int ranks) {
+        return fmt::format("env ASAN_OPTIONS=detect_leaks=0 " LULL_MPIRUN
+                           " --oversubscribe --allow-run-as-root --bind-to none -n {} ",
+                           ranks);
+    }
+
+    Outcome Run(const std::string& command) { return RunShell(directory, command); }
+
+    std::vector<float> Texels(const std::string& name) {
+        return ReadImage(directory.File(name + ".exr")).texels;
+    }
+    void ExpectSame(const std::string& a, const std::string& b) {
+        EXPECT_EQ(Texels(a), Texels(b)) << a << " " << b;
+        for (const char* file : {".thresholds.csv", ".png", ".spp.png"})
+            EXPECT_EQ(ReadBytes(directory.File(a + file)), ReadBytes(directory.File(b + file)))
+                << a << " " << b;
+    }
+
+    TemporaryDirectory directory;
+};
+
+TEST_F(RanksTest, ComeToTheSameBits) {
+    ASSERT_EQ(Run(std::string(kRender) + kShort + "-o one.exr").exitCode, 0);
+    for (const int ranks : {1, 2, 3, 4}) {
+        const Outcome outcome = Run(Ranks(ranks) + kRender + kShort + "-o some.exr");
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.out, "some.exr\nsome.png\nsome.spp.png\nsome.thresholds.csv\n");
+        ExpectSame("one", "some");
+    }
+}
+
+TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
+    const std::string render = std::string(kRender) + "--cap 1500 --stop lnoise:0.15 ";
+    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
+    const std::string parts =
+        render + "-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
+
+    // A rank is killed: the job ends, and what there was stays.
+    const Outcome killed = Run(
+        Ranks(3) + parts +
+        " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
+        "for child in $(cat /proc/$p/task/$p/children); do last=$child; done; kill -KILL $last; "
+        "wait $p");
+    EXPECT_NE(killed.exitCode, 0) << killed.err;
+    EXPECT_TRUE(Contains(killed.err, "rank 2")) << killed.err;
+    ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+    std::filesystem::copy(directory.File("c.h5"), directory.File("before.h5"));
+
+    const Outcome resumed = Run(Ranks(2) + parts);
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSame("one", "parts");
+
+    std::filesystem::rename(directory.File("before.h5"), directory.File("c.h5"));
+    ASSERT_EQ(Run(parts).exitCode, 0);
+    ExpectSame("one", "parts");
+}
+
+TEST_F(RanksTest, SaySharedErrorsOnce) {
+    const Outcome missing = Run(Ranks(3) + "LULL render nothing.pbrt");
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(missing.err), 1) << missing.err;
+    EXPECT_TRUE(Contains(missing.err, "nothing.pbrt")) << missing.err;
+
+    const Outcome compare = Run(Ranks(2) + "LULL compare scene.pbrt");
+    EXPECT_EQ(compare.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(compare.err), 1) << compare.err;
+    EXPECT_TRUE(Contains(compare.err, "several ranks")) << compare.err;
+
+    EXPECT_EQ(Run(Ranks(2) + "LULL render scene.pbrt --stop").exitCode, 2);
+}
+
+// Whoever is about to render another scene does not spoil the image of the others.
+TEST_F(RanksTest, RefuseToRenderDifferentScenes) {
+    directory.Write("other.pbrt", SceneText("Shape \"sphere\" \"float radius\" [.5]"));
+    const Outcome outcome =
+        Run(Ranks(2) +
+            "sh -c 'if [ $OMPI_COMM_WORLD_RANK = 1 ]; then cp other.pbrt mine.pbrt; "
+            "else cp scene.pbrt mine0.pbrt; fi; "
+            "[ $OMPI_COMM_WORLD_RANK = 1 ] && s=mine || s=mine0; LULL render $s.pbrt --spp 4'");
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "rank 1")) << outcome.err;
+}
+
+TEST_F(RanksTest, EndByTheClock) {
+    const Outcome timed = Run(Ranks(3) + kRender + "--stop fixed:100000 -o timed.exr --time 4s");
+    ASSERT_EQ(timed.exitCode, 0) << timed.err;
+    ASSERT_EQ(Run(std::string(kRender) +
+                  "--stop thresholds:timed.thresholds.csv --cap 100000 -o again.exr")
+                  .exitCode,
+              0);
+    EXPECT_EQ(Texels("timed"), Texels("again"));
+}
+
+}  // namespace
+}  // namespace lull
