@@ -125,7 +125,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     if (noisy.empty()) return;
-    fmt::print(stderr, "still noisy, in lightness of 0 to 100:\n");
+    fmt::print(stderr, "not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
         fmt::print(stderr, "  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n",
@@ -134,7 +134,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
                    FormatDuration(noisy[i].neededSeconds / std::max(1, result.threads)));
     }
     if (noisy.size() > shown)
-        fmt::print(stderr, "  and {} others, of {:.2f} or less\n", noisy.size() - shown,
+        fmt::print(stderr, "  and {} more, of {:.2f} or less\n", noisy.size() - shown,
                    noisy[shown].noise);
     fmt::print(stderr, "about {} more would have been enough for all\n",
                FormatDuration(NeededSeconds(noisy, result)));
