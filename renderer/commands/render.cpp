@@ -131,7 +131,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
         fmt::print(stderr, "  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n",
                    noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise,
                    block.spp, noisy[i].neededSpp,
-                   FormatDuration(noisy[i].neededSeconds / std::max(1, result.threads)));
+                   FormatDuration(NeededSeconds({noisy[i]}, result)));
     }
     if (noisy.size() > shown)
         fmt::print(stderr, "  and {} more, of {:.2f} or less\n", noisy.size() - shown,

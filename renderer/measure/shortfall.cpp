@@ -56,9 +56,10 @@ std::vector<NoisyBlock> FindShortfall(const Provenance& provenance, const Render
 }
 
 double NeededSeconds(const std::vector<NoisyBlock>& blocks, const RenderResult& result) {
-    double seconds = 0;
-    for (const NoisyBlock& block : blocks) seconds += block.neededSeconds;
-    return seconds / std::max(1, result.threads);
+    double taken = 0, needed = 0;  // of processors
+    for (const BlockResult& b : result.blocks) taken += b.seconds + b.criterionSeconds;
+    for (const NoisyBlock& block : blocks) needed += block.neededSeconds;
+    return taken > 0 ? needed / taken * result.progress.seconds : 0;
 }
 
 }  // namespace lull

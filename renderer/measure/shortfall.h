@@ -20,7 +20,7 @@ struct NoisyBlock {
 // default of `lnoise` where there are none. For results of a render with a clock.
 std::vector<NoisyBlock> FindShortfall(const Provenance&, const RenderResult&);
 
-// Returns the seconds that all of them need, of a clock, with the threads that the render had.
+// Returns the seconds that all of them need, of a clock, where things go on as in the render.
 double NeededSeconds(const std::vector<NoisyBlock>&, const RenderResult&);
 
 }  // namespace lull
