@@ -45,6 +45,7 @@ ExitCode Main(Job* job, int argc, char** argv) {
     AddSelftestCommand(app, &command);
     AddCompareCommand(app, &command);
     AddBenchCommand(app, &command);
+    AddJudgeCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

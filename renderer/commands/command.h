@@ -23,5 +23,6 @@ void AddEvaluateCommand(CLI::App& app, Command* command);
 void AddSelftestCommand(CLI::App& app, Command* command);
 void AddCompareCommand(CLI::App& app, Command* command);
 void AddBenchCommand(CLI::App& app, Command* command);
+void AddJudgeCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

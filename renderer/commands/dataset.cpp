@@ -9,11 +9,9 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/render_settings.h"
+#include "renderer/commands/recorded_viewpoint.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/output/file_io.h"
-#include "stopping/learning/dataset.h"
-#include "stopping/rules/small_blocks.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -47,11 +45,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddSceneOptions(app, &o->render.scene);
     app.add_option("--name", o->name, "Name of the viewpoint, as in thresholds files")
         ->required()
-        ->check([](const std::string& name) {
-            return !name.empty() && name.find_first_of("/;\n") == std::string::npos
-                       ? ""
-                       : "a name has at least one character, and none of / and ;";
-        });
+        ->check(CheckViewpointName);
     app.add_option("-o,--output", o->output, "Data set to make or add to")
         ->required()
         ->type_name("OUT.h5");
@@ -120,25 +114,6 @@ int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& bl
     return samples;
 }
 
-std::vector<ViewpointRecording> ReadIfThere(const std::string& path) {
-    if (!std::filesystem::exists(path)) return {};
-    return ReadDataset(path);
-}
-
-// Describes the whole recording but for the blocks themselves.
-ViewpointRecording MakeViewpoint(const Options& options, const RenderIdentity& identity,
-                                 size_t blockCount) {
-    ViewpointRecording viewpoint;
-    viewpoint.name = options.name;
-    viewpoint.blockCount = int(blockCount);
-    viewpoint.cap = options.render.schedule.cap;
-    viewpoint.passSpp = options.render.schedule.passLength;
-    for (const auto& [key, value] : identity)
-        if (key != "stop" && key != "model" && key != "cap" && key != "pass" && key != "version")
-            viewpoint.provenance[key] = value;
-    return viewpoint;
-}
-
 // Returns the state of a render that has not begun, with the blocks left out that have no limit.
 RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& limits) {
     RenderState state;
@@ -160,16 +135,11 @@ ExitCode RunDataset(const Options& options) {
     SceneInput input(settings.scene);
     const PixelRect& region = input.region;
     const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
-    for (const Block& block : blocks)
-        if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
-            throw Error(
-                fmt::format("blocks of less than {} pixels a side cannot be recorded; "
-                            "choose a --resolution that is a multiple of {}",
-                            smallestVotingSide, settings.schedule.blockSize));
+    CheckRecordable(blocks, settings.schedule);
 
     // Leave out what is there already.
     std::vector<int> limits = MakeLimits(options, blocks.size());
-    std::vector<ViewpointRecording> dataset = ReadIfThere(options.output);
+    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
     CheckWritable(options.output);
     const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
     if (old != dataset.end())
@@ -186,7 +156,7 @@ ExitCode RunDataset(const Options& options) {
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
     const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
-    ViewpointRecording viewpoint = MakeViewpoint(options, identity, blocks.size());
+    ViewpointRecording viewpoint = MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
     // Go on where an earlier run was interrupted.
@@ -223,10 +193,7 @@ ExitCode RunDataset(const Options& options) {
 
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (limits[i] == 0) continue;
-        viewpoint.blocks[int(i)] = std::move(recordings[i]);
-        viewpoint.blockNotes[int(i)] = fmt::format(
-            "{:.0f} s of threads for {} spp, {:.0f} s for the recording", result.blocks[i].seconds,
-            result.blocks[i].block.spp, result.blocks[i].criterionSeconds);
+        AddBlock(i, std::move(recordings[i]), result.blocks[i], &viewpoint);
     }
     AddToDataset(viewpoint, &dataset);
     WriteFileAtomically(options.output, EncodeDataset(dataset));

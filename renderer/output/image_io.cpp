@@ -95,20 +95,23 @@ uint8_t Encode8Bit(float linear) {
     return uint8_t(std::min(v, 255.f));
 }
 
+std::vector<std::byte> EncodePng(const std::string& path, OIIO::ImageSpec spec,
+                                 std::span<const uint8_t> bytes) {
+    if (bytes.size() != size_t(spec.width) * size_t(spec.height) * 3)
+        FailToWrite(path, "the pixels do not fit the size");
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return Encode(path, "png", spec, [&](OIIO::ImageOutput* output) {
+        return output->write_image(OIIO::TypeDesc::UINT8, bytes.data());
+    });
+}
+
 std::vector<std::byte> EncodePng(const std::string& path, std::span<const Rgb> pixels, int width,
                                  int height) {
     std::vector<uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);
     for (const Rgb& p : pixels)
         for (int c = 0; c < 3; ++c) bytes.push_back(Encode8Bit(p[c]));
-    if (bytes.size() != size_t(width) * size_t(height) * 3)
-        FailToWrite(path, "the pixels do not fit the size");
-
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    return Encode(path, "png", spec, [&](OIIO::ImageOutput* output) {
-        return output->write_image(OIIO::TypeDesc::UINT8, bytes.data());
-    });
+    return EncodePng(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8), bytes);
 }
 
 void SetAttribute(OIIO::ImageSpec* spec, const std::string& name, const ExrAttribute& value) {
@@ -226,6 +229,13 @@ ExrImage ReadExr(const std::string& path) {
 
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height) {
     return EncodePng("picture in memory", pixels, width, height);
+}
+
+std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("png:compressionLevel", 9);
+    spec.attribute("png:filter", 0xf8);  // libpng's PNG_ALL_FILTERS
+    return EncodePng("picture in memory", spec, srgb);
 }
 
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {

@@ -53,6 +53,10 @@ ExrImage ReadExr(const std::string& path);
 // rounded, clamped to [0, 255]; NaN is black. Throws Error.
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height);
 
+// Encodes 8-bit sRGB pixels (R, G, B, rows from the top) as they are, as small as PNG can. Throws
+// Error.
+std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
+
 // Writes such a PNG, whole or not at all; throws Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
 

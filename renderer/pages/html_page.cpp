@@ -9,6 +9,12 @@ namespace lull {
 
 namespace {
 
+std::string Uri(std::span<const Rgb> pixels, int width, int height) {
+    return "data:image/png;base64," + Base64(EncodePng(pixels, width, height));
+}
+
+}  // namespace
+
 std::string Base64(std::span<const std::byte> bytes) {
     constexpr const char* digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -24,35 +30,34 @@ std::string Base64(std::span<const std::byte> bytes) {
     return text;
 }
 
-std::string Uri(std::span<const Rgb> pixels, int width, int height) {
-    return "data:image/png;base64," + Base64(EncodePng(pixels, width, height));
-}
-
-// Makes a text safe inside <script>, where only "</" and "<!--" have a meaning.
-std::string ForScript(std::string text) {
+std::string JsonForScript(const Json& json) {
+    // Only "</" and "<!--" have a meaning there.
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6)
         text.replace(at, 1, "\\u003c");
     return text;
 }
 
-}  // namespace
-
-std::string MakePage(const Json& data) {
+std::string FillPage(std::string_view frame, const std::map<std::string, std::string>& pieces) {
     // Names in the data are never read as places to fill in: each piece is copied once.
     std::string page;
-    std::string_view rest = EmbeddedFile("page.html");
+    std::string_view rest = EmbeddedFile(frame);
     while (!rest.empty()) {
         const size_t open = rest.find("{{"), close = rest.find("}}", open);
         page += rest.substr(0, open);
         if (close == std::string_view::npos) break;
-        const std::string_view name = rest.substr(open + 2, close - open - 2);
-        if (name == "data")
-            page += ForScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+        const std::string name(rest.substr(open + 2, close - open - 2));
+        if (const auto piece = pieces.find(name); piece != pieces.end())
+            page += piece->second;
         else
             page += EmbeddedFile(name);
         rest.remove_prefix(close + 2);
     }
     return page;
+}
+
+std::string MakePage(const Json& data) {
+    return FillPage("page.html", {{"data", JsonForScript(data)}});
 }
 
 std::vector<Rgb> PixelsOf(const RgbImage& image) {

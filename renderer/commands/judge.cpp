@@ -1,0 +1,145 @@
+// `lull judge`: people say where they still see noise.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "renderer/commands/command.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/judge_options.h"
+#include "renderer/commands/recorded_viewpoint.h"
+#include "renderer/commands/render_files.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/output/file_io.h"
+#include "stopping/base/parallel.h"
+
+namespace lull {
+
+namespace {
+
+void WriteStudy(const JudgeSettings& settings, const Study& study) {
+    WriteFileAtomically(settings.output, MakeStudyPage(study, settings.study));
+    if (!settings.render.quiet)
+        fmt::print(stderr, "lull: {} blocks at {} levels: {} spp\n", study.blocks.size(),
+                   study.levels.size(), fmt::join(study.levels, ", "));
+    fmt::print("{}\n", settings.output);
+}
+
+ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
+    CheckWritable(settings.output);
+    const std::string name = settings.name.empty() ? SceneName(settings.images) : settings.name;
+    const Study study = ReadStudy(settings.images, name, settings.render.schedule.blockSize,
+                                  settings.levels, kLadderRatio);
+    RunWithThreads(settings.render.scene.compile.threads, [&] { WriteStudy(settings, study); });
+    return kDone;
+}
+
+// Returns the study's frame: all but the pictures.
+Study BeginStudy(const std::string& name, const PixelRect& region, std::vector<int> levels,
+                 const std::vector<Block>& blocks, const RenderIdentity& identity) {
+    Study study{.viewpoint = name,
+                .width = region.Width(),
+                .height = region.Height(),
+                .levels = std::move(levels),
+                .blocks = {},
+                .provenance = identity};
+    for (const Block& block : blocks)
+        study.blocks.push_back({{block.pixels.min - region.min, block.pixels.max - region.min}, {}});
+    return study;
+}
+
+ExitCode MakeStudyOfScene(const JudgeSettings& options) {
+    RenderSettings settings = options.render;
+    ScheduleOptions& schedule = settings.schedule;
+    schedule.cap = settings.cap.value_or(schedule.cap);
+    SceneInput input(settings.scene);
+    const std::vector<Block> blocks = MakeBlocks(input.region, schedule);
+    const std::vector<int> levels =
+        options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
+                           : LadderByRatio(schedule.passLength, schedule.cap, kLadderRatio);
+    if (levels.size() < 2)
+        throw Error(fmt::format("--cap {}: a ladder needs more than one pass of {} spp",
+                                schedule.cap, schedule.passLength));
+    const std::string name = options.name.empty() ? SceneName(settings.scene.file) : options.name;
+    const bool records = !options.record.empty();
+    CheckWritable(options.output);
+    std::vector<ViewpointRecording> dataset;
+    if (records) {
+        CheckRecordable(blocks, schedule);
+        CheckWritable(options.record);
+        dataset = ReadDatasetIfThere(options.record);
+    }
+
+    const std::unique_ptr<const Scene> scene =
+        Compile(input.description, settings.scene.compile, input.warnings);
+    input.warnings.Summarize();
+    Provenance provenance = MakeProvenance(settings, *scene, input.film);
+    provenance.criterion =
+        fmt::format("judge:{}{}", fmt::join(levels, ","), records ? ":record" : "");
+    const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
+    ViewpointRecording viewpoint = MakeViewpoint(name, schedule, identity, blocks.size());
+    if (records) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
+
+    const std::string file = options.output + ".checkpoint";
+    const CheckpointOptions checkpoint{.file = file,
+                                       .interval = settings.checkpoint.interval,
+                                       .resume = std::filesystem::exists(file)};
+    Film film(input.region);
+    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &film);
+
+    Study study = BeginStudy(name, input.region, levels, blocks, identity);
+    std::vector<BlockRecording> recordings(blocks.size());
+    ProgressPrinter printer = MakePrinter(settings, false);
+    CatchInterrupts();
+    RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
+    render.makeCriterion = [&](const BlockInfo& info) {
+        std::unique_ptr<Criterion> recorder;
+        if (records)
+            recorder = std::make_unique<Recorder>(schedule.passLength, schedule.cap, schedule.cap,
+                                                  &recordings[size_t(info.index)]);
+        return std::make_unique<PictureLadder>(levels, std::move(recorder),
+                                               &study.blocks[size_t(info.index)].pictures);
+    };
+    WriteCheckpoints(checkpoint, identity, film, &render);
+    const RenderResult result = Render(SamplesOf(*scene, settings.estimator), render, &film,
+                                       interrupted ? &*interrupted : nullptr);
+    printer.Finish(result.progress);
+    if (result.cancelled) {
+        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n", file);
+        return kInterrupted;
+    }
+
+    RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
+    if (records) {
+        for (size_t i = 0; i < blocks.size(); ++i)
+            AddBlock(i, std::move(recordings[i]), result.blocks[i], &viewpoint);
+        AddToDataset(viewpoint, &dataset);
+        WriteFileAtomically(options.record, EncodeDataset(dataset));
+        fmt::print("{}\n", options.record);
+    }
+    std::filesystem::remove(file);
+    return kDone;
+}
+
+ExitCode RunJudge(const JudgeSettings& settings) {
+    if (settings.collect.empty())
+        return settings.images.empty() ? MakeStudyOfScene(settings) : MakeStudyOfImages(settings);
+    CollectAnswers(settings);
+    return kDone;
+}
+
+}  // namespace
+
+void AddJudgeCommand(CLI::App& app, Command* command) {
+    CLI::App* judge = app.add_subcommand(
+        "judge", "Lets people say where they see noise: makes a page for it, collects answers.");
+    auto settings = std::make_shared<JudgeSettings>();
+    AddJudgeOptions(*judge, settings.get());
+    judge->callback([=] {
+        CheckJudgeOptions(*settings);
+        *command = [=] { return RunJudge(*settings); };
+    });
+}
+
+}  // namespace lull

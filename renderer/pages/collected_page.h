@@ -1,0 +1,13 @@
+// Writes the page that shows what observers said.
+#pragma once
+
+#include "renderer/measure/report_json.h"
+#include "stopping/learning/observers.h"
+
+namespace lull {
+
+// Returns the page. `study` is what ReadStudyPage() returns, for the viewpoint that it is of, or
+// null: then there are tables, but no image.
+std::string MakeCollectedPage(const Collected&, const Json& study);
+
+}  // namespace lull

@@ -1,0 +1,110 @@
+"use strict";
+// Shows the whole image beside its reference, and lets the observer point at blocks.
+
+const adjustView = {block: 0, flicker: false, cells: []};
+
+// Says where a block is in words, for those who do not see it.
+function placeName(block) {
+  const b = study.blocks[block];
+  const columns = [...new Set(study.blocks.map(o => o.x))], rows = [...new Set(study.blocks.map(o => o.y))];
+  return `row ${rows.indexOf(b.y) + 1}, column ${columns.indexOf(b.x) + 1}`;
+}
+
+function makeAdjustView() {
+  for (const side of ["noisy", "reference"]) {
+    const stage = byId(side);
+    study.blocks.forEach((b, block) => {
+      const canvas = make("canvas", {width: b.width, height: b.height, "aria-hidden": "true"});
+      const cell = make(side === "noisy" ? "button" : "div", {class: "cell", "data-block": block,
+        click: e => point(block, e.shiftKey ? "-" : "+"), mouseenter: () => markBlock(block), mouseleave: () => markBlock(-1)}, canvas);
+      if (side === "noisy") {
+        cell.tabIndex = block ? -1 : 0;
+        cell.setAttribute("aria-label", `Block in ${placeName(block)}`);
+        cell.addEventListener("focus", () => { moveTo(block); if (cell.matches(":focus-visible")) markBlock(block); });
+        cell.addEventListener("blur", () => markBlock(-1));
+      }
+      stage.append(cell);
+      (adjustView.cells[block] = adjustView.cells[block] || {})[side] = {cell, canvas};
+    });
+  }
+  byId("noisy").addEventListener("keydown", adjustKeys);
+  byId("same").addEventListener("click", () => { addEvent("same"); say(""); });
+  byId("flicker").addEventListener("click", () => flicker());
+}
+
+function layOutAdjust() {
+  const size = pixelSize(), width = study.width * size, height = study.height * size;
+  byId("stages").classList.toggle("stacked", 2 * width + 16 > document.documentElement.clientWidth - 16);
+  for (const side of ["noisy", "reference"]) {
+    byId(side).style.width = width + "px";
+    byId(side).style.height = height + "px";
+  }
+  study.blocks.forEach((b, block) => {
+    for (const {cell} of Object.values(adjustView.cells[block]))
+      Object.assign(cell.style, {left: b.x * size + "px", top: b.y * size + "px", width: b.width * size + "px", height: b.height * size + "px"});
+  });
+}
+
+// Frames a block on both sides: a thin line around it, as one across it would hide its noise.
+function markBlock(block) {
+  adjustView.cells.forEach((sides, i) => Object.values(sides).forEach(({cell}) => cell.classList.toggle("marked", i === block)));
+}
+
+// Makes a block the one that Tab comes back to.
+function moveTo(block) {
+  adjustView.cells[adjustView.block].noisy.cell.tabIndex = -1;
+  adjustView.block = block;
+  adjustView.cells[block].noisy.cell.tabIndex = 0;
+}
+
+function adjustKeys(event) {
+  const from = study.blocks[adjustView.block];
+  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+  if (step) {
+    event.preventDefault();
+    const x = from.x + (step[0] < 0 ? -1 : step[0] > 0 ? from.width : 0);
+    const y = from.y + (step[1] < 0 ? -1 : step[1] > 0 ? from.height : 0);
+    const to = study.blocks.findIndex(b => x >= b.x && x < b.x + b.width && y >= b.y && y < b.y + b.height);
+    if (to >= 0) adjustView.cells[to].noisy.cell.focus();
+  } else if (event.key === "Backspace") {
+    event.preventDefault();
+    point(adjustView.block, "-");
+  } else if (event.key === "Enter") {
+    event.preventDefault();  // nor when the key is held
+    if (!event.repeat) point(adjustView.block, "+");
+  }
+}
+
+function point(block, direction) {
+  if (adjustView.flicker) flicker();
+  addEvent(direction, block);
+  say(`${placeName(block)}: one step ${direction === "+" ? "better" : "back"}`);
+}
+
+// Shows the reference in place of the noisy picture, or the noisy one again.
+function flicker(on = !adjustView.flicker) {
+  adjustView.flicker = on;
+  byId("flicker").setAttribute("aria-pressed", on);
+  byId("noisy").parentElement.classList.toggle("flickering", on);
+  byId("noisy-caption").textContent = on ? "the reference" : "the picture to judge";
+  if (on) say("the reference, on the left");
+  showAdjust(replay(session));
+}
+
+function showAdjust(state) {
+  const top = study.levels.length - 1;
+  byId("progress-text").textContent = ["First look", "Second look", "Last look"][Math.min(2, state.round)] +
+    `: ${session.events.filter(e => e[0] !== "same").length} answers so far`;
+  byId("progress").value = Math.min(0.95, state.round / 2);
+  const drawn = state.entries.map((entry, block) => {
+    const level = shownLevel(study, entry);
+    drawPicture(adjustView.cells[block].reference.canvas, block, top);
+    return drawPicture(adjustView.cells[block].noisy.canvas, block, adjustView.flicker ? top : level);
+  });
+  // Have ready what the next click on each block may show.
+  const near = state.entries.map(entry => shownLevel(study, entry));
+  Promise.all(drawn).then(() => {
+    forgetPictures((block, level) => level === top || Math.abs(level - near[block]) <= 2);
+    near.forEach((level, block) => { for (const l of [level + 1, level - 1]) if (l >= 0 && l <= top) pictureOf(block, l); });
+  });
+}

@@ -1,0 +1,30 @@
+// Writes the page on which people say where they still see noise.
+#pragma once
+
+#include "renderer/measure/report_json.h"
+#include "renderer/measure/study.h"
+
+namespace lull {
+
+// Says how people are asked.
+enum class StudyProcedure {
+    Adjust,    // the whole image beside the reference: point where they differ, until they do not
+    Staircase  // a block beside its reference: which of both has the noise? (QUEST)
+};
+
+struct StudySettings {
+    StudyProcedure procedure = StudyProcedure::Adjust;
+    double repeats = 0.25;  // share of the blocks that are asked twice, [0, 1]
+    double catches = 0.15;  // share that checks the observer, [0, 1)
+    int answers = 8;        // to each block of a staircase, > 0
+};
+
+// Returns the page: everything is in it, and it asks for nothing from anywhere.
+std::string MakeStudyPage(const Study&, const StudySettings&);
+
+// Returns what a study's page says of the study, and in "references" the pictures of the blocks at
+// the last level, as data URIs. Throws Error beginning with the path for anything that is no such
+// page.
+Json ReadStudyPage(const std::string& path);
+
+}  // namespace lull

@@ -1,0 +1,48 @@
+// Reads what one observer said of one viewpoint: the JSON files that the page of `lull judge` saves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lull {
+
+enum class AnswerKind {
+    Asked,   // where the block's noise was seen to end
+    Repeat,  // the same, asked again
+    Catch    // a check of the observer, to which the right answer is known
+};
+
+struct BlockAnswer {
+    AnswerKind kind = AnswerKind::Asked;
+    int block = 0;        // row-major
+    double spp = 0;       // the threshold, within the ladder; 0 for a check
+    bool failed = false;  // of a check
+};
+
+struct ObserverAnswers {
+    std::string file;                  // that they were read from
+    std::string observer, session;     // a name that the observer chose; digits of the session
+    std::string started;               // ISO 8601, so that texts are ordered as times
+    std::string study, viewpoint;      // id and name
+    std::string procedure;             // "adjust" or "staircase"
+    std::vector<int> levels;           // spp of the ladder, increasing, two or more
+    std::vector<double> thresholds;    // spp of each block: the mean of all answers to it
+    std::vector<BlockAnswer> answers;  // at least one for each block that is no check
+    bool isIdle = false;               // the observer pointed at nothing
+    double seconds = 0;                // without pauses
+    std::optional<double> gamma, distanceCm;
+
+    bool operator==(const ObserverAnswers& other) const;  // but for the file
+};
+
+// Reads answers from a text. Throws std::runtime_error saying what is wrong: no JSON, not made by
+// the page, or in contradiction to itself. Names have no control characters, and can stand in
+// thresholds files.
+ObserverAnswers ParseAnswers(std::string_view text);
+
+// Reads a file. Throws std::runtime_error, without the file's name.
+ObserverAnswers ReadAnswers(const std::string& path);
+
+}  // namespace lull

@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+"""Works through a study of `lull judge` in a headless browser, as an observer who sees noise by a rule.
+
+simulated_observer.py CHROMIUM STUDY.html THRESHOLDS.csv ANSWERS_DIR NAME [--scatter OCTAVES] [--keys]
+
+The observer sees noise in a block below the spp that the only row of THRESHOLDS.csv has for it;
+each time a block is asked, the threshold is another, by a factor of two to the power of a normal
+deviate of OCTAVES. ANSWERS_DIR gets the file that the page saves.
+"""
+import argparse
+import json
+import pathlib
+import random
+import sys
+import tempfile
+import time
+
+from report_page import Browser
+
+CODES = {"Enter": 13, "Tab": 9, " ": 32, "Backspace": 8, "ArrowLeft": 37, "ArrowUp": 38,
+         "ArrowRight": 39, "ArrowDown": 40, "u": 85, "p": 80}
+
+
+class Participant:
+    """Uses the page by mouse or by keys. `threshold(block, kind)` is in spp."""
+
+    def __init__(self, browser, page, threshold, keys=False, guesses=None):
+        self.browser, self.keys, self.threshold = browser, keys, threshold
+        self.guesses = guesses or random.Random(1)
+        self.seen = {}  # (round, block): the threshold of this time
+        browser.open(pathlib.Path(page))
+        self.levels, self.blocks = browser.evaluate("[study.levels, study.blocks]")
+
+    def key(self, key, shift=False):
+        text = {"Enter": "\r", " ": " "}.get(key, key if len(key) == 1 else "")
+        common = dict(key=key, code=key if len(key) > 1 else "", windowsVirtualKeyCode=CODES[key],
+                      modifiers=8 if shift else 0)
+        self.browser.call("Input.dispatchKeyEvent", type="keyDown", text=text, **common)
+        self.browser.call("Input.dispatchKeyEvent", type="keyUp", **common)
+
+    def tab_to(self, selector):
+        for _ in range(40):
+            if self.browser.evaluate(f"document.activeElement.matches('{selector}')"):
+                return
+            self.key("Tab")
+        raise SystemExit("Tab does not reach " + selector)
+
+    def press(self, selector):
+        """Presses a button."""
+        if self.keys:
+            self.tab_to(selector)
+            self.key("Enter")
+        else:
+            self.browser.click(selector)
+
+    def begin(self, name):
+        self.tab_to("#name")
+        self.browser.call("Input.insertText", text=name)
+        self.key("Enter")
+        self.expect("check")
+        if self.keys:
+            self.tab_to("input[name=tones]")
+            self.key(" ")
+        else:
+            self.browser.click("input[name=tones]")
+        self.press("#check-form button")
+        self.expect("task")
+
+    def expect(self, screen):
+        self.browser.wait_for(f"screenName === '{screen}'")
+
+    def click_block(self, block, back=False):
+        if self.keys:
+            self.tab_to(".cell")
+            self.go_to(block)
+            self.key("Backspace" if back else "Enter")
+            return
+        b = self.browser.evaluate(
+            f"(() => {{ const r = adjustView.cells[{block}].noisy.cell.getBoundingClientRect();"
+            " return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=b[0], y=b[1], button="left",
+                              clickCount=1, modifiers=8 if back else 0)
+
+    def go_to(self, block):
+        """Moves by arrow keys."""
+        for _ in range(100):
+            at, to = (self.blocks[i] for i in (
+                self.browser.evaluate("+document.activeElement.dataset.block"), block))
+            if at["x"] != to["x"]:
+                self.key("ArrowRight" if at["x"] < to["x"] else "ArrowLeft")
+            elif at["y"] != to["y"]:
+                self.key("ArrowDown" if at["y"] < to["y"] else "ArrowUp")
+            else:
+                return
+        raise SystemExit("arrow keys do not reach the block")
+
+    def sees(self, round_number, block, kind, level):
+        if level == len(self.levels) - 1:
+            return False  # the reference
+        key = (round_number, block)
+        if key not in self.seen:
+            self.seen[key] = self.threshold(block, kind)
+        return self.levels[level] < self.seen[key]
+
+    def state(self):
+        return self.browser.evaluate(
+            "(s => s.finished ? null : s.trial ? {trial: s.trial} : {round: s.round,"
+            " entries: s.entries.map(e => [e.kind, shownLevel(study, e)])})(replay(session))")
+
+    def look(self, most=10 ** 9):
+        """Answers until the end, or `most` times; returns whether that was the end."""
+        given = 0
+        while given < most:
+            state = self.state()
+            if state is None:
+                return True
+            if "trial" in state:
+                self.browser.wait_for("!choosing")
+                trial = state["trial"]
+                sees = self.sees(0, trial["block"], "asked", trial["level"])
+                side = trial["noisySide"] if sees else self.guesses.randrange(2)
+                if self.keys:
+                    self.key(("ArrowLeft", "ArrowRight")[side])
+                else:
+                    self.browser.click(("#left", "#right")[side])
+                given += 1
+                continue
+            noisy = [i for i, (kind, level) in enumerate(state["entries"])
+                     if self.sees(state["round"], i, kind, level)]
+            for block in noisy[:most - given]:
+                self.click_block(block)
+            given += max(1, len(noisy))
+            if not noisy:
+                self.press("#same")
+        return self.state() is None
+
+    def save(self, folder):
+        """Saves the answers and returns the file."""
+        folder = pathlib.Path(folder)
+        before = set(folder.glob("*.json"))
+        session, self.browser.session = self.browser.session, None
+        self.browser.call("Browser.setDownloadBehavior", behavior="allow",
+                          downloadPath=str(folder.resolve()))
+        self.browser.session = session
+        self.press("#download")
+        for _ in range(200):
+            for file in set(folder.glob("*.json")) - before:
+                try:
+                    json.loads(file.read_text())
+                    return file
+                except json.JSONDecodeError:
+                    pass
+            time.sleep(0.05)
+        raise SystemExit("no answers were saved")
+
+
+def read_thresholds(path):
+    return [int(t) for t in pathlib.Path(path).read_text().splitlines()[0].split(";")[1:] if t]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    for name in ("chromium", "study", "thresholds", "answers", "name"):
+        parser.add_argument(name)
+    parser.add_argument("--scatter", type=float, default=0.0)
+    parser.add_argument("--keys", action="store_true")
+    options = parser.parse_args()
+    thresholds, chance = read_thresholds(options.thresholds), random.Random(options.name)
+    pathlib.Path(options.answers).mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as profile:
+        browser = Browser(options.chromium, profile)
+        participant = Participant(
+            browser, pathlib.Path(options.study).resolve(),
+            lambda block, kind: thresholds[block] * 2 ** chance.gauss(0, options.scatter),
+            options.keys, chance)
+        participant.begin(options.name)
+        participant.look()
+        participant.expect("end")
+        print(participant.save(options.answers))
+        browser.close()
+    if browser.problems:
+        sys.exit("; ".join(browser.problems))
+
+
+if __name__ == "__main__":
+    main()
