@@ -156,7 +156,8 @@ ExitCode RunDataset(const Options& options) {
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
     const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
-    ViewpointRecording viewpoint = MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
+    ViewpointRecording viewpoint =
+        MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
     // Go on where an earlier run was interrupted.

@@ -45,7 +45,8 @@ Study BeginStudy(const std::string& name, const PixelRect& region, std::vector<i
                 .blocks = {},
                 .provenance = identity};
     for (const Block& block : blocks)
-        study.blocks.push_back({{block.pixels.min - region.min, block.pixels.max - region.min}, {}});
+        study.blocks.push_back(
+            {{block.pixels.min - region.min, block.pixels.max - region.min}, {}});
     return study;
 }
 

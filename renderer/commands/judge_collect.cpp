@@ -33,8 +33,8 @@ std::string DetailsCsv(const Collected& collected) {
                                v.observers, b.mean, Field(b.low), Field(b.high), b.lowest,
                                b.highest, Field(b.deviation), Field(b.octaves));
         }
-        csv += fmt::format("{},all,{},,,,,,,,{}\n", Quoted(v.name), v.observers,
-                           Field(v.agreement));
+        csv +=
+            fmt::format("{},all,{},,,,,,,,{}\n", Quoted(v.name), v.observers, Field(v.agreement));
     }
     return csv;
 }
@@ -96,8 +96,7 @@ void CollectAnswers(const JudgeSettings& settings) {
             fmt::print(stderr, "lull: {}: {} observer{}, agreement {}\n", v.name, v.observers,
                        v.observers == 1 ? "" : "s",
                        v.agreement ? fmt::format("{:.2f}", *v.agreement) : "not known");
-    for (const std::string& file : {settings.output, details, observers})
-        fmt::print("{}\n", file);
+    for (const std::string& file : {settings.output, details, observers}) fmt::print("{}\n", file);
     if (!settings.report.empty()) fmt::print("{}\n", settings.report);
 }
 

@@ -115,8 +115,7 @@ void CheckJudgeOptions(const JudgeSettings& s) {
         Refuse("--report and --study need --collect");
     if (!s.report.empty() && !s.report.ends_with(".html"))
         Refuse("--report " + s.report + ": the report is a page, PAGE.html");
-    if (!s.report.empty() && s.report == s.studyPage)
-        Refuse("--report would replace the study");
+    if (!s.report.empty() && s.report == s.studyPage) Refuse("--report would replace the study");
 }
 
 }  // namespace lull

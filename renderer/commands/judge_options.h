@@ -12,9 +12,9 @@ struct JudgeSettings {
     std::string images;                // the folder of another renderer's pictures; empty: none
     std::vector<std::string> collect;  // files of answers; empty: a study is made
     std::string output, name;
-    std::string record;            // the data set that the render is recorded to; empty: none
+    std::string record;             // the data set that the render is recorded to; empty: none
     std::string report, studyPage;  // of --collect; empty: none
-    int levels = 0;                // 0: as many as steps of kLadderRatio give
+    int levels = 0;                 // 0: as many as steps of kLadderRatio give
 };
 
 inline constexpr double kLadderRatio = 1.25;

@@ -111,7 +111,9 @@ int SppInName(const std::string& name) {
     std::string lower = stem;
     for (char& c : lower) c = char(std::tolower(uint8_t(c)));
     if (const size_t at = lower.rfind("spp"); at != std::string::npos) {
-        const auto isSeparator = [](char c) { return c == '-' || c == '_' || c == '.' || c == ' '; };
+        const auto isSeparator = [](char c) {
+            return c == '-' || c == '_' || c == '.' || c == ' ';
+        };
         size_t end = at;
         while (end > 0 && isSeparator(lower[end - 1])) --end;
         if (const size_t begin = BeginOfDigits(lower, end); begin < end)
@@ -150,8 +152,7 @@ Study ReadStudy(const std::string& folder, const std::string& viewpoint, int blo
         if (picture.width != study.width || picture.height != study.height)
             throw Error(fmt::format("{}: has {}x{} pixels, {} has {}x{}", file, picture.width,
                                     picture.height, first, study.width, study.height));
-        for (StudyBlock& block : study.blocks)
-            block.pictures.push_back(Cut(picture, block.pixels));
+        for (StudyBlock& block : study.blocks) block.pictures.push_back(Cut(picture, block.pixels));
     }
     return study;
 }

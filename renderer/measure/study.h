@@ -19,9 +19,9 @@ struct StudyBlock {
 struct Study {
     std::string viewpoint;  // its name in thresholds files
     int width = 0, height = 0;
-    std::vector<int> levels;  // spp, increasing, at least two
-    std::vector<StudyBlock> blocks;
-    std::map<std::string, std::string> provenance;  // from what the pictures were made
+    std::vector<int> levels = {};  // spp, increasing, at least two
+    std::vector<StudyBlock> blocks = {};
+    std::map<std::string, std::string> provenance = {};  // from what the pictures were made
 };
 
 // Returns 16 hexadecimal digits that tell studies apart: a hash of names, levels, places and all

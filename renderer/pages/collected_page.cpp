@@ -60,9 +60,8 @@ Json ObserverJson(const JudgedObserver& o) {
 }  // namespace
 
 std::string MakeCollectedPage(const Collected& collected, const Json& study) {
-    Json json = {{"viewpoints", Json::array()},
-                 {"observers", Json::array()},
-                 {"refused", Json::array()}};
+    Json json = {
+        {"viewpoints", Json::array()}, {"observers", Json::array()}, {"refused", Json::array()}};
     for (const CollectedViewpoint& viewpoint : collected.viewpoints)
         json["viewpoints"].push_back(ViewpointJson(viewpoint, study));
     for (const JudgedObserver& observer : collected.observers)

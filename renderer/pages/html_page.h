@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// Returns the embedded file `frame` with each {{name}} in it replaced: by the piece of that name, or
-// else by the embedded file of that name.
+// Returns the embedded file `frame` with each {{name}} in it replaced: by the piece of that name,
+// or else by the embedded file of that name.
 std::string FillPage(std::string_view frame, const std::map<std::string, std::string>& pieces);
 
 // Returns JSON that can stand in a <script> whatever is in its texts.

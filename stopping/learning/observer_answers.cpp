@@ -172,8 +172,7 @@ bool ObserverAnswers::operator==(const ObserverAnswers& other) const {
     };
     return observer == other.observer && session == other.session && study == other.study &&
            viewpoint == other.viewpoint && levels == other.levels &&
-           thresholds == other.thresholds &&
-           std::ranges::equal(answers, other.answers, isSame);
+           thresholds == other.thresholds && std::ranges::equal(answers, other.answers, isSame);
 }
 
 ObserverAnswers ParseAnswers(std::string_view text) try {

@@ -1,4 +1,5 @@
-// Reads what one observer said of one viewpoint: the JSON files that the page of `lull judge` saves.
+// Reads what one observer said of one viewpoint: the JSON files that the page of `lull judge`
+// saves.
 #pragma once
 
 #include <optional>

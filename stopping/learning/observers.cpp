@@ -27,8 +27,8 @@ void RefuseSome(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswer
     *answers = std::move(kept);
 }
 
-void RefuseOtherStudies(std::vector<ObserverAnswers>* answers,
-                        std::vector<RefusedAnswers>* refused, const std::string& wanted) {
+void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
+                        const std::string& wanted) {
     // The study of a viewpoint is the one that most files answer, the first of them in a tie.
     std::map<std::string, std::map<std::string, int>> counts;
     for (const ObserverAnswers& one : *answers) ++counts[one.viewpoint][one.study];
@@ -102,10 +102,9 @@ JudgedObserver JudgeObserver(ObserverAnswers answers, const CollectOptions& opti
             ++judged.checks;
             judged.failed += answer.failed;
         } else if (answer.kind == AnswerKind::Repeat) {
-            const auto first =
-                std::ranges::find_if(answers.answers, [&](const BlockAnswer& other) {
-                    return other.kind == AnswerKind::Asked && other.block == answer.block;
-                });
+            const auto first = std::ranges::find_if(answers.answers, [&](const BlockAnswer& other) {
+                return other.kind == AnswerKind::Asked && other.block == answer.block;
+            });
             const double octaves = std::log2(answer.spp / first->spp);
             squares += octaves * octaves / 2;
             ++judged.repeats;

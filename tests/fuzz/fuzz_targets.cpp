@@ -6,6 +6,7 @@
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/materials/fourier_file.h"
+#include "stopping/learning/observers.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/thresholds.h"
@@ -82,6 +83,23 @@ void FuzzThresholds(std::span<const char> bytes) {
     if (!same) throw std::logic_error("thresholds change when written and read again");
 }
 
+// What is read can be collected and written.
+void FuzzAnswers(std::span<const char> bytes) {
+    ObserverAnswers answers;
+    try {
+        answers = ParseAnswers({bytes.data(), bytes.size()});
+    } catch (const std::runtime_error&) {
+        return;
+    }
+    answers.file = "input";
+    ObserverAnswers other = answers;
+    other.observer += " the second";
+    other.session += "2";
+    const Collected collected = CollectObservers({answers, other}, {});
+    std::ostringstream out;
+    WriteThresholds(out, ThresholdsOf(collected));
+}
+
 }  // namespace
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
@@ -90,7 +108,8 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"bsdf", FuzzBsdf},
             {"model", FuzzModel},
             {"keras_config", FuzzKerasConfig},
-            {"thresholds", FuzzThresholds}};
+            {"thresholds", FuzzThresholds},
+            {"answers", FuzzAnswers}};
 }
 
 }  // namespace lull

@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+"""Lets observers whose thresholds are known work through studies of `lull judge` in a headless browser.
+
+judge_page.py LULL CHROMIUM SCENES: exits with 0 if what is collected is what they see, within a step
+of the ladder, by mouse and by keys, over a reload, with repeats that differ as theirs do.
+"""
+import csv
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+from report_page import Browser, check
+from simulated_observer import Participant
+
+STEPS = [20, 40, 60, 80, 100, 120, 160, 200, 240]  # the ladder up to the cap
+RULE = [30, 70, 110, 150, 190, 240]  # spp below which the observers see noise
+SHIFT = 2.0  # the keyboard's observer asks for so much more the second time
+
+
+def snapped(spp):
+    """Returns the first level that has no noise any more."""
+    return next((s for s in STEPS if s >= spp), STEPS[-1])
+
+
+def by_mouse(browser, page, folder):
+    observer = Participant(browser, page, lambda block, kind: RULE[block])
+    check(observer.levels == STEPS, "the ladder goes up by a quarter, in whole passes")
+    observer.begin("ada")
+    observer.look(7)
+    before = observer.state()
+    browser.call("Page.reload")
+    browser.wait_for("typeof screenName === 'string' && screenName === 'welcome'")
+    browser.click("#known button")
+    observer.expect("task")
+    check(observer.state() == before, "a reload loses nothing")
+    browser.click("#undo")
+    check(observer.state() != before, "undo takes the last answer back")
+    observer.click_block(3)
+    observer.click_block(3, back=True)
+    observer.key("p")
+    observer.expect("pause")
+    browser.click("#go-on")
+    browser.click("#flicker")
+    check(browser.evaluate("adjustView.cells.every((c, i) => c.noisy.canvas.dataset.shows === i + '/' +"
+                           " (study.levels.length - 1))"), "flicker shows the reference")
+    browser.click("#flicker")
+    observer.look()
+    observer.expect("end")
+    return observer.save(folder)
+
+
+def by_keys(browser, page, folder):
+    observer = Participant(browser, page,
+                           lambda block, kind: RULE[block] * (SHIFT if kind == "repeat" else 1), keys=True)
+    observer.begin("bo")
+    observer.tab_to(".cell")
+    observer.go_to(1)
+    check(browser.evaluate("document.activeElement.matches(':focus-visible')"), "the focus can be seen")
+    observer.look(4)
+    observer.click_block(2)
+    observer.click_block(2, back=True)
+    observer.look()
+    observer.expect("end")
+    return observer.save(folder)
+
+
+def carelessly(browser, page, folder):
+    observer = Participant(browser, page, lambda block, kind: 1e9)
+    observer.begin("cy")
+    for _ in range(3):  # points at everything once, and says that all is the same
+        state = observer.state()
+        if state is None:
+            break
+        for block in range(len(RULE)):
+            observer.click_block(block)
+        observer.press("#same")
+    observer.expect("end")
+    return observer.save(folder)
+
+
+def check_labels(browser):
+    """Everything that can be used has a name."""
+    unnamed = browser.evaluate(
+        "[...document.querySelectorAll('button, input, progress, [role=img], [role=group]')].filter(e =>"
+        " !e.textContent.trim() && !e.getAttribute('aria-label') && !e.getAttribute('aria-labelledby')"
+        " && !(e.labels && e.labels.length)).map(e => e.outerHTML)")
+    check(not unnamed, "everything that can be used has a name " + "; ".join(unnamed))
+
+
+def check_quest(browser):
+    """Observers who follow the model of QUEST are measured without bias, the better the more answers."""
+    wanted, out = 400, {}
+    for answers in (8, 40):
+        out[answers] = browser.evaluate("""(() => { const random = makeRandom(3), errors = [];
+            const levels = [20]; while (levels[levels.length - 1] < 10000) levels.push(Math.round(levels[levels.length - 1] * 1.25));
+            for (let k = 0; k < 300; ++k) {
+              const quest = startQuest(levels, 0.35 + 0.3 * random());
+              for (let i = 0; i < %d; ++i) {
+                const x = intensityOf(levels[questLevel(quest, levels)]);
+                addAnswer(quest, x, random() < rightProbability(x, intensityOf(%d)));
+              }
+              errors.push(Math.log2(questThreshold(quest, levels).spp / %d));
+            }
+            const mean = errors.reduce((a, b) => a + b) / errors.length;
+            return [mean, Math.sqrt(errors.reduce((a, b) => a + (b - mean) ** 2, 0) / errors.length)]; })()"""
+                                        % (answers, wanted, wanted))
+    print("QUEST, bias and deviation in octaves:", out)
+    check(abs(out[8][0]) < 0.5 and out[8][1] < 1.6, "QUEST: 8 answers find a threshold roughly")
+    check(abs(out[40][0]) < 0.1 and out[40][1] < 0.5, "QUEST: 40 answers find it well")
+    check(abs(browser.evaluate("rightProbability(intensityOf(100), intensityOf(100))") - 0.8138) < 1e-3,
+          "QUEST: at the threshold 81 % of the answers are right")
+    check(abs(browser.evaluate("rightProbability(-9, 0)") - 0.5) < 1e-9, "QUEST: half of the guesses are")
+
+
+def check_plans(browser):
+    """Start levels and order depend on the observer, and on nothing else."""
+    plans = browser.evaluate("[1, 1, 2, 3].map(seed => JSON.stringify(planAdjustment("
+                             "{levels: Array(28).fill(0), blocks: Array(16).fill(0), repeats: .25, catches: .15}, seed)))")
+    check(plans[0] == plans[1] and len(set(plans)) == 3, "the plan follows from the seed")
+    plan = json.loads(plans[0])
+    check(len(plan["caught"]) == 2 and len(plan["repeated"]) == 4
+          and not set(plan["caught"]) & set(plan["repeated"])
+          and len(set(plan["starts"][0])) > 2 and max(plan["starts"][0]) <= 4,
+          "checks, repeats and low start levels are drawn")
+
+
+def staircase(browser, page, folder):
+    observer = Participant(browser, page, lambda block, kind: RULE[block], guesses=random.Random(5))
+    observer.begin("dee")
+    check_quest(browser)
+    observer.look(5)
+    browser.click("#undo")
+    observer.keys = True
+    observer.look()
+    observer.expect("end")
+    return observer.save(folder)
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def check_collected(lull, folder, files):
+    text = files[0].read_text()
+    (folder / "answers" / "cut.json").write_text(text[:len(text) // 2])
+    (folder / "answers" / "z-copy.json").write_text(text)
+    (folder / "answers" / "foreign.json").write_text("[1, 2]")
+    outcome = subprocess.run(
+        [lull, "judge", "--collect", *sorted(map(str, (folder / "answers").glob("*.json"))), "-o", "human.csv",
+         "--study", "study.html", "--report", "collected.html"], cwd=folder, check=True, capture_output=True, text=True)
+    for name in ("cut.json: is no JSON", "z-copy.json: is a copy", "foreign.json: is no file", "cy failed"):
+        check(name in outcome.stderr, "named and left out: " + name)
+    human = [int(t) for t in (folder / "human.csv").read_text().strip().split(";")[1:-1]]
+    print("rule", RULE, "collected", human)
+    observers = {row["observer"]: row for row in rows(folder / "human.observers.csv")}
+    check(observers["ada"]["counts"] == observers["bo"]["counts"] == "yes", "observers who look count")
+    answers = {name: json.loads(file.read_text()) for name, file in zip(("ada", "bo"), files)}
+    for name, answer in answers.items():
+        for one in answer["answers"]:
+            if one["kind"] == "asked":
+                check(STEPS[one["level"]] == snapped(RULE[one["block"]]), f"{name}: block {one['block']} as the rule")
+    # The mean of both is within one step but for what the second answer of the keyboard adds.
+    repeated = {one["block"] for one in answers["bo"]["answers"] if one["kind"] == "repeat"}
+    for block, spp in enumerate(human):
+        if block not in repeated:
+            check(spp == snapped(RULE[block]), f"block {block}: the threshold is the rule's")
+    squares = [math.log2(snapped(RULE[b] * SHIFT) / snapped(RULE[b])) ** 2 / 2 for b in repeated]
+    check(float(observers["ada"]["repeat_octaves"]) == 0, "the same twice is consistent")
+    check(len(squares) > 0 and abs(float(observers["bo"]["repeat_octaves"])
+                                   - math.sqrt(sum(squares) / len(squares))) < 1e-3, "repeats differ as they should")
+
+
+def main(lull, chromium, scenes):
+    with tempfile.TemporaryDirectory() as directory:
+        folder = pathlib.Path(directory)
+        (folder / "answers").mkdir()
+        make = [lull, "judge", f"{scenes}/cornell/scene.pbrt", "--resolution", "120x80", "--block", "40", "--cap", "240",
+                "--catches", "0.3", "--repeats", "0.3", "--quiet"]
+        subprocess.run([*make, "-o", "study.html"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([*make, "--procedure", "staircase", "--answers", "12", "-o", "stairs.html"], cwd=folder,
+                       check=True, stdout=subprocess.DEVNULL)
+        browser = Browser(chromium, folder / "profile")
+        page = folder / "study.html"
+        files = [by_mouse(browser, page, folder / "answers")]
+        check_labels(browser)
+        check_plans(browser)
+        files.append(by_keys(browser, page, folder / "answers"))
+        carelessly(browser, page, folder / "answers")
+        check_collected(lull, folder, files)
+
+        (folder / "staircase").mkdir()
+        stairs = staircase(browser, folder / "stairs.html", folder / "staircase")
+        subprocess.run([lull, "judge", "--collect", stairs, "-o", "stairs.csv", "--quiet"], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL)
+        found = [int(t) for t in (folder / "stairs.csv").read_text().strip().split(";")[1:-1]]
+        print("rule", RULE, "staircase", found)
+        check(rows(folder / "stairs.observers.csv")[0]["failed"] == "0", "staircase: the easy trials are right")
+        error = sum(abs(math.log2(a / b)) for a, b in zip(found, RULE)) / len(RULE)
+        check(error < 1, f"staircase: 12 answers are {error:.2f} octaves off")
+
+        browser.open(folder / "collected.html")
+        check(browser.evaluate("[...document.images].every(i => i.complete && i.naturalWidth === 40) &&"
+                               " document.querySelectorAll('.shade').length === 6"), "the report shows image and blocks")
+        check(browser.evaluate("document.body.textContent.includes('left out: failed')"), "and who was left out")
+        check(not browser.problems, "no errors, nothing from the network " + "; ".join(browser.problems))
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:4])

@@ -1,0 +1,135 @@
+// Makes studies and collects answers; the page itself is used in judge_page.py.
+#include <gtest/gtest.h>
+
+#include "stopping/learning/dataset.h"
+#include "stopping/rules/thresholds.h"
+#include "tests/integration/run_lull.h"
+#include "tests/stopping/learning/example_answers.h"
+
+namespace lull {
+namespace {
+
+// Returns all of the page from the description of the study on: what it was made of, and pictures.
+std::string StudyIn(const std::string& page) {
+    const size_t begin = page.find("<script type=\"application/json\" id=\"study\">");
+    EXPECT_NE(begin, std::string::npos);
+    return page.substr(std::min(begin, page.size()));
+}
+
+void WriteScene(const TemporaryDirectory& directory) {
+    directory.Write("scene.pbrt", SceneText(kSphere));
+}
+
+TEST(Judge, RecordsWhatDatasetDoes) {
+    const TemporaryDirectory directory;
+    WriteScene(directory);
+    const std::string same =
+        " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet --estimator pbrt-v3 ";
+    const Outcome judge =
+        RunLull(directory, "judge -o s.html --record a.h5 --sampler random" + same);
+    ASSERT_EQ(judge.exitCode, 0) << judge.err;
+    EXPECT_TRUE(Contains(judge.out, "s.html\na.h5\n"));
+    const Outcome dataset = RunLull(directory, "dataset -o b.h5" + same);
+    ASSERT_EQ(dataset.exitCode, 0) << dataset.err;
+    const ViewpointRecording a = ReadDataset(directory.File("a.h5")).at(0);
+    const ViewpointRecording b = ReadDataset(directory.File("b.h5")).at(0);
+    EXPECT_EQ(a.name, "room");
+    EXPECT_EQ(a.cap, 60);
+    EXPECT_EQ(a.provenance, b.provenance);
+    ASSERT_EQ(a.blocks.size(), 1u);
+    EXPECT_EQ(a.blocks.at(0).spp, b.blocks.at(0).spp);
+    EXPECT_EQ(a.blocks.at(0).values, b.blocks.at(0).values);
+}
+
+TEST(Judge, GoesOnWhereItWasInterrupted) {
+    const TemporaryDirectory directory;
+    WriteScene(directory);
+    const std::string command =
+        "LULL judge scene.pbrt --resolution 80x80 --block 40 --cap 400 --threads 1 --quiet "
+        "--checkpoint-interval 0.1 -o ";
+    const Outcome interrupted =
+        RunAndSignal(directory, command + "a.html", "INT", "a.html.checkpoint");
+    if (interrupted.exitCode != 0) {  // it can have been too fast
+        EXPECT_EQ(interrupted.exitCode, 130) << interrupted.err;
+        EXPECT_TRUE(Contains(interrupted.err, "goes on from a.html.checkpoint"));
+        EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
+        const Outcome resumed = RunShell(directory, command + "a.html");
+        EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    }
+    EXPECT_EQ(RunShell(directory, command + "b.html").exitCode, 0);
+    EXPECT_EQ(StudyIn(ReadBytes(directory.File("a.html"))),
+              StudyIn(ReadBytes(directory.File("b.html"))));
+    EXPECT_EQ(directory.CountFiles(), 3);  // the scene and two studies
+}
+
+TEST(Judge, TakesPicturesOfOtherRenderers) {
+    const TemporaryDirectory directory;
+    WriteScene(directory);
+    std::filesystem::create_directory(directory.path / "pictures");
+    for (const char* spp : {"20", "40", "80"}) {
+        const Outcome outcome =
+            RunLull(directory, fmt::format("render scene.pbrt --quiet --spp {0} -o r.exr", spp));
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        std::filesystem::rename(directory.File("r.png"),
+                                directory.File(fmt::format("pictures/r-{}spp.png", spp)));
+    }
+    const Outcome own = RunLull(
+        directory, "judge scene.pbrt --cap 80 --levels 3 --block 10 --name x -o own.html --quiet");
+    const Outcome other =
+        RunLull(directory, "judge --images pictures --block 10 --name x -o other.html");
+    ASSERT_EQ(own.exitCode, 0) << own.err;
+    ASSERT_EQ(other.exitCode, 0) << other.err;
+    EXPECT_TRUE(Contains(other.err, "6 blocks at 3 levels: 20, 40, 80 spp"));
+    // The same pictures, bit for bit: the images that lull itself would have rendered.
+    const auto pictures = [&](const char* file) {
+        const std::string page = StudyIn(ReadBytes(directory.File(file)));
+        return page.substr(page.find("id=\"pictures-0\""));
+    };
+    EXPECT_EQ(pictures("own.html"), pictures("other.html"));
+}
+
+TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
+    const TemporaryDirectory directory;
+    directory.Write("a.json", ExampleAnswers{.observer = "a, \"b\"", .session = "1"}.Text());
+    const auto with = [](ExampleAnswers answers) { return answers.Text(); };
+    directory.Write("b.json", with({.observer = "b", .session = "2", .levels = {3, 2, 3, 4}}));
+    directory.Write("c.json", with({.observer = "c", .session = "3", .failed = 3}));
+    directory.Write("d.json", "{\"format\":");
+    const Outcome outcome = RunLull(
+        directory, "judge --collect a.json b.json c.json d.json -o human.csv --report r.html");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "human.csv\nhuman.details.csv\nhuman.observers.csv\nr.html\n");
+    EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));
+    EXPECT_TRUE(Contains(outcome.err, "d.json: is no JSON, or cut short; left out"));
+    EXPECT_EQ(ReadBytes(directory.File("human.csv")), "room;100;80;160;320;\n");
+    const std::string observers = ReadBytes(directory.File("human.observers.csv"));
+    EXPECT_TRUE(Contains(observers, "a.json,room,\"a, \"\"b\"\"\",yes,"));
+    EXPECT_TRUE(Contains(observers, "c.json,room,c,no,failed 3 of 4 checks,"));
+    EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is no JSON, or cut short\","));
+    const std::string details = ReadBytes(directory.File("human.details.csv"));
+    EXPECT_TRUE(Contains(details, "room,0,2,100,20,320,40,160,84.85,1.414,\n"));
+    EXPECT_TRUE(Contains(details, "room,all,2,"));
+    EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);
+}
+
+TEST(Judge, RefusesWhatDoesNotFit) {
+    const TemporaryDirectory directory;
+    WriteScene(directory);
+    directory.Write("bad.json", "{}");
+    ExpectFailure(directory, "judge --collect bad.json -o human.csv", {"none of 1 files"});
+    ExpectFailure(directory, "judge --collect bad.json -o human.csv --study bad.json",
+                  {"bad.json: is no page made by lull judge"});
+    ExpectFailure(directory, "judge scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
+    ExpectFailure(directory, "judge scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
+    ExpectFailure(directory, "judge --images nowhere -o s.html", {"--images nowhere"});
+    ExpectFailure(directory, "judge scene.pbrt -o no/such/s.html", {"no/such"});
+    for (const char* usage :
+         {"judge -o s.html", "judge scene.pbrt", "judge scene.pbrt -o s.csv",
+          "judge scene.pbrt --images x -o s.html", "judge --images x --record d.h5 -o s.html",
+          "judge --collect bad.json -o s.html", "judge scene.pbrt -o s.html --report r.html",
+          "judge scene.pbrt -o s.html --procedure guess"})
+        EXPECT_EQ(RunLull(directory, usage).exitCode, 2) << usage;
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,46 @@
+// Writes files of answers as the page of `lull judge` does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lull {
+
+// Describes an observer of a study of the levels 20, 40, 80, 160, 320. Each threshold is that of
+// the block's first answer.
+struct ExampleAnswers {
+    std::string observer = "ada", session = "00ff", study = "0123456789abcdef", viewpoint = "room";
+    std::string started = "2026-01-01T00:00:00.000Z";
+    std::vector<int> levels = {1, 2, 3, 4};  // of each block, as numbers in the ladder
+    std::vector<int> repeats = {};           // of the first blocks, asked again
+    int checks = 4, failed = 0, clicks = 3;
+
+    std::string Text() const {
+        static const int spp[] = {20, 40, 80, 160, 320};
+        std::string answers, thresholds;
+        const auto add = [&](size_t block, const std::string& rest) {
+            answers += (answers.empty() ? "{\"block\":" : ",{\"block\":") + std::to_string(block) +
+                       ",\"round\":0,\"clicks\":" + std::to_string(clicks) + "," + rest + "}";
+        };
+        for (size_t i = 0; i < levels.size(); ++i) {
+            add(i, "\"kind\":\"asked\",\"level\":" + std::to_string(levels[i]));
+            double mean = spp[levels[i]];
+            if (i < repeats.size()) {
+                add(i, "\"kind\":\"repeat\",\"level\":" + std::to_string(repeats[i]));
+                mean = (mean + spp[repeats[i]]) / 2;
+            }
+            thresholds += (i > 0 ? "," : "") + std::to_string(mean);
+        }
+        for (int i = 0; i < checks; ++i)
+            add(0, std::string("\"kind\":\"catch\",\"failed\":") + (i < failed ? "true" : "false"));
+        return R"({"format":"lull-judge-answers","version":1,"study":{"id":")" + study +
+               R"(","viewpoint":")" + viewpoint + R"(","procedure":"adjust","blocks":)" +
+               std::to_string(levels.size()) + R"(,"levels":[20,40,80,160,320]},"observer":")" +
+               observer + R"(","session":")" + session + R"(","seed":1,"started":")" + started +
+               R"(","finished":"2026-01-01T01:00:00.000Z","seconds":12.5,)" +
+               R"("display":{"gamma":2.2,"distanceCm":60},"thresholds":[)" + thresholds +
+               R"(],"answers":[)" + answers + "]}";
+    }
+};
+
+}  // namespace lull
