@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "renderer/base/memory.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
@@ -26,9 +27,15 @@ void WriteStudy(const JudgeSettings& settings, const Study& study) {
     fmt::print("{}\n", settings.output);
 }
 
+// Names a viewpoint after the folder of its pictures.
+std::string FolderName(std::string folder) {
+    while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
+    return SceneName(folder);
+}
+
 ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
     CheckWritable(settings.output);
-    const std::string name = settings.name.empty() ? SceneName(settings.images) : settings.name;
+    const std::string name = settings.name.empty() ? FolderName(settings.images) : settings.name;
     const Study study = ReadStudy(settings.images, name, settings.render.schedule.blockSize,
                                   settings.levels, kLadderRatio);
     RunWithThreads(settings.render.scene.compile.threads, [&] { WriteStudy(settings, study); });
@@ -62,6 +69,11 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     if (levels.size() < 2)
         throw Error(fmt::format("--cap {}: a ladder needs more than one pass of {} spp",
                                 schedule.cap, schedule.passLength));
+    // As pixels, and as the text of the page, of which a part is there twice.
+    CheckMemory(input.region.Area() * int64_t(levels.size()) * 12,
+                fmt::format("a study of {}x{} pixels at {} levels", input.region.Width(),
+                            input.region.Height(), levels.size()),
+                "make it with fewer --levels, of a part with --crop, or smaller with --resolution");
     const std::string name = options.name.empty() ? SceneName(settings.scene.file) : options.name;
     const bool records = !options.record.empty();
     CheckWritable(options.output);

@@ -136,7 +136,7 @@ Study ReadStudy(const std::string& folder, const std::string& viewpoint, int blo
     Study study;
     study.viewpoint = viewpoint;
     study.levels = ChooseLevels(available, count, ratio);
-    study.provenance["images"] = folder;
+    study.provenance["renderer"] = "another";
     std::string first;
     for (const int spp : study.levels) {
         const std::string& file = files.at(spp);

@@ -138,14 +138,16 @@ class Participant:
     def save(self, folder):
         """Saves the answers and returns the file."""
         folder = pathlib.Path(folder)
-        before = set(folder.glob("*.json"))
+        before = {file: file.stat().st_mtime_ns for file in folder.glob("*.json")}
         session, self.browser.session = self.browser.session, None
         self.browser.call("Browser.setDownloadBehavior", behavior="allow",
                           downloadPath=str(folder.resolve()))
         self.browser.session = session
         self.press("#download")
         for _ in range(200):
-            for file in set(folder.glob("*.json")) - before:
+            for file in folder.glob("*.json"):
+                if before.get(file) == file.stat().st_mtime_ns:
+                    continue
                 try:
                     json.loads(file.read_text())
                     return file

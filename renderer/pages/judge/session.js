@@ -2,7 +2,8 @@
 // Keeps the sessions of all observers in the browser, and makes the file of answers.
 // A session is {id, observer, seed, started, finished?, display {}, events []}.
 
-const storageName = "lull-judge:" + study.id;
+// By all that the page says of the study, as answers are played again by it.
+const storageName = `lull-judge:${study.id}:${hashText(byId("study").textContent)}`;
 
 const store = {
   works: true,
