@@ -27,6 +27,7 @@ function pageZoom() {
 }
 
 function showZoom() {
+  byId("gamma-field").style.setProperty("--pixel", pixelSize() + "px");
   const zoom = pageZoom(), ratio = devicePixelRatio, isWhole = Math.abs(ratio - Math.round(ratio)) < 0.01;
   const off = zoom !== null && Math.abs(zoom - 1) > 0.06;
   byId("zoom").textContent = off || !isWhole
