@@ -90,7 +90,7 @@ TEST(Judge, TakesPicturesOfOtherRenderers) {
 
 TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     const TemporaryDirectory directory;
-    directory.Write("a.json", ExampleAnswers{.observer = "a, \"b\"", .session = "1"}.Text());
+    directory.Write("a.json", ExampleAnswers{.observer = R"(a, \"b\")", .session = "1"}.Text());
     const auto with = [](ExampleAnswers answers) { return answers.Text(); };
     directory.Write("b.json", with({.observer = "b", .session = "2", .levels = {3, 2, 3, 4}}));
     directory.Write("c.json", with({.observer = "c", .session = "3", .failed = 3}));

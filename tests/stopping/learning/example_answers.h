@@ -1,6 +1,7 @@
 // Writes files of answers as the page of `lull judge` does.
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,29 +18,32 @@ struct ExampleAnswers {
 
     std::string Text() const {
         static const int spp[] = {20, 40, 80, 160, 320};
-        std::string answers, thresholds;
-        const auto add = [&](size_t block, const std::string& rest) {
-            answers += (answers.empty() ? "{\"block\":" : ",{\"block\":") + std::to_string(block) +
-                       ",\"round\":0,\"clicks\":" + std::to_string(clicks) + "," + rest + "}";
+        std::ostringstream answers, thresholds, text;
+        int count = 0;
+        const auto add = [&](size_t block, const char* kind) -> std::ostream& {
+            if (count++ > 0) answers << ",";
+            return answers << R"({"block":)" << block << R"(,"round":0,"clicks":)" << clicks
+                           << R"(,"kind":")" << kind << "\",";
         };
         for (size_t i = 0; i < levels.size(); ++i) {
-            add(i, "\"kind\":\"asked\",\"level\":" + std::to_string(levels[i]));
+            add(i, "asked") << R"("level":)" << levels[i] << "}";
             double mean = spp[levels[i]];
             if (i < repeats.size()) {
-                add(i, "\"kind\":\"repeat\",\"level\":" + std::to_string(repeats[i]));
+                add(i, "repeat") << R"("level":)" << repeats[i] << "}";
                 mean = (mean + spp[repeats[i]]) / 2;
             }
-            thresholds += (i > 0 ? "," : "") + std::to_string(mean);
+            thresholds << (i > 0 ? "," : "") << mean;
         }
         for (int i = 0; i < checks; ++i)
-            add(0, std::string("\"kind\":\"catch\",\"failed\":") + (i < failed ? "true" : "false"));
-        return R"({"format":"lull-judge-answers","version":1,"study":{"id":")" + study +
-               R"(","viewpoint":")" + viewpoint + R"(","procedure":"adjust","blocks":)" +
-               std::to_string(levels.size()) + R"(,"levels":[20,40,80,160,320]},"observer":")" +
-               observer + R"(","session":")" + session + R"(","seed":1,"started":")" + started +
-               R"(","finished":"2026-01-01T01:00:00.000Z","seconds":12.5,)" +
-               R"("display":{"gamma":2.2,"distanceCm":60},"thresholds":[)" + thresholds +
-               R"(],"answers":[)" + answers + "]}";
+            add(0, "catch") << R"("failed":)" << (i < failed ? "true" : "false") << "}";
+        text << R"({"format":"lull-judge-answers","version":1,"study":{"id":")" << study
+             << R"(","viewpoint":")" << viewpoint << R"(","procedure":"adjust","blocks":)"
+             << levels.size() << R"(,"levels":[20,40,80,160,320]},"observer":")" << observer
+             << R"(","session":")" << session << R"(","seed":1,"started":")" << started
+             << R"(","finished":"2026-01-01T01:00:00.000Z","seconds":12.5,)"
+             << R"("display":{"gamma":2.2,"distanceCm":60},"thresholds":[)" << thresholds.str()
+             << R"(],"answers":[)" << answers.str() << "]}";
+        return text.str();
     }
 };
 

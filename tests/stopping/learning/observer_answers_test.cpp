@@ -47,7 +47,7 @@ TEST(ParseAnswers, ReadsWhatThePageSaves) {
 
 TEST(ParseAnswers, ReadsStaircases) {
     std::string text = With(ExampleAnswers{.levels = {1}}.Text(), "adjust", "staircase");
-    text = With(With(text, "\"level\":1", "\"spp\":47.5"), "[40.000000]", "[47.5]");
+    text = With(With(text, "\"level\":1", "\"spp\":47.5"), "[40]", "[47.5]");
     EXPECT_EQ(ParseAnswers(text).thresholds, std::vector<double>{47.5});
     ExpectProblem(With(text, "\"spp\":47.5", "\"spp\":10"), "'spp' is 10");
     ExpectProblem(With(text, "\"spp\":47.5", "\"spp\":null"), "'spp' is null");
