@@ -17,7 +17,9 @@ void WriteGrey(const std::string& path, int width, int height, float linear) {
         WritePng(path, std::vector<Rgb>(pixels, Rgb::Constant(linear)), width, height);
         return;
     }
-    ExrImage image{.width = width, .height = height};
+    ExrImage image;
+    image.width = width;
+    image.height = height;
     for (const char* name : {"R", "G", "B"})
         image.channels.push_back({name, std::vector<float>(pixels, linear)});
     WriteExr(path, image);
