@@ -123,6 +123,16 @@ struct PixelSums {
 
 }  // namespace
 
+std::vector<float> DisplayedLightness(std::span<const float> mean) {
+    std::vector<float> lightness(mean.size() / 3);
+    for (size_t i = 0; i < lightness.size(); ++i) {
+        float m[3];
+        for (size_t c = 0; c < 3; ++c) m[c] = Displayed(Finite(mean[3 * i + c]));
+        lightness[i] = LightnessAt(Luminance(m[0], m[1], m[2])).lightness;
+    }
+    return lightness;
+}
+
 LightnessNoise ComputeLightnessNoise(const BlockView& view) {
     CheckView(view, ViewNeed::MeanAndHalf);
     const size_t pixels = view.mean.size() / 3;

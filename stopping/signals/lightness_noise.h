@@ -25,6 +25,11 @@ struct LightnessNoise {
     std::vector<float> texture;
 };
 
+// Returns the lightness, in [0, 100], of each pixel of linear R, G, B as a display shows it, but
+// not rounded to 8 bits; values that are not finite count as 0. The same as
+// LightnessNoise::lightness.
+std::vector<float> DisplayedLightness(std::span<const float> mean);
+
 // Reads both means of the view; values that are not finite count as 0. Throws as CheckView() does.
 LightnessNoise ComputeLightnessNoise(const BlockView& view);
 

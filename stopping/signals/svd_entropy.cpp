@@ -4,9 +4,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
+
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
@@ -87,6 +90,15 @@ std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int
             entropies.push_back(
                 ComputeSvdEntropy(block.block(y[v], x[u], y[v + 1] - y[v], x[u + 1] - x[u])));
     return entropies;
+}
+
+std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks) {
+    CheckView(view, ViewNeed::Mean);
+    std::vector<uint8_t> srgb(view.mean.size());
+    EncodeSrgb8(view.mean, srgb);
+    std::vector<double> lightness(view.mean.size() / 3);
+    Lightness(srgb, lightness);
+    return SubBlockEntropies(lightness, view.width, view.height, subBlocks);
 }
 
 }  // namespace lull

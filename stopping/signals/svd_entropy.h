@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "stopping/base/block_view.h"
+
 namespace lull {
 
 // Holds the entropies of one matrix. With the singular values s_1 >= ... >= s_n and
@@ -38,5 +40,9 @@ std::vector<int> SplitEvenly(int length, int parts);
 // subBlocks is no square, the block has fewer pixels a side than that, or a value is not finite.
 std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int width, int height,
                                           int subBlocks);
+
+// The same of the lightness of what a display shows, in 8 bits, of a block. Reads the mean only.
+// Throws as CheckView() does, too.
+std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks);
 
 }  // namespace lull

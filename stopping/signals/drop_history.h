@@ -1,0 +1,44 @@
+// Compares each state of a block with the one at half as many samples.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stopping/base/state.h"
+#include "stopping/signals/entropy_drop.h"
+
+namespace lull {
+
+// Keeps the entropies that states still to come are compared with: about eight an octave down to a
+// quarter of the spp, or 19 states at most (8 KB a block for 100 sub-blocks), however many there
+// are.
+class DropHistory {
+  public:
+    // Adds the entropies of the sub-blocks at `spp`, more than before, finite and always as many.
+    // Returns EntropyDrop() since the state nearest to half of the spp, set right by RateOfFall()
+    // with these weights where there is one at about a quarter as well; nothing before there is
+    // any. Throws std::invalid_argument.
+    std::optional<std::vector<double>> Add(int spp, std::span<const double> entropies,
+                                           std::span<const double> weights);
+
+    // Write and read all states. Restore() throws std::runtime_error if they are damaged or have
+    // not `subBlocks` values each.
+    void Save(StateWriter* writer) const;
+    void Restore(StateReader* reader, size_t subBlocks);
+
+    const std::vector<EntropyState>& States() const { return states; }
+
+  private:
+    std::vector<EntropyState> states;  // a ladder, see ladder.h
+};
+
+// Adds a state, entropies and lightness of its sub-blocks, to the history of a block. Returns
+// VisibleDrop() as DropHistory::Add() does; sub-blocks count for the rate of the fall as their
+// noise counts in lightness.
+std::optional<std::vector<double>> AddVisible(int spp, std::span<const double> entropies,
+                                              const SubBlockLightness& lightness,
+                                              const NoiseVisibility& visibility,
+                                              DropHistory* history);
+
+}  // namespace lull

@@ -1,0 +1,71 @@
+// Measures noise by what it adds to the SVD-entropy of a picture: an entropy alone says little, but
+// its fall since half as many samples is the part of it that was noise.
+//
+// Noise of variance v in lightness, small against the mean lightness L, adds about c v / L^2 to the
+// entropy of a sub-block, with a c that hardly changes. Where v falls with the spp, the fall from
+// n / 2 to n is therefore what is left at n, and sqrt(fall) L its standard deviation, but for
+// sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's share of each
+// singular value. It needs nothing but two displayed pictures.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+
+namespace lull {
+
+// Says how an observer sees noise.
+struct NoiseVisibility {
+    // Detail of deviation d in L hides noise: it counts 1 / (1 + d / mask).
+    double mask = 40;
+    // Light that the screen reflects, as a share of white: 0.05 is the typical viewing flare of the
+    // sRGB standard (IEC 61966-2-1). It hides noise in dark parts.
+    double flare = 0.05;
+    // People compared each picture with the one at N = `reference` spp, the same samples and more:
+    // the variance of the difference is (1 - n / N) v(n), so that noise counts
+    // (1 - n / N)^nearness.
+    int reference = 10000;
+    double nearness = 0.5;
+};
+
+// Holds the entropies of the sub-blocks of a picture, row-major, at some spp.
+struct EntropyState {
+    int spp = 0;
+    std::vector<float> values = {};
+};
+
+// Returns the exponent a, in [1, 2], with which noise falls as spp^-a, from three states with
+// increasing spp, the roots of the falls of sub-blocks weighted; 1 where nothing changes.
+// Independent samples have 1 (entropies read some 0.1 less); where noise falls faster, less is
+// left than the fall.
+double RateOfFall(const EntropyState& oldest, const EntropyState& before, const EntropyState& now,
+                  std::span<const double> weights);
+
+// Returns for each sub-block sqrt(|H(before) - H(now)| / ((n / n')^rate - 1)), where n, n' are the
+// spp of `now` and `before`: the root of what noise adds to the entropy now. Both have the same
+// length, and `before` has fewer spp. (Noise that happens to be correlated with detail moves an
+// entropy up or down, and what is rare makes it rise when it comes: both count as noise.)
+std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
+
+// Holds mean and standard deviation of the displayed lightness of sub-blocks, row-major, in
+// [0, 100].
+struct SubBlockLightness {
+    std::vector<float> mean, deviation;
+};
+
+// Measures the count x count pieces of a block, where count^2 is `subBlocks`. Reads the mean only.
+// Throws as CheckView() does, and std::invalid_argument if the block cannot be cut into them.
+SubBlockLightness MeasureLightness(const BlockView& view, int subBlocks);
+
+// Returns how much smaller a difference in lightness around L looks on a screen that reflects
+// `flare`: the derivative of the lightness of (Y + flare) / (1 + flare) over that of Y. In (0, 1];
+// for the 0.05 of sRGB 0.3 in black, 0.6 at L = 25, 0.9 at 65.
+double FlareFactor(double lightness, double flare);
+
+// Returns the visible noise of each sub-block, drop * L * FlareFactor(L) / (1 + d / mask) *
+// (1 - spp / reference)^nearness, in lightness; 0 from the reference on. All have the same length.
+std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,
+                                int spp, const NoiseVisibility& visibility);
+
+}  // namespace lull
