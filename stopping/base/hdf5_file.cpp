@@ -176,6 +176,17 @@ int Hdf5Group::Int(const std::string& name) const {
     return value;
 }
 
+double Hdf5Group::Real(const std::string& name) const {
+    const std::string what = "read attribute '" + name + "', which must be a real number";
+    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_FLOAT || Count(space) != 1) Fail(what);
+    double value = 0;
+    Check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), what);
+    return value;
+}
+
 std::vector<std::string> Hdf5Group::Strings(const std::string& name) const {
     const std::string what = "read attribute '" + name + "', which must be text";
     const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
@@ -210,6 +221,11 @@ std::string Hdf5Group::String(const std::string& name) const {
 void Hdf5Group::SetInt(const std::string& name, int value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
     WriteAttribute(*id, name, H5T_NATIVE_INT, space, &value);
+}
+
+void Hdf5Group::SetReal(const std::string& name, double value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    WriteAttribute(*id, name, H5T_NATIVE_DOUBLE, space, &value);
 }
 
 void Hdf5Group::SetString(const std::string& name, const std::string& text) {

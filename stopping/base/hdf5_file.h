@@ -36,9 +36,11 @@ class Hdf5Group {
     // Read and write attributes. Strings may be of fixed or variable length and text encoding.
     bool HasAttribute(const std::string& name) const;
     int Int(const std::string& name) const;
+    double Real(const std::string& name) const;  // floating-point numbers only
     std::string String(const std::string& name) const;
     std::vector<std::string> Strings(const std::string& name) const;
     void SetInt(const std::string& name, int value);
+    void SetReal(const std::string& name, double value);
     void SetString(const std::string& name, const std::string& text);
     void SetStrings(const std::string& name, std::span<const std::string> texts);
 

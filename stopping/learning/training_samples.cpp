@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "stopping/network/window.h"
+#include "stopping/network/block_memory.h"
 #include "stopping/signals/lightness_noise.h"
 
 namespace lull {
@@ -25,10 +25,24 @@ std::string EntropyChannel(Feature feature, int m) {
 
 }  // namespace
 
+SubBlockLightness LightnessOf(const BlockRecording& recording, int i) {
+    const std::span<const float> mean = recording.Values(i, "lightness");
+    const std::span<const float> deviation = recording.Values(i, "deviation");
+    return {.mean = {mean.begin(), mean.end()}, .deviation = {deviation.begin(), deviation.end()}};
+}
+
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings) {
     BlockMeasures measures{.spp = recording.spp[size_t(i)]};
     for (Feature feature : settings.features) {
         if (feature == Feature::LogSpp) continue;
+        if (IsDrop(feature)) {
+            const Feature entropy = EntropyOf(feature);
+            const std::span<const float> values =
+                recording.Values(i, EntropyChannel(entropy, settings.m));
+            measures.Of(entropy).assign(values.begin(), values.end());
+            if (feature == Feature::VisibleDrop) measures.lightness = LightnessOf(recording, i);
+            continue;
+        }
         if (feature == Feature::DetailMaskedNoise) {
             measures.Of(feature) =
                 DetailMaskedNoise(recording.Values(i, "half_noise"),
@@ -82,7 +96,7 @@ TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSett
         const int viewpoint =
             viewpoints.try_emplace(block.viewpoint, int(viewpoints.size())).first->second;
         const BlockRecording& recording = *block.recording;
-        FeatureHistory history(settings);
+        BlockMemory memory(settings);
         int expected = block.passSpp;  // the next spp of the grid
         for (int i = 0; i < recording.Count(); ++i) {
             const int spp = recording.spp[size_t(i)];
@@ -95,8 +109,8 @@ TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSett
                     " spp; n = " + std::to_string(settings.n) + " does not fit");
             if (spp > expected) break;
             expected += settings.n;
-            history.Add(spp, InputVector(MeasuresOf(recording, i, settings), settings));
-            const std::optional<Eigen::MatrixXf> window = history.WindowAt(spp);
+            memory.Add(MeasuresOf(recording, i, settings));
+            const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
             if (!window) continue;
             samples.windows.insert(samples.windows.end(), window->data(),
                                    window->data() + window->size());

@@ -11,6 +11,9 @@
 
 namespace lull {
 
+// Returns what record i of a block says of the lightness of its sub-blocks.
+SubBlockLightness LightnessOf(const BlockRecording& recording, int i);
+
 // Returns what record i of a block says of the features that the settings ask for. Throws
 // std::invalid_argument if recordings do not have them: entropies are recorded for m = 4, 25, 100
 // and 400, H1 and H2 for m = 100 only.

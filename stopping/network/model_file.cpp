@@ -104,6 +104,15 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
         s.bnorm = read("bnorm", s.bnorm) != 0;
         s.votes = read("votes", s.votes);
         s.voteSpacing = read("vote_spacing", s.voteSpacing);
+        auto readReal = [&](const char* name, double standard) {
+            return group.HasAttribute(name) ? group.Real(name) : standard;
+        };
+        if (group.HasAttribute("spacing")) s.spacing = ParseSpacing(group.String("spacing"));
+        s.ratio = readReal("ratio", s.ratio);
+        s.visibility = {.mask = readReal("mask", s.visibility.mask),
+                        .flare = readReal("flare", s.visibility.flare),
+                        .reference = read("reference", s.visibility.reference),
+                        .nearness = readReal("nearness", s.visibility.nearness)};
         if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
         if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
     }
@@ -161,6 +170,16 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
     group.SetInt("bnorm", s.bnorm);
     group.SetInt("votes", s.votes);
     group.SetInt("vote_spacing", s.voteSpacing);
+    if (s.spacing == Spacing::Geometric) {
+        group.SetString("spacing", SpacingName(s.spacing));
+        group.SetReal("ratio", s.ratio);
+    }
+    if (Needs(s, Feature::VisibleDrop)) {
+        group.SetReal("mask", s.visibility.mask);
+        group.SetReal("flare", s.visibility.flare);
+        group.SetInt("reference", s.visibility.reference);
+        group.SetReal("nearness", s.visibility.nearness);
+    }
     if (record.empty()) return;
     Hdf5Group training = group.MakeGroup("training");
     for (const auto& [name, text] : record) training.SetString(name, text);

@@ -18,11 +18,11 @@ struct Model {
 
 // Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as
 // Keras 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m,
-// snorm, bnorm, votes, vote_spacing and the strings feature and pool, lists with commas. One that
-// is absent (all are, in a published model) has its default, but k and m follow the shape of the
-// network's input. Throws std::runtime_error
-// beginning with the path and naming what is missing, not modelled, of the wrong shape, NaN or
-// infinite.
+// snorm, bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, and
+// the strings spacing, feature and pool, the last two lists with commas. One that is absent (all
+// are, in a published model) has its default, but k and m follow the shape of the network's input.
+// Throws std::runtime_error beginning with the path and naming what is missing, not modelled, of
+// the wrong shape, NaN or infinite.
 Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; to a new file that then

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
 
 #include "stopping/signals/lightness.h"
@@ -13,30 +12,30 @@ namespace lull {
 
 namespace {
 
-bool Needs(const ModelSettings& settings, Feature feature) {
-    return std::find(settings.features.begin(), settings.features.end(), feature) !=
-           settings.features.end();
+// Whether an entropy is asked for, or its fall.
+bool NeedsEntropy(const ModelSettings& settings, Feature entropy) {
+    return std::ranges::any_of(settings.features, [&](Feature f) {
+        return f == entropy || (IsDrop(f) && EntropyOf(f) == entropy);
+    });
 }
 
 bool NeedsEntropies(const ModelSettings& settings) {
-    return std::any_of(settings.features.begin(), settings.features.end(), IsEntropy);
+    return std::ranges::any_of(settings.features,
+                               [](Feature f) { return IsEntropy(f) || IsDrop(f); });
 }
 
 bool NeedsStatistics(const ModelSettings& settings) {
-    return std::any_of(settings.features.begin(), settings.features.end(),
-                       [](Feature f) { return !IsEntropy(f) && f != Feature::LogSpp; });
+    return std::any_of(settings.features.begin(), settings.features.end(), [](Feature f) {
+        return !IsEntropy(f) && !IsDrop(f) && f != Feature::LogSpp;
+    });
 }
 
 void MeasureEntropies(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
-    std::vector<uint8_t> srgb(view.mean.size());
-    EncodeSrgb8(view.mean, srgb);
-    std::vector<double> lightness(view.mean.size() / 3);
-    Lightness(srgb, lightness);
-    for (const SvdEntropy& e : SubBlockEntropies(lightness, view.width, view.height, settings.m)) {
-        if (Needs(settings, Feature::H)) measures->Of(Feature::H).push_back(e.h);
-        if (Needs(settings, Feature::H1)) measures->Of(Feature::H1).push_back(e.h1);
-        if (Needs(settings, Feature::H2)) measures->Of(Feature::H2).push_back(e.h2);
+    for (const SvdEntropy& e : PictureEntropies(view, settings.m)) {
+        if (NeedsEntropy(settings, Feature::H)) measures->Of(Feature::H).push_back(e.h);
+        if (NeedsEntropy(settings, Feature::H1)) measures->Of(Feature::H1).push_back(e.h1);
+        if (NeedsEntropy(settings, Feature::H2)) measures->Of(Feature::H2).push_back(e.h2);
     }
 }
 
@@ -58,7 +57,9 @@ void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
 }
 
 int SubBlocks(const ModelSettings& settings, Feature feature) {
-    return IsEntropy(feature) ? settings.m : kMeasuredSubBlocks;
+    const bool isEntropy =
+        IsEntropy(feature) || (IsDrop(feature) && feature != Feature::VisibleDrop);
+    return isEntropy ? settings.m : kMeasuredSubBlocks;
 }
 
 double Pooled(const Pool& pool, std::vector<double> values) {
@@ -78,6 +79,7 @@ double Scaled(Feature feature, double value) {
     if (feature == Feature::Lightness) return value / 100;
     if (feature == Feature::Deviation || feature == Feature::Texture)
         return std::log1p(std::max(value, 0.0) / 4) / 2;
+    if (feature == Feature::VisibleDrop) return std::log(std::max(value, 0.0) + 0.1);
     return std::log(std::max(value, 0.0) + 0.001);
 }
 
@@ -94,6 +96,8 @@ BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings)
     BlockMeasures measures{.spp = view.spp};
     if (NeedsEntropies(settings)) MeasureEntropies(view, settings, &measures);
     if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
+    if (Needs(settings, Feature::VisibleDrop))
+        measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);
     return measures;
 }
 
@@ -130,10 +134,11 @@ std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettin
         if (values.size() != size_t(SubBlocks(settings, feature)))
             throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +
                                         " do not have one value for each sub-block");
+        const double factor = IsNoise(feature) ? settings.caution : 1;
         if (settings.pools.empty())
-            for (double v : values) inputs.push_back(Scaled(feature, v));
+            for (double v : values) inputs.push_back(Scaled(feature, factor * v));
         for (const Pool& pool : settings.pools)
-            inputs.push_back(Scaled(feature, Pooled(pool, values)));
+            inputs.push_back(Scaled(feature, factor * Pooled(pool, values)));
     }
     return inputs;
 }

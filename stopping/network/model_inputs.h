@@ -20,6 +20,7 @@ inline constexpr int kMeasuredSubBlocks = 100;
 struct BlockMeasures {
     int spp = 0;
     std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
+    SubBlockLightness lightness = {};  // for visible_drop
 
     std::vector<double>& Of(Feature feature) { return values[size_t(feature)]; }
     const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
@@ -28,7 +29,8 @@ struct BlockMeasures {
 // Says what MeasureBlock() reads.
 ViewNeed NeedOf(const ModelSettings& settings);
 
-// Measures what the settings ask for. Throws as CheckView() and SubBlockEntropies() do.
+// Measures what the settings ask for; of drops, which BlockMemory completes, the entropies and the
+// lightness that they are made of. Throws as CheckView() and SubBlockEntropies() do.
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
 
 // Says which places in the input of a network belong to a feature.
@@ -43,10 +45,11 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings);
 int InputCount(const ModelSettings& settings);
 
 // Returns the input of one step, InputCount() values, before it is normalised over a window:
-// entropies as they are; noise as log(v + 0.001); deviation and texture as log(1 + v / 4) / 2 (a
-// texture t masks noise by 1 + t / 4); lightness / 100; the spp as log(spp / 20) / log(500), which
-// is 1 at 10,000. Values are pooled before their logarithm is taken. Throws std::invalid_argument
-// if the measures of a feature do not have the length they should have.
+// entropies as they are; noise, times the caution, and drops as log(v + 0.001); deviation and
+// texture as log(1 + v / 4) / 2 (a texture t masks noise by 1 + t / 4); lightness / 100; the spp as
+// log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their logarithm is
+// taken. Throws std::invalid_argument if the measures of a feature do not have the length they
+// should have.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
 }  // namespace lull

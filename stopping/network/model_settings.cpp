@@ -13,7 +13,7 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 12> featureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 16> featureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
@@ -25,6 +25,10 @@ constexpr std::array<std::pair<Feature, const char*>, 12> featureNames = {
      {Feature::MaskedNoise, "masked_noise"},
      {Feature::HalfNoise, "half_noise"},
      {Feature::DetailMaskedNoise, "detail_masked_noise"},
+     {Feature::EntropyDrop, "entropy_drop"},
+     {Feature::EntropyDrop1, "entropy_drop_h1"},
+     {Feature::EntropyDrop2, "entropy_drop_h2"},
+     {Feature::VisibleDrop, "visible_drop"},
      {Feature::LogSpp, "logspp"}}};
 
 Feature ParseFeature(const std::string& name) {
@@ -98,6 +102,20 @@ std::vector<Pool> ParsePools(const std::string& names) {
     return names.empty() ? std::vector<Pool>() : ParseList(names, ParsePool);
 }
 
+std::string SpacingName(Spacing spacing) {
+    return spacing == Spacing::Fixed ? "fixed" : "geometric";
+}
+
+Spacing ParseSpacing(const std::string& name) {
+    if (name == "fixed") return Spacing::Fixed;
+    if (name == "geometric") return Spacing::Geometric;
+    throw std::invalid_argument("spacing '" + name + "' is not known; there are fixed, geometric");
+}
+
+bool Needs(const ModelSettings& settings, Feature feature) {
+    return std::ranges::find(settings.features, feature) != settings.features.end();
+}
+
 void CheckSettings(const ModelSettings& s) {
     auto check = [](const char* name, int value, int least, int most) {
         if (value < least || value > most)
@@ -113,6 +131,23 @@ void CheckSettings(const ModelSettings& s) {
     const int side = int(std::lround(std::sqrt(s.m)));
     if (side * side != s.m)
         throw std::invalid_argument("m = " + std::to_string(s.m) + " is no square number");
+    auto checkReal = [](const char* name, double value, double least, double most) {
+        if (!(value >= least && value <= most))
+            throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) +
+                                        " is not in [" + std::to_string(least) + ", " +
+                                        std::to_string(most) + "]");
+    };
+    if (s.spacing == Spacing::Geometric) {
+        checkReal("ratio", s.ratio, 1.1, 16);
+        checkReal("ratio ^ (k - 1)", std::pow(s.ratio, s.k - 1), 1, 1e6);
+    }
+    checkReal("mask", s.visibility.mask, 1e-3, 1e9);
+    checkReal("flare", s.visibility.flare, 0, 1);
+    checkReal("nearness", s.visibility.nearness, 0, 10);
+    check("reference", s.visibility.reference, 1, 1 << 30);
+    checkReal("caution", s.caution, 1e-3, 1e3);
+    if (Needs(s, Feature::VisibleDrop) && s.m != 100)
+        throw std::invalid_argument("visible_drop needs m = 100");
     if (s.features.empty()) throw std::invalid_argument("a model needs at least one feature");
 }
 

@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "stopping/signals/entropy_drop.h"
+
 namespace lull {
 
 // Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
 // features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
-// and the logarithm of the spp, one number.
+// the fall of the entropies of m sub-blocks since half as many samples and the noise that it makes
+// visible (see entropy_drop.h; for m = 100), and the logarithm of the spp, one number.
 enum class Feature {
     H,
     H1,
@@ -22,16 +25,34 @@ enum class Feature {
     MaskedNoise,
     HalfNoise,
     DetailMaskedNoise,
+    EntropyDrop,
+    EntropyDrop1,
+    EntropyDrop2,
+    VisibleDrop,
     LogSpp
 };
 
 // Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
-// "noise_mean", "masked_noise", "half_noise", "detail_masked_noise" and "logspp"; a list has commas
-// between them.
-// ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
+// "noise_mean", "masked_noise", "half_noise", "detail_masked_noise", "entropy_drop" (of H),
+// "entropy_drop_h1", "entropy_drop_h2", "visible_drop" and "logspp"; a list has commas between
+// them. ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
+inline bool IsDrop(Feature feature) {
+    return feature >= Feature::EntropyDrop && feature <= Feature::VisibleDrop;
+}
+// Returns the entropy whose fall a drop is.
+inline Feature EntropyOf(Feature drop) {
+    return drop == Feature::EntropyDrop1   ? Feature::H1
+           : drop == Feature::EntropyDrop2 ? Feature::H2
+                                           : Feature::H;
+}
+// Says whether a feature is the standard deviation of noise in lightness, which `caution` scales.
+inline bool IsNoise(Feature feature) {
+    return (feature >= Feature::Noise && feature <= Feature::DetailMaskedNoise) ||
+           feature == Feature::VisibleDrop;
+}
 
 // Summarises the values of all sub-blocks in one number.
 struct Pool {
@@ -52,10 +73,16 @@ struct Pool {
 std::string PoolNames(std::span<const Pool> pools);
 std::vector<Pool> ParsePools(const std::string& names);
 
+// Says how far apart the steps of a window are: n spp, or each at `ratio` times the spp of the one
+// before, or as near as is kept (see ladder.h).
+enum class Spacing { Fixed, Geometric };
+std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
+Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument
+
 // Holds what a model was trained on and how its answers count; the defaults are the paper's.
 struct ModelSettings {
     int k = 8;    // steps in a window
-    int n = 40;   // spp between them
+    int n = 40;   // spp between them; with geometric spacing between those that are looked at
     int m = 100;  // sub-blocks that entropies are computed of, a square number
     std::vector<Feature> features = {Feature::H};
     std::vector<Pool> pools = {};  // empty: the network is given the value of each sub-block
@@ -63,7 +90,14 @@ struct ModelSettings {
     bool bnorm = false;            // normalise the entropies of a step, before that
     int votes = 3;                 // noiseless votes in a row that stop a block
     int voteSpacing = 0;           // spp between votes; 0: vote after every pass
+    Spacing spacing = Spacing::Fixed;
+    double ratio = 2;                 // of geometric spacing, > 1
+    NoiseVisibility visibility = {};  // of visible_drop
+    // What noise counts more than it is; no part of a model, but of how it is used.
+    double caution = 1;
 };
+
+bool Needs(const ModelSettings& settings, Feature feature);
 
 // Throws std::invalid_argument naming the setting that is out of range. (More sub-blocks than the
 // smallest block that votes has pixels are too many, so that no block turns out to be too small.)

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "stopping/signals/ladder.h"
+
 namespace lull {
 
 Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values) {
@@ -27,10 +29,28 @@ void FeatureHistory::Add(int spp, std::span<const double> feature) {
     if (spp < 1 || (!entries.empty() && spp <= entries.back().spp))
         throw std::invalid_argument("features must come with increasing spp");
 
+    if (settings.spacing == Spacing::Geometric) {
+        AddToLadder(Entry{spp, {feature.begin(), feature.end()}},
+                    std::pow(settings.ratio, settings.k - 1), &entries);
+        return;
+    }
     // Forget what has left the window of this and all later spp.
     const int64_t oldest = int64_t(spp) - int64_t(settings.k - 1) * settings.n;
     std::erase_if(entries, [&](const Entry& e) { return e.spp < oldest; });
     entries.push_back({spp, {feature.begin(), feature.end()}});
+}
+
+const std::vector<double>* FeatureHistory::FindStep(int spp, int stepsBefore) const {
+    if (settings.spacing == Spacing::Fixed) {
+        const int64_t at = int64_t(spp) - int64_t(stepsBefore) * settings.n;
+        return at > 0 ? Find(int(at)) : nullptr;
+    }
+    if (entries.empty() || entries.back().spp != spp) return nullptr;
+    if (stepsBefore == 0) return &entries.back().feature;
+    // So near that no step is nearer to another place of the window.
+    const Entry* entry = FindInLadder(entries, spp / std::pow(settings.ratio, stepsBefore),
+                                      std::sqrt(settings.ratio), true);
+    return entry ? &entry->feature : nullptr;
 }
 
 const std::vector<double>* FeatureHistory::Find(int spp) const {
@@ -51,8 +71,7 @@ void FeatureHistory::NormalizeEntropies(Eigen::Ref<Eigen::ArrayXXd> window) cons
 std::optional<Eigen::MatrixXf> FeatureHistory::WindowAt(int spp) const {
     Eigen::ArrayXXd window(inputs, settings.k);
     for (int step = 0; step < settings.k; ++step) {
-        const int64_t at = int64_t(spp) - int64_t(settings.k - 1 - step) * settings.n;
-        const std::vector<double>* feature = at > 0 ? Find(int(at)) : nullptr;
+        const std::vector<double>* feature = FindStep(spp, settings.k - 1 - step);
         if (!feature) return {};
         window.col(step) = Eigen::Map<const Eigen::ArrayXd>(feature->data(), inputs);
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stopping/base/state.h"
+#include "stopping/network/block_memory.h"
 #include "stopping/rules/votes.h"
 
 namespace lull {
@@ -27,7 +28,7 @@ class LearnedCriterion final : public Criterion {
     LearnedCriterion(std::shared_ptr<const Model> model, int passSpp)
         : model(std::move(model)),
           schedule(MakeSchedule(this->model->settings, passSpp)),
-          history(this->model->settings),
+          memory(this->model->settings),
           votes{.needed = this->model->settings.votes} {}
 
     ViewNeed Need(int spp) const override {
@@ -38,8 +39,7 @@ class LearnedCriterion final : public Criterion {
         CheckView(view, Need(view.spp));
         bool judged = false;
         if (schedule.Records(view.spp)) {
-            const ModelSettings& settings = model->settings;
-            history.Add(view.spp, InputVector(MeasureBlock(view, settings), settings));
+            memory.Add(MeasureBlock(view, model->settings));
             judged = Vote(view.spp);
         }
         return {.stop = judged && votes.Stops(),
@@ -54,12 +54,7 @@ class LearnedCriterion final : public Criterion {
         writer.Put(learnedTag);
         writer.Put(int32_t(votes.inRow));
         writer.Put(probability);
-        writer.Put(uint32_t(InputCount(model->settings)));
-        writer.Put(uint32_t(history.Entries().size()));
-        for (const FeatureHistory::Entry& entry : history.Entries()) {
-            writer.Put(int32_t(entry.spp));
-            writer.PutAll(std::span(entry.feature));
-        }
+        memory.Save(&writer);
         return std::move(writer.bytes);
     }
 
@@ -68,18 +63,9 @@ class LearnedCriterion final : public Criterion {
         reader.Expect(learnedTag);
         votes.inRow = reader.Get<int32_t>();
         probability = reader.Get<double>();
-        const uint32_t inputs = uint32_t(InputCount(model->settings));
-        if (reader.Get<uint32_t>() != inputs)
-            throw std::runtime_error("the saved state belongs to a model with other inputs");
         if (votes.inRow < 0 || !(probability >= 0 && probability <= 1))
             throw std::runtime_error("the saved state of a learned rule is damaged");
-        history.Clear();
-        std::vector<double> feature(inputs);
-        for (uint32_t count = reader.Get<uint32_t>(); count > 0; --count) {
-            const int spp = reader.Get<int32_t>();
-            reader.GetAll(std::span(feature));
-            AddSaved(spp, feature);
-        }
+        memory.Restore(&reader);
         reader.Finish();
     }
 
@@ -87,25 +73,16 @@ class LearnedCriterion final : public Criterion {
     // Votes if a vote is due at this spp and the window is full. Returns whether it did.
     bool Vote(int spp) {
         if (!schedule.Votes(spp)) return false;
-        const std::optional<Eigen::MatrixXf> window = history.WindowAt(spp);
+        const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return false;
         probability = NoisyProbability(model->network, *window);
         votes.Cast(probability);
         return true;
     }
 
-    void AddSaved(int spp, const std::vector<double>& feature) {
-        try {
-            history.Add(spp, feature);
-        } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(std::string("the saved state of a learned rule is damaged: ") +
-                                     error.what());
-        }
-    }
-
     std::shared_ptr<const Model> model;
     VoteSchedule schedule;
-    FeatureHistory history;
+    BlockMemory memory;
     VoteCounter votes;
     double probability = 1;  // of the last vote; noisy until there is one
 };

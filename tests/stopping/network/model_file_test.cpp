@@ -107,6 +107,31 @@ TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
     EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
 }
 
+TEST(ModelFile, KeepsHowNoiseIsSeen) {
+    const ScratchFile file(".h5");
+    const ModelSettings settings{
+        .k = 3,
+        .features = {Feature::VisibleDrop},
+        .pools = {{Pool::PowerMean, 1}},
+        .spacing = Spacing::Geometric,
+        .ratio = 1.4,
+        .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25}};
+    WriteModel(file.path, RandomNetwork(1, {4}, 1), settings);
+    const ModelSettings read = ReadModel(file.path).settings;
+    EXPECT_EQ(read.spacing, Spacing::Geometric);
+    EXPECT_EQ(read.ratio, 1.4);
+    EXPECT_EQ(read.visibility.mask, 30);
+    EXPECT_EQ(read.visibility.flare, 0.02);
+    EXPECT_EQ(read.visibility.reference, 5000);
+    EXPECT_EQ(read.visibility.nearness, 0.25);
+
+    // Nothing is said where nothing is meant, so that other models have the bytes they had.
+    WriteModel(file.path, RandomNetwork(100, {4}, 1), {});
+    const Hdf5Group group = Hdf5Group::Open(file.path).Group("lull");
+    for (const char* name : {"spacing", "ratio", "mask", "flare", "reference", "nearness"})
+        EXPECT_FALSE(group.HasAttribute(name)) << name;
+}
+
 TEST(ModelFile, WritesNoBrokenModel) {
     Network network = RandomNetwork(4, {3}, 1);
     network.lstm[0].bias[0] = std::numeric_limits<float>::quiet_NaN();

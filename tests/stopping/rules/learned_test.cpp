@@ -104,6 +104,30 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
     }
 }
 
+TEST(Learned, GoesOnWithFallsOfEntropies) {
+    const ModelSettings settings = {.k = 3,
+                                    .features = {Feature::VisibleDrop},
+                                    .pools = {{Pool::PowerMean, 1}},
+                                    .votes = 1000,
+                                    .voteSpacing = 40,
+                                    .spacing = Spacing::Geometric,
+                                    .ratio = 1.5};
+    const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
+    const auto whole = MakeLearned(model, 20);
+    EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
+    const std::vector<Decision> expected = RunPasses(whole.get(), 20, 1000);
+    EXPECT_TRUE(expected.back().value != 1);
+    for (const int split : {20, 140, 500}) {
+        const auto before = MakeLearned(model, 20), after = MakeLearned(model, 20);
+        RunPasses(before.get(), 20, split);
+        after->Restore(before->Save());
+        EXPECT_EQ(after->Save(), before->Save());
+        const std::vector<Decision> rest = RunPasses(after.get(), split + 20, 1000);
+        for (size_t i = 0; i < rest.size(); ++i)
+            EXPECT_EQ(rest[i].value, expected[size_t(split / 20) + i].value);
+    }
+}
+
 TEST(Learned, RefusesOtherState) {
     const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
     const auto criterion = MakeLearned(model, 20);
