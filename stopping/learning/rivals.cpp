@@ -18,7 +18,8 @@ struct RivalRule {
 };
 constexpr RivalRule kErrorRules[] = {{"dammertz", ErrorRule::Dammertz, 1, 1e-4},
                                      {"luxtile", ErrorRule::LuxTile, 1, 1e-4},
-                                     {"lnoise", ErrorRule::LNoise, 50, 0.01}};
+                                     {"lnoise", ErrorRule::LNoise, 50, 0.01},
+                                     {"entropy", ErrorRule::Entropy, 50, 0.01}};
 
 std::vector<double> SettingsOf(const RivalRule& rule) {
     std::vector<double> settings;

@@ -14,16 +14,16 @@ namespace lull {
 enum class ChooseBy { AbsoluteError, CriticalError };
 
 struct Rival {
-    std::string rule;  // "dammertz", "cycles", "luxtile" or "lnoise"
+    std::string rule;  // "dammertz", "cycles", "luxtile", "lnoise" or "entropy"
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
     double bestOfAll = 0;  // the best setting on all viewpoints: what to use on new ones
 };
 
-// Runs the rules dammertz, cycles, luxtile and lnoise over recorded blocks (those of one viewpoint
-// follow each other), each viewpoint with the setting that does best on the others; of equally good
-// ones the one that takes the fewest samples. Settings are kCyclesThresholds, else steps of 1 %.
-// Throws std::invalid_argument if there are fewer than two viewpoints.
+// Runs the rules dammertz, cycles, luxtile, lnoise and entropy over recorded blocks (those of one
+// viewpoint follow each other), each viewpoint with the setting that does best on the others; of
+// equally good ones the one that takes the fewest samples. Settings are kCyclesThresholds, else
+// steps of 1 %. Throws std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid);
 
 }  // namespace lull

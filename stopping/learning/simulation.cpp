@@ -8,11 +8,14 @@
 #include <stdexcept>
 
 #include "stopping/base/parallel.h"
+#include "stopping/network/block_memory.h"
 #include "stopping/rules/baselines.h"
+#include "stopping/rules/entropy.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/rules/thresholds.h"
 #include "stopping/rules/votes.h"
+#include "stopping/signals/drop_history.h"
 
 namespace lull {
 
@@ -64,8 +67,8 @@ Simulator ErrorSimulator(ErrorRule rule, double threshold) {
     };
 }
 
-Simulator LearnedSimulator(const std::string& path) {
-    const auto model = std::make_shared<const Model>(ReadModel(path));
+Simulator LearnedSimulator(const std::string& path, const RuleContext& context) {
+    const auto model = std::make_shared<const Model>(ReadModelFor(path, context));
     return [=](const JudgedBlock& block) {
         try {
             return SimulateLearned(block, *model);
@@ -91,10 +94,32 @@ Simulator ThresholdsSimulator(const std::string& path) {
     };
 }
 
+// Returns what the rule `entropy` compares with its threshold.
+std::vector<double> EntropyErrors(const BlockRecording& recording) {
+    std::vector<double> errors;
+    DropHistory history;
+    for (int i = 0; i < recording.Count(); ++i) {
+        const int spp = recording.spp[size_t(i)];
+        std::optional<std::vector<double>> visible;
+        if (EntropyRuleLooks(spp, recording.spp.front())) {
+            const std::span<const float> h = recording.Values(i, "h100");
+            visible = AddVisible(spp, std::vector<double>(h.begin(), h.end()),
+                                 LightnessOf(recording, i), NoiseVisibility(), &history);
+        }
+        errors.push_back(visible ? MeanVisible(*visible) : std::numeric_limits<double>::infinity());
+    }
+    return errors;
+}
+
 }  // namespace
 
 ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule) {
-    ErrorSeries series{.needed = rule == ErrorRule::LNoise ? VoteCounter().needed : 1};
+    const bool votes = rule == ErrorRule::LNoise || rule == ErrorRule::Entropy;
+    ErrorSeries series{.needed = votes ? VoteCounter().needed : 1};
+    if (rule == ErrorRule::Entropy) {
+        series.errors = EntropyErrors(recording);
+        return series;
+    }
     const auto lux = MakeLuxTile(1);  // says at which spp it looks
     for (int i = 0; i < recording.Count(); ++i) {
         double error = 0;
@@ -114,6 +139,7 @@ ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule) {
 int FirstBelow(const ErrorSeries& series, double threshold) {
     int inRow = 0;
     for (size_t i = 0; i < series.errors.size(); ++i) {
+        if (std::isinf(series.errors[i])) continue;  // no look, no vote
         inRow = series.errors[i] < threshold ? inRow + 1 : 0;
         if (inRow == series.needed) return int(i);
     }
@@ -159,7 +185,7 @@ RuleOutcome SimulateLearned(const JudgedBlock& block, const Model& model) {
         .firstSpp = block.passSpp,
         .n = settings.n,
         .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : block.passSpp};
-    FeatureHistory history(settings);
+    BlockMemory memory(settings);
     VoteCounter votes{.needed = settings.votes};
     int stop = 0;
     std::vector<Verdict> verdicts;
@@ -168,8 +194,8 @@ RuleOutcome SimulateLearned(const JudgedBlock& block, const Model& model) {
         Verdict verdict{
             .spp = spp, .score = std::numeric_limits<double>::infinity(), .noisy = true};
         if (schedule.Records(spp)) {
-            history.Add(spp, InputVector(MeasuresOf(recording, i, settings), settings));
-            const auto window = schedule.Votes(spp) ? history.WindowAt(spp) : std::nullopt;
+            memory.Add(MeasuresOf(recording, i, settings));
+            const auto window = schedule.Votes(spp) ? memory.WindowAt(spp) : std::nullopt;
             if (window) {
                 verdict.score = NoisyProbability(model.network, *window);
                 verdict.noisy = !(verdict.score < 0.5);
@@ -190,19 +216,21 @@ RuleOutcome SimulateStop(const JudgedBlock& block, int spp) {
     return outcome;
 }
 
-Simulator MakeSimulator(const std::string& given, const std::string& defaultModel) {
+Simulator MakeSimulator(const std::string& given, const RuleContext& context) {
     const size_t colon = given.find(':');
     const std::string kind = given.substr(0, colon);
     const std::string argument = colon == std::string::npos ? "" : given.substr(colon + 1);
     if (kind == "thresholds" && !argument.empty()) return ThresholdsSimulator(argument);
     // With its default, if it has one.
-    const std::string rule = MakeCriterionFactory(given, {.defaultModel = defaultModel}).rule;
-    if (kind == "learned") return LearnedSimulator(argument.empty() ? defaultModel : argument);
+    std::string rule = MakeCriterionFactory(given, context).rule;
+    rule = rule.substr(0, rule.find(", caution"));
+    if (kind == "learned") return LearnedSimulator(ModelPath(argument, context.models), context);
 
     const double number = ParseNumber(rule.substr(rule.find(':') + 1), rule);
     if (kind == "dammertz") return ErrorSimulator(ErrorRule::Dammertz, number);
     if (kind == "luxtile") return ErrorSimulator(ErrorRule::LuxTile, number);
-    if (kind == "lnoise") return ErrorSimulator(ErrorRule::LNoise, number);
+    if (kind == "lnoise") return ErrorSimulator(ErrorRule::LNoise, number / context.caution);
+    if (kind == "entropy") return ErrorSimulator(ErrorRule::Entropy, number / context.caution);
     if (kind == "cycles")
         return [=](const JudgedBlock& block) { return SimulateCycles(block, number); };
     if (kind == "fixed")

@@ -18,7 +18,7 @@
 namespace lull {
 
 // Lists the rules that compare one number a pass with a threshold.
-enum class ErrorRule { Dammertz, LuxTile, LNoise };
+enum class ErrorRule { Dammertz, LuxTile, LNoise, Entropy };
 
 // Holds these numbers for the recorded passes.
 struct ErrorSeries {
@@ -44,10 +44,10 @@ RuleOutcome SimulateStop(const JudgedBlock& block, int spp);
 using Simulator = std::function<RuleOutcome(const JudgedBlock& block)>;
 
 // Reads a rule as MakeCriterionFactory() does, with the files it names: dammertz[:T], cycles:T,
-// luxtile:T, lnoise[:T], learned[:MODEL.h5], fixed:N, or thresholds:FILE, which takes the rows that
-// have the viewpoints' names. Throws std::invalid_argument and std::runtime_error as that does; the
-// simulator throws std::runtime_error for a block that a file does not have.
-Simulator MakeSimulator(const std::string& rule, const std::string& defaultModel = "");
+// luxtile:T, lnoise[:T], entropy[:T], learned[:MODEL.h5], fixed:N, or thresholds:FILE, which takes
+// the rows that have the viewpoints' names. Throws std::invalid_argument and std::runtime_error as
+// that does; the simulator throws std::runtime_error for a block that a file does not have.
+Simulator MakeSimulator(const std::string& rule, const RuleContext& context = {});
 
 // Runs a rule over blocks, on all cores; those of one viewpoint follow each other.
 std::vector<ViewpointOutcome> Simulate(std::span<const JudgedBlock> blocks, const Simulator& rule,

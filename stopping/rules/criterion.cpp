@@ -9,6 +9,7 @@
 #include "stopping/base/checksum.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/baselines.h"
+#include "stopping/rules/entropy.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/rules/thresholds.h"
@@ -18,8 +19,8 @@ namespace lull {
 namespace {
 
 constexpr const char* ruleForms =
-    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise[:T], thresholds:FILE[:NAME] and "
-    "learned[:MODEL.h5]";
+    "fixed:N, dammertz[:T[:area]], cycles:T, luxtile:T, lnoise[:T], entropy[:T], "
+    "thresholds:FILE[:NAME] and learned[:NAME|:MODEL.h5]";
 
 // Parses all of `text` as a number > 0, finite.
 template <typename T>
@@ -63,16 +64,32 @@ CriterionFactory LuxTile(const std::string& argument) {
             .make = [threshold](const BlockInfo&) { return MakeLuxTile(threshold); }};
 }
 
-CriterionFactory LNoise(const std::string& argument) {
-    const double threshold = ParseThreshold(argument);
+CriterionFactory LNoise(const std::string& argument, const RuleContext& context) {
+    const double threshold = ParseThreshold(argument) / context.caution;
     return {.smallestSide = smallestVotingSide,
             .make = [threshold](const BlockInfo&) { return MakeLightnessNoise(threshold); }};
+}
+
+// What people compared with: nothing is noise there. Where the cap is larger, that is the picture
+// at the cap; a smaller cap does not change what they saw.
+NoiseVisibility VisibilityIn(const RuleContext& context, NoiseVisibility visibility) {
+    visibility.reference = std::max(visibility.reference, context.cap);
+    return visibility;
+}
+
+CriterionFactory Entropy(const std::string& argument, const RuleContext& context) {
+    const double threshold = ParseThreshold(argument) / context.caution;
+    return {.smallestSide = smallestVotingSide,
+            .make = [=, visibility = VisibilityIn(context, {})](const BlockInfo&) {
+                return MakeEntropyRule(threshold, visibility, context.passSpp);
+            }};
 }
 
 // Returns the rule with the threshold that it has where none is given.
 std::string WithThreshold(const std::string& rule) {
     if (rule == "dammertz") return "dammertz:0.02";
     if (rule == "lnoise") return "lnoise:0.65";
+    if (rule == "entropy") return "entropy:0.64";
     return rule;
 }
 
@@ -116,11 +133,8 @@ CriterionFactory Thresholds(const std::string& argument, const RuleContext& cont
 }
 
 CriterionFactory Learned(const std::string& argument, const RuleContext& context) {
-    const std::string path = argument.empty() ? context.defaultModel : argument;
-    if (argument.empty() && !std::filesystem::exists(path))
-        throw std::runtime_error("the model of the rule `learned` is not at '" + path +
-                                 "'; name it, learned:MODEL.h5, or choose another rule");
-    const auto model = std::make_shared<const Model>(ReadModel(path));
+    const std::string path = ModelPath(argument, context.models);
+    const auto model = std::make_shared<const Model>(ReadModelFor(path, context));
     // Make one now, so that a model that does not fit is an error before anything is rendered.
     try {
         MakeLearned(model, context.passSpp);
@@ -134,13 +148,24 @@ CriterionFactory Learned(const std::string& argument, const RuleContext& context
             }};
 }
 
+// Only these have a threshold of visible noise.
+void CheckCaution(const std::string& kind, double caution) {
+    if (!(caution > 0) || !std::isfinite(caution))
+        throw std::invalid_argument("caution must be above 0");
+    if (caution != 1 && kind != "entropy" && kind != "lnoise" && kind != "learned")
+        throw std::invalid_argument(
+            "caution divides a threshold of visible noise, and this rule has none; entropy, lnoise "
+            "and learned have one");
+}
+
 CriterionFactory MakeFactory(const std::string& kind, const std::string& argument,
                              const RuleContext& context) {
     if (kind == "fixed") return Fixed(argument);
     if (kind == "dammertz") return Dammertz(argument);
     if (kind == "cycles") return Cycles(argument);
     if (kind == "luxtile") return LuxTile(argument);
-    if (kind == "lnoise") return LNoise(argument);
+    if (kind == "lnoise") return LNoise(argument, context);
+    if (kind == "entropy") return Entropy(argument, context);
     if (kind == "thresholds") return Thresholds(argument, context);
     if (kind == "learned") return Learned(argument, context);
     throw std::invalid_argument("there is no such rule; there are " + std::string(ruleForms));
@@ -159,12 +184,47 @@ CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContex
     const std::string kind = rule.substr(0, colon);
     const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);
     try {
+        CheckCaution(kind, context.caution);
         CriterionFactory factory = MakeFactory(kind, argument, context);
         factory.rule = rule;
+        if (context.caution != 1) {
+            char text[32];
+            const auto end = std::to_chars(text, text + sizeof(text), context.caution).ptr;
+            factory.rule.append(", caution ").append(text, end);
+        }
         return factory;
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument("stopping rule '" + rule + "': " + error.what());
     }
+}
+
+std::string ModelPath(const std::string& argument, const std::string& models) {
+    const std::string name = argument.empty() ? defaultModelName : argument;
+    if (name.ends_with(".h5") || std::filesystem::exists(name)) return name;
+    const std::filesystem::path path = std::filesystem::path(models) / (name + ".h5");
+    if (std::filesystem::exists(path)) return path.string();
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(models, none))
+        if (entry.path().extension() == ".h5") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    std::string known;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    throw std::runtime_error("there is no model '" + name + "' in '" + models + "'; " +
+                             (known.empty() ? "there are none" : "there are " + known) +
+                             ". Name a file, learned:MODEL.h5, or choose another rule");
+}
+
+Model ReadModelFor(const std::string& path, const RuleContext& context) {
+    Model model = ReadModel(path);
+    ModelSettings& settings = model.settings;
+    if (context.caution != 1 && !std::ranges::any_of(settings.features, IsNoise))
+        throw std::runtime_error(path +
+                                 ": is not given visible noise that caution could scale, but " +
+                                 FeatureNames(settings.features));
+    settings.caution = context.caution;
+    settings.visibility = VisibilityIn(context, settings.visibility);
+    return model;
 }
 
 }  // namespace lull

@@ -58,8 +58,12 @@ struct BlockInfo {
 struct RuleContext {
     int passSpp = 20;            // samples per pixel and pass, > 0; the first pass ends at this spp
     int blockCount = 0;          // blocks in the image; 0: not known
+    int cap = 0;                 // spp that no block exceeds; 0: not known
     std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty
-    std::string defaultModel = {};  // the file that `learned` reads; may be empty
+    std::string models = {};     // the folder of installed models, NAME.h5; may be empty
+    // Divides the threshold of visible noise: 2 lets half as much of it be. Above 0; others than 1
+    // only for rules that have such a threshold.
+    double caution = 1;
 };
 
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.
@@ -77,6 +81,17 @@ struct CriterionFactory {
 // The rule where none is asked for.
 inline constexpr const char* defaultRule = "learned";
 
+// The model of `learned` where none is named.
+inline constexpr const char* defaultModelName = "entropy";
+
+// Returns the file of the model that `learned:ARGUMENT` names: one that ends in .h5 or is there, or
+// NAME.h5 in the folder of installed models. Throws std::runtime_error naming those that there are.
+std::string ModelPath(const std::string& argument, const std::string& models);
+
+// Reads a model as it is used in a context, with its cap and caution. Throws std::runtime_error.
+struct Model;
+Model ReadModelFor(const std::string& path, const RuleContext& context);
+
 // Reads a stopping rule and the files it names:
 //     fixed:N                 stop at N samples per pixel
 //     dammertz[:T[:area]]     stop when the block's mean error is < T (0.02: in the middle greys
@@ -85,8 +100,11 @@ inline constexpr const char* defaultRule = "learned";
 //     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
 //     lnoise[:T]              stop when the visible noise in lightness is < T three times in a row
 //                             (0.9: where people stop to see it, see stopping/models/README.md)
+//     entropy[:T]             stop when noise adds so little to the SVD-entropy that < T of it is
+//                             visible, three times in a row (see entropy.h)
 //     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
-//     learned[:MODEL.h5]      stop after noiseless votes of a recurrent network in a row
+//     learned[:NAME|MODEL.h5] stop after noiseless votes of a recurrent network in a row, an
+//                             installed one (entropy) or one in a file
 // Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message
 // says what is wrong and what would be right.
 CriterionFactory MakeCriterionFactory(const std::string& rule, const RuleContext& context = {});

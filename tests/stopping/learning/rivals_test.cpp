@@ -48,7 +48,7 @@ TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
         const std::vector<Rival> rivals = JudgeRivals(blocks.judged, chooseBy, 40);
-        ASSERT_EQ(rivals.size(), 4u);
+        ASSERT_EQ(rivals.size(), 5u);
         const Rival& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
         EXPECT_NEAR(noise.bestOfAll, 0.51, 0.02);

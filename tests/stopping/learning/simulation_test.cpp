@@ -59,6 +59,41 @@ TEST(Simulation, StopsWhereTheCriterionDoes) {
     }
 }
 
+TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
+    // They look every 40 spp, which is what is recorded beyond 400 spp as well.
+    const ScratchFile model(".h5");
+    Network network = RandomNetwork(1, {4}, 1, 7);
+    network.lstm[0].kernel.setConstant(1);
+    network.dense[0].kernel.setConstant(20);
+    network.dense[0].bias[0] = -20;
+    WriteModel(model.path, network,
+               {.k = 2,
+                .n = 40,
+                .features = {Feature::VisibleDrop},
+                .pools = {{Pool::PowerMean, 1}},
+                .voteSpacing = 40,
+                .spacing = Spacing::Geometric,
+                .ratio = 1.5});
+    BlockRecording recording;
+    Recorder recorder(20, 2400, 2400, &recording);
+    std::vector<BlockImage> images;
+    for (int spp = 20; spp <= 2400; spp += 20) {
+        images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
+        recorder.Observe(images.back().At(spp));
+    }
+    for (const std::string& rule : {std::string("entropy:0.9"), "learned:" + model.path})
+        for (const double caution : {1.0, 1.1}) {
+            const auto criterion = MakeCriterionFactory(rule, {.caution = caution}).make({});
+            int expected = 0;
+            for (int spp = 20; spp <= 2400 && expected == 0; spp += 20)
+                if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
+            const RuleOutcome outcome =
+                MakeSimulator(rule, {.caution = caution})(MakeBlock(recording));
+            EXPECT_GT(expected, 400) << rule;
+            EXPECT_EQ(outcome.stop, expected) << rule << " " << caution;
+        }
+}
+
 TEST(Simulation, VotesOnRecordedPasses) {
     // The noise is below 0.5 at 380 and 400 spp, then at 420, 460 and 500 with one exception.
     BlockRecording recording = EmptyRecording(600);

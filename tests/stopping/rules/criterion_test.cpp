@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -131,8 +132,7 @@ TEST(Rule, LoadsAModel) {
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
     EXPECT_EQ(factory.smallestSide, smallestVotingSide);
     EXPECT_EQ(StopSpp(factory.make({}).get()), 100);
-    EXPECT_EQ(StopSpp(MakeCriterionFactory("learned", {.defaultModel = file.path}).make({}).get()),
-              100);
+    EXPECT_EQ(StopSpp(MakeCriterionFactory("learned:" + file.path).make({}).get()), 100);
     using Failed = std::runtime_error;
     EXPECT_NE(ErrorOf<Failed>("learned:" + file.path, {.passSpp = 16}).find("16 spp"),
               std::string::npos);
@@ -140,11 +140,48 @@ TEST(Rule, LoadsAModel) {
     EXPECT_NE(ErrorOf<Failed>("learned").find("learned:MODEL.h5"), std::string::npos);
 }
 
+TEST(Rule, FindsInstalledModelsByName) {
+    const ScratchFile file(".h5");
+    WriteModel(file.path, RandomNetwork(25, {4}, 1), {.k = 3, .n = 20, .m = 25});
+    const std::filesystem::path path(file.path);
+    const RuleContext context{.models = path.parent_path().string()};
+    const CriterionFactory factory =
+        MakeCriterionFactory("learned:" + path.stem().string(), context);
+    EXPECT_EQ(factory.checksum, FileChecksum(file.path));
+    EXPECT_EQ(factory.rule, "learned:" + path.stem().string());
+    const std::string error = ErrorOf<std::runtime_error>("learned:none_such", context);
+    EXPECT_NE(error.find("no model 'none_such'"), std::string::npos) << error;
+    EXPECT_NE(error.find(path.stem().string()), std::string::npos) << error;
+}
+
+TEST(Rule, DividesThresholdsOfVisibleNoiseByCaution) {
+    const BlockImage block(100, 100, 0.18f);
+    const RuleContext careful{.caution = 2};
+    for (const char* rule : {"lnoise:0.5", "entropy:0.5"}) {
+        const CriterionFactory factory = MakeCriterionFactory(rule, careful);
+        EXPECT_EQ(factory.rule, std::string(rule) + ", caution 2");
+        EXPECT_EQ(factory.make({})->Observe(block.At(20)).threshold, 0.25);
+    }
+    for (const char* rule : {"dammertz:0.02", "cycles:0.02", "luxtile:0.1", "fixed:20"}) {
+        const std::string error = ErrorOf<std::invalid_argument>(rule, careful);
+        EXPECT_NE(error.find("caution"), std::string::npos) << rule << ": " << error;
+    }
+    const ScratchFile entropies(".h5"), noise(".h5");
+    WriteModel(entropies.path, RandomNetwork(25, {4}, 1), {.k = 3, .n = 20, .m = 25});
+    EXPECT_NE(ErrorOf<std::runtime_error>("learned:" + entropies.path, careful).find("caution"),
+              std::string::npos);
+    WriteModel(noise.path, RandomNetwork(100, {4}, 1),
+               {.k = 3, .n = 20, .features = {Feature::VisibleDrop}});
+    EXPECT_EQ(MakeCriterionFactory("learned:" + noise.path, careful).checksum,
+              FileChecksum(noise.path));
+}
+
 TEST(Rule, GoesOnFromSavedState) {
     const ScratchFile thresholds(".csv", "kitchen;500;\n");
     for (const std::string& rule :
          {std::string("fixed:500"), std::string("dammertz:0.02"), std::string("cycles:0.02"),
-          std::string("luxtile:0.1"), std::string("lnoise:2"), "thresholds:" + thresholds.path}) {
+          std::string("luxtile:0.1"), std::string("lnoise:2"), std::string("entropy:1"),
+          "thresholds:" + thresholds.path}) {
         const CriterionFactory factory = MakeCriterionFactory(rule);
         auto criterion = factory.make({});
         for (int spp = 20; spp <= 400; spp += 20) {

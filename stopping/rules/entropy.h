@@ -1,0 +1,27 @@
+// Judges blocks by what noise adds to their SVD-entropy: lull's own rule with one number.
+#pragma once
+
+#include <memory>
+
+#include "stopping/rules/criterion.h"
+#include "stopping/signals/entropy_drop.h"
+
+namespace lull {
+
+// The sub-blocks that the rule looks at.
+inline constexpr int kEntropySubBlocks = 100;
+
+// Stops a block when the mean visible drop of its sub-blocks (see entropy_drop.h) was below
+// `threshold`, > 0, at three looks in a row. It looks after the first pass and every 40 spp from
+// then on, or every pass if passes are longer: what recordings have (see recording.h). The block
+// needs at least 20 x 20 pixels.
+std::unique_ptr<Criterion> MakeEntropyRule(double threshold, const NoiseVisibility& visibility,
+                                           int passSpp);
+
+// Says at which spp the rule looks.
+bool EntropyRuleLooks(int spp, int passSpp);
+
+// Returns the number that is compared with the threshold.
+double MeanVisible(std::span<const double> visibleDrops);
+
+}  // namespace lull

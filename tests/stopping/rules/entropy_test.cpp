@@ -1,0 +1,138 @@
+#include "stopping/rules/entropy.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "stopping/rules/small_blocks.h"
+#include "tests/stopping/signals/block_images.h"
+
+namespace lull {
+namespace {
+
+BlockImage At(int spp) { return NoisyBlock(100, 100, 0.2, spp, unsigned(spp)); }
+
+// Runs a rule over blocks whose noise falls, after `begin` spp; returns the decisions up to a stop.
+std::vector<Decision> Decide(Criterion* rule, int begin, int end) {
+    std::vector<Decision> decisions;
+    for (int spp = begin + 20; spp <= end; spp += 20) {
+        BlockImage block = At(spp);
+        BlockView view = block.At(spp);
+        view.halfMean = {};  // it is not needed
+        if (rule->Need(spp) == ViewNeed::Nothing) view.mean = {};
+        decisions.push_back(rule->Observe(view));
+        if (decisions.back().stop) break;
+    }
+    return decisions;
+}
+
+TEST(EntropyRule, StopsAfterThreeLooksInARow) {
+    const auto rule = MakeEntropyRule(1.5, {}, 20);
+    const std::vector<Decision> decisions = Decide(rule.get(), 0, 4000);
+    const int stop = 20 * int(decisions.size());
+    ASSERT_TRUE(decisions.back().stop);
+    EXPECT_EQ((stop - 20) % 40, 0);
+    EXPECT_GT(stop, 140);
+    EXPECT_LT(stop, 4000);
+    EXPECT_EQ(decisions.back().votes, 3);
+    EXPECT_EQ(decisions.back().threshold, 1.5);
+    for (size_t i = 0; i < decisions.size(); ++i) {
+        EXPECT_EQ(decisions[i].judged, i >= 2 && i % 2 == 0) << i;
+        EXPECT_TRUE(i < 2 || decisions[i].value > 0);
+        if (i + 1 < decisions.size()) {
+            EXPECT_FALSE(decisions[i].stop);
+        }
+    }
+    for (const size_t back : {1, 3, 5}) EXPECT_LT(decisions[decisions.size() - back].value, 1.5);
+    EXPECT_GE(decisions[decisions.size() - 7].value, 1.5);
+}
+
+TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
+    const NoiseVisibility visibility{.reference = 1 << 30};
+    const auto spp = [&](double threshold) {
+        return 20.0 *
+               double(Decide(MakeEntropyRule(threshold, visibility, 20).get(), 0, 9000).size());
+    };
+    const double once = spp(0.8), half = spp(0.4);
+    EXPECT_NEAR(half / once, 4, 0.8);
+}
+
+TEST(EntropyRule, LooksWhereRecordingsHavePasses) {
+    for (const int spp : {20, 60, 100, 420, 9980}) EXPECT_TRUE(EntropyRuleLooks(spp, 20)) << spp;
+    for (const int spp : {40, 80, 400, 10000}) EXPECT_FALSE(EntropyRuleLooks(spp, 20)) << spp;
+    EXPECT_TRUE(EntropyRuleLooks(1, 1));
+    EXPECT_FALSE(EntropyRuleLooks(2, 1));
+    EXPECT_TRUE(EntropyRuleLooks(41, 1));
+    EXPECT_TRUE(EntropyRuleLooks(200, 100));
+}
+
+TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
+    const std::vector<Decision> expected = Decide(MakeEntropyRule(1.5, {}, 20).get(), 0, 4000);
+    for (const int split : {20, 60, 120, 200}) {
+        const auto before = MakeEntropyRule(1.5, {}, 20), after = MakeEntropyRule(1.5, {}, 20);
+        Decide(before.get(), 0, split);
+        after->Restore(before->Save());
+        EXPECT_EQ(after->Save(), before->Save());
+        const std::vector<Decision> rest = Decide(after.get(), split, 4000);
+        ASSERT_EQ(rest.size() + size_t(split / 20), expected.size());
+        for (size_t i = 0; i < rest.size(); ++i)
+            EXPECT_EQ(rest[i].value, expected[size_t(split / 20) + i].value);
+    }
+}
+
+TEST(EntropyRule, RefusesOtherState) {
+    const auto rule = MakeEntropyRule(1.5, {}, 20);
+    Decide(rule.get(), 0, 300);
+    const std::vector<std::byte> state = rule->Save();
+    for (size_t size = 0; size < state.size(); size += 97)
+        EXPECT_THROW(MakeEntropyRule(1.5, {}, 20)->Restore(std::span(state).first(size)),
+                     std::runtime_error);
+    std::vector<std::byte> longer = state;
+    longer.push_back({});
+    EXPECT_THROW(MakeEntropyRule(1.5, {}, 20)->Restore(longer), std::runtime_error);
+    EXPECT_THROW(MakeCriterionFactory("lnoise:1").make({})->Restore(state), std::runtime_error);
+}
+
+TEST(EntropyRule, IsARule) {
+    const CriterionFactory factory = MakeCriterionFactory("entropy:0.5");
+    EXPECT_EQ(factory.rule, "entropy:0.5");
+    EXPECT_EQ(factory.smallestSide, smallestVotingSide);
+    const auto rule = factory.make({});
+    EXPECT_EQ(rule->Need(20), ViewNeed::Mean);
+    EXPECT_EQ(rule->Need(40), ViewNeed::Nothing);
+    EXPECT_TRUE(MakeCriterionFactory("entropy").rule.starts_with("entropy:0."));
+    EXPECT_THROW(MakeCriterionFactory("entropy:0"), std::invalid_argument);
+    EXPECT_THROW(MakeCriterionFactory("entropy:"), std::invalid_argument);
+    EXPECT_THROW(rule->Observe(BlockImage(9, 40, 0.5f).At(20)), std::invalid_argument);
+}
+
+TEST(EntropyRule, ComparesWithThePictureAtALargerCap) {
+    const auto valueAt = [](int cap) {
+        const auto rule = MakeCriterionFactory("entropy:0.01", {.cap = cap}).make({});
+        return Decide(rule.get(), 0, 5020).back().value;
+    };
+    const double standard = valueAt(0);
+    EXPECT_EQ(valueAt(10000), standard);
+    EXPECT_EQ(valueAt(6000), standard);
+    EXPECT_NEAR(valueAt(1 << 24) / standard, 1 / std::sqrt(1 - 0.502), 1e-3);
+}
+
+TEST(EntropyRule, SurvivesAnyBlock) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const float value :
+         {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+        const auto rule = MakeEntropyRule(0.6, {}, 20);
+        const BlockImage block(41, 57, value);
+        int stop = 0;
+        for (int spp = 20; spp <= 200 && stop == 0; spp += 20) {
+            const Decision decision = rule->Observe(block.At(spp));
+            EXPECT_TRUE(decision.value >= 0 && std::isfinite(decision.value)) << value;
+            if (decision.stop) stop = spp;
+        }
+        EXPECT_EQ(stop, 140) << value;
+    }
+}
+
+}  // namespace
+}  // namespace lull
