@@ -17,6 +17,9 @@ Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
   noise, noise_mean, masked_noise, detail_masked_noise, half_noise, lightness, deviation, texture
                      statistics of 10x10 sub-blocks, never normalised over the window
+  entropy_drop, entropy_drop_h1, entropy_drop_h2
+                     the fall of these entropies since half as many samples
+  visible_drop       the noise in lightness that the fall of H makes visible, of 10x10 sub-blocks
   logspp             the logarithm of the samples per pixel
 --pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
 rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %.
@@ -93,6 +96,14 @@ void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most
         ->capture_default_str();
 }
 
+void AddReal(CLI::App& app, const std::string& name, double* value, double least, double most,
+             const std::string& help) {
+    app.add_option(name, *value, help)
+        ->check(CLI::Range(least, most))
+        ->type_name("X")
+        ->capture_default_str();
+}
+
 void AddSettings(CLI::App& app, ModelSettings* s) {
     AddNumber(app, "--k", &s->k, 1, 1000, "Steps in a window");
     AddNumber(app, "--n", &s->n, 1, 1000000, "Spp between the steps");
@@ -106,6 +117,19 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
     app.add_flag("--snorm,!--no-snorm", s->snorm,
                  "Normalise entropies over the window [the default]");
     app.add_flag("--bnorm", s->bnorm, "Normalise the entropies of each step");
+    AddNames(app, "--spacing", ParseSpacing, &s->spacing,
+             "Steps of a window n spp apart (fixed), or each at --ratio times\nthe spp of the one "
+             "before, looked at every n spp (geometric) [fixed]");
+    AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Ratio of geometric spacing");
+    NoiseVisibility* v = &s->visibility;
+    AddReal(app, "--mask", &v->mask, 1e-3, 1e9,
+            "visible_drop: detail of deviation d hides noise, 1 / (1 + d / X)");
+    AddReal(app, "--flare", &v->flare, 0.0, 1.0,
+            "visible_drop: light that the screen reflects, as a share of white");
+    AddNumber(app, "--reference", &v->reference, 1, 1 << 30,
+              "visible_drop: spp N of the picture that people compared with");
+    AddReal(app, "--nearness", &v->nearness, 0.0, 10.0,
+            "visible_drop: noise counts (1 - spp / N)^X");
     AddNumber(app, "--votes", &s->votes, 1, 1000, "Noiseless votes in a row that stop a block");
     app.add_option("--vote-spacing", s->voteSpacing, "Spp between votes [n]")
         ->check(CLI::Range(1, 1000000))
@@ -134,6 +158,8 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
                  "Let each viewpoint count the same, however many blocks of it there are");
     app.add_flag("--class-weights,!--no-class-weights", t->balanceClasses,
                  "Let noisy and noiseless samples count the same, as in the paper [the default]");
+    AddReal(app, "--noisy-weight", &t->noisyWeight, 1e-3, 1e3,
+            "What noisy samples count more: fewer stops too early");
 }
 
 void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,

@@ -150,6 +150,12 @@ TEST(Trainer, LetsEachViewpointCountTheSame) {
     EXPECT_NEAR(probability(-1), 0.2, 0.02);
     options.balanceViewpoints = false;
     EXPECT_NEAR(probability(1), 0.75, 0.02);
+    // Noisy samples that count three times: odds of 9 to 1 and 3 to 4.
+    options.noisyWeight = 3;
+    EXPECT_NEAR(probability(1), 0.9, 0.02);
+    EXPECT_NEAR(probability(-1), 3 / 7.0, 0.02);
+    options.noisyWeight = 0;
+    EXPECT_THROW(Train(samples, options), std::invalid_argument);
 }
 
 TEST(Trainer, RefusesWhatCannotBeLearned) {
