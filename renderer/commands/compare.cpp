@@ -103,8 +103,10 @@ Job Prepare(const CompareOptions& options) {
     job.rules.push_back(MakeRule("automatic", automatic));
     std::string humanChecksum = "none";
     if (!options.human.empty() && !IsImage(options.human)) {
+        RenderSettings plain = settings;
+        plain.caution = 1;
         const CriterionFactory human =
-            ReadRule("--human", "thresholds:" + options.human, settings, input.region);
+            ReadRule("--human", "thresholds:" + options.human, plain, input.region);
         job.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
     }

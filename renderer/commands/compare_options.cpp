@@ -39,6 +39,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
                      ->type_name("RULE")
                      ->needs(scene)
                      ->capture_default_str();
+    AddCautionOption(app, &o->render.caution);
     app.add_option("--human", o->human, "Thresholds of people, or an image rendered with them")
         ->type_name("H.csv[:NAME]|H.exr");
     app.add_option("--automatic", o->automatic, "Image rendered before by an automatic rule")

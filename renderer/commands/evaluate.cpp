@@ -23,6 +23,7 @@ struct Options {
     bool rivals = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
     JudgeOptions judge;
+    double caution = 1;
 };
 
 constexpr const char* kFooter =
@@ -30,10 +31,10 @@ constexpr const char* kFooter =
 have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
 
-Rules for --stop: learned[:MODEL.h5], lnoise[:T], dammertz[:T], cycles:T, luxtile:T, fixed:N and
-thresholds:FILE. --rivals runs lnoise, dammertz, cycles and luxtile, each with the one setting that
-is best on the other viewpoints (leave one out); "setting" says which, and for all what would be
-best on all of them.
+Rules for --stop: learned[:NAME|:MODEL.h5], entropy[:T], lnoise[:T], dammertz[:T], cycles:T,
+luxtile:T, fixed:N and thresholds:FILE. --rivals runs entropy, lnoise, dammertz, cycles and luxtile,
+each with the one setting that is best on the other viewpoints (leave one out); "setting" says
+which, and for all what would be best on all of them.
 
 Columns:
   views   how many viewpoints, and in them
@@ -74,6 +75,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("RULE");
+    AddCautionOption(app, &o->caution);
     app.add_flag("--rivals", o->rivals, "Judge the rules that have one setting");
     const std::map<std::string, ChooseBy> choices = {{"error", ChooseBy::AbsoluteError},
                                                      {"critical", ChooseBy::CriticalError}};
@@ -167,8 +169,9 @@ std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const
         for (Rival& rival : JudgeRivals(blocks, options.chooseBy, options.judge.grid))
             rules.push_back(
                 {rival.rule, fmt::format("{:.3g}", rival.bestOfAll), std::move(rival.viewpoints)});
+    const RuleContext context{.models = ModelFolder(), .caution = options.caution};
     for (const std::string& rule : options.rules)
-        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, DefaultModel()), "")});
+        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, context), "")});
     const bool anyShort = std::ranges::any_of(
         blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
     for (const std::string& path : options.predicted) {

@@ -28,7 +28,8 @@ struct Options {
 
 constexpr const char* kFooter =
     R"(Stopping rules (--stop):
-  learned[:MODEL.h5]      until a network that was trained on human judgements sees no noise
+  learned[:NAME|:M.h5]    until a network that was trained on human judgements sees no noise
+  entropy[:T]             until the noise that the fall of SVD-entropy shows is below T (0.64)
   lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.65)
   dammertz[:T]            until a block's mean error in square-root brightness is below T (0.02)
   cycles:T                until every pixel of the block has an error below T
@@ -69,6 +70,7 @@ void AddOptions(CLI::App& app, Options* o) {
     auto* stop = app.add_option("--stop", o->rule, "When blocks stop; see below")
                      ->type_name("RULE")
                      ->capture_default_str();
+    AddCautionOption(app, &o->render.caution);
     app.add_option("--spp", o->spp, "Samples per pixel, the same for all: --stop fixed:N")
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N")

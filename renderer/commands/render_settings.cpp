@@ -23,6 +23,15 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
         ->default_str(*estimator == Estimator::Combined ? "combined" : "pbrt-v3");
 }
 
+void AddCautionOption(CLI::App& app, double* caution) {
+    app.add_option("--caution", *caution,
+                   "Divides the threshold of visible noise (entropy, lnoise, learned): 2 stops\n"
+                   "later, rarely too early, 0.5 sooner")
+        ->check(CLI::Range(0.01, 100.0))
+        ->type_name("X")
+        ->capture_default_str();
+}
+
 void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Samples per pixel that no block exceeds [10000]")
@@ -61,9 +70,9 @@ int FixedSpp(const std::string& rule) {
     return spp;
 }
 
-std::string DefaultModel() {
+std::string ModelFolder() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-    return (program.parent_path().parent_path() / "share/lull/models/learned.h5").string();
+    return (program.parent_path().parent_path() / "share/lull/models").string();
 }
 
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,
@@ -71,8 +80,10 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),
+                              .cap = schedule.cap,
                               .sceneName = SceneName(settings.scene.file),
-                              .defaultModel = DefaultModel()};
+                              .models = ModelFolder(),
+                              .caution = settings.caution};
     return MakeCriterionFactory(rule, context);
 } catch (const std::logic_error& e) {
     throw Error(option + ": " + e.what());

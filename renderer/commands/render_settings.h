@@ -14,6 +14,7 @@ struct RenderSettings {
     Estimator estimator = Estimator::Combined;
     uint64_t seed = 0;
     CheckpointOptions checkpoint;
+    double caution = 1;  // see RuleContext
     bool quiet = false, jsonProgress = false;
 };
 
@@ -24,11 +25,14 @@ void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler
 // Adds --estimator, which stays as it is where the user says nothing.
 void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 
+// Adds --caution.
+void AddCautionOption(CLI::App& app, double* caution);
+
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 
-// Returns where the model of `learned` is installed: beside the program, wherever that is.
-std::string DefaultModel();
+// Returns where models are installed: beside the program, wherever that is.
+std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
 // Error that a bad rule is.

@@ -19,7 +19,7 @@ namespace {
 struct SelftestOptions {
     HardCaseOptions cases;
     std::string only;  // a part of the names of those to run; empty: all
-    std::string model = DefaultModel();
+    std::string model = ModelPath("", ModelFolder());
     bool markdown = false;
 };
 
@@ -89,7 +89,7 @@ void PrintHeavyTails(const SelftestOptions& options) {
         "better at the cap, the error the relative RMS over the pixels; unseen is the share of "
         "the\npixels that have not seen the rare light when the block stops.\n");
     std::vector<std::string> rules = UsualRules();
-    for (const char* loose : {"dammertz:0.1", "cycles:0.1", "luxtile:0.1", "lnoise:2"})
+    for (const char* loose : {"dammertz:0.1", "cycles:0.1", "luxtile:0.1", "lnoise:2", "entropy:2"})
         rules.push_back(loose);
     rules.push_back("learned:" + options.model);
     for (const Tail& tail : HeavyTails()) {
