@@ -62,7 +62,7 @@ std::vector<Tail> HeavyTails() {
 }
 
 std::vector<std::string> UsualRules() {
-    return {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5"};
+    return {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5", "entropy:0.64"};
 }
 
 std::vector<StopOutcome> StopBlocks(const Tail& tail, const std::vector<std::string>& rules,

@@ -49,7 +49,8 @@ void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, F
 HardCaseResult Sizes(const HardCaseOptions&) {
     Failures wrong;
     for (const Vec2i& size : {Vec2i(1, 1), Vec2i(199, 201), Vec2i(201, 1), Vec2i(10'000, 20)})
-        for (const char* rule : {"fixed:20", "dammertz:0.06", "lnoise:2", "luxtile:0.5"})
+        for (const char* rule :
+             {"fixed:20", "dammertz:0.06", "lnoise:2", "luxtile:0.5", "entropy:2"})
             Check(size, 200, rule, 60, &wrong);
     return wrong.Result("pixels");
 }
@@ -57,7 +58,7 @@ HardCaseResult Sizes(const HardCaseOptions&) {
 HardCaseResult SmallBlocks(const HardCaseOptions&) {
     Failures wrong;
     for (const int blockSize : {1, 7, 19, 39, 41, 1000})
-        for (const char* rule : {"dammertz:0.06", "lnoise:2", "cycles:0.2"})
+        for (const char* rule : {"dammertz:0.06", "lnoise:2", "cycles:0.2", "entropy:2"})
             Check({83, 47}, blockSize, rule, 100, &wrong);
     return wrong.Result("pixels");
 }

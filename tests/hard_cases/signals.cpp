@@ -80,14 +80,15 @@ std::shared_ptr<const Model> RandomModel(float range, unsigned seed) {
 // Shows blocks to every rule that looks at them; all answers have to be numbers in their range.
 void ObserveAll(const BlockImage& block, const std::string& name, Failures* failures) {
     std::vector<std::unique_ptr<Criterion>> criteria;
-    for (const char* rule : {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5"})
+    for (const char* rule :
+         {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5", "entropy:0.64"})
         criteria.push_back(MakeCriterionFactory(rule).make({}));
     for (const float range : {0.1f, 1.f, 1e4f})
         criteria.push_back(MakeLearned(RandomModel(range, 1), 20));
     for (size_t i = 0; i < criteria.size(); ++i)
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision d = criteria[i]->Observe(block.At(spp));
-            const double most = i < 4 ? std::numeric_limits<double>::max() : 1;
+            const double most = i < 5 ? std::numeric_limits<double>::max() : 1;
             failures->Note(!(d.value >= 0 && d.value <= most),
                            [&] { return fmt::format("{}, rule {}, {} spp", name, i, spp); });
             if (d.stop) break;
@@ -112,8 +113,11 @@ HardCaseResult AnySignal(const HardCaseOptions&) {
 // each stops as early as it can at all.
 HardCaseResult Flicker(const HardCaseOptions&) {
     std::vector<HardCaseResult> results;
-    const std::pair<const char*, int> earliest[] = {
-        {"dammertz:0.02", 20}, {"cycles:0.01", 80}, {"luxtile:0.0234375", 40}, {"lnoise:0.5", 60}};
+    const std::pair<const char*, int> earliest[] = {{"dammertz:0.02", 20},
+                                                    {"cycles:0.01", 80},
+                                                    {"luxtile:0.0234375", 40},
+                                                    {"lnoise:0.5", 60},
+                                                    {"entropy:0.64", 140}};
     for (const auto& [rule, spp] : earliest) {
         const auto criterion = MakeCriterionFactory(rule).make({});
         BlockImage block(100, 100, 0.18f);
@@ -126,6 +130,67 @@ HardCaseResult Flicker(const HardCaseOptions&) {
         }
         results.push_back(result);
     }
+    return Worst(results);
+}
+
+// Returns a picture without noise: flat, a fine checkerboard, stripes or a random pattern, with a
+// contrast of about 20 in lightness.
+float Pattern(int kind, int x, int y) {
+    const bool odd = kind == 1   ? (x + y) % 2
+                     : kind == 2 ? x / 3 % 2
+                                 : (unsigned(x * 7919 + y * 104729) * 2654435761u >> 31) != 0;
+    return kind == 0 ? 0.2f : odd ? 0.3f : 0.15f;
+}
+
+// Texture alone is no noise, however fine it is: nothing falls.
+HardCaseResult PureTexture(const HardCaseOptions&) {
+    std::vector<HardCaseResult> results;
+    for (const int side : {40, 200})
+        for (int kind = 0; kind < 4; ++kind) {
+            const auto criterion = MakeCriterionFactory("entropy:0.64").make({});
+            BlockImage block(side, side, 0);
+            for (int y = 0; y < side; ++y)
+                for (int x = 0; x < side; ++x)
+                    std::fill_n(block.Mean(x, y), 3, Pattern(kind, x, y));
+            HardCaseResult result{140, 10'000, 0, fmt::format("spp; pattern {}", kind)};
+            for (int spp = 20; spp <= 1000; spp += 20) {
+                if (!criterion->Observe(block.At(spp)).stop) continue;
+                result.ours = spp;
+                break;
+            }
+            results.push_back(result);
+        }
+    return Worst(results);
+}
+
+// Noise on it is seen as on a flat block, with the steps of 8 bits, which are 0.4 in lightness; in
+// blocks of 40 pixels, whose sub-blocks have 4 x 4, fine texture makes it count more, but never
+// less. The answer is its standard deviation in lightness when the rule stops.
+HardCaseResult NoiseOnTexture(const HardCaseOptions& options) {
+    std::vector<HardCaseResult> results;
+    for (const int side : {40, 200})
+        for (int kind = 0; kind < 4; ++kind) {
+            const auto criterion = MakeCriterionFactory("entropy:0.64").make({});
+            test::Random random(unsigned(options.seed) + unsigned(kind));
+            HardCaseResult result{0.4, 0, side == 200 ? 0.2 : 0.35,
+                                  fmt::format("{} pixels, pattern {}", side, kind)};
+            for (int spp = 20; spp <= 8020; spp += 40) {
+                const double noise = 10 / std::sqrt(spp);
+                BlockImage block(side, side, 0);
+                for (int y = 0; y < side; ++y)
+                    for (int x = 0; x < side; ++x) {
+                        const double mean = Pattern(kind, x, y);
+                        const double slope = 116 / 3.0 * std::pow(mean, -2 / 3.0);
+                        // Uniform, of standard deviation 1.
+                        const double draw = (random.Float() - 0.5) * std::sqrt(12);
+                        std::fill_n(block.Mean(x, y), 3, float(mean + draw * noise / slope));
+                    }
+                if (!criterion->Observe(block.At(spp)).stop) continue;
+                result.ours = noise;
+                break;
+            }
+            results.push_back(result);
+        }
     return Worst(results);
 }
 
@@ -218,6 +283,11 @@ std::vector<HardCase> SignalCases() {
              "NaN that is below every threshold, or never", AnySignal},
             {"signals", "one pixel of 10,000 flickers by one 8-bit code",
              "a rule waits for ever for what nobody sees", Flicker},
+            {"signals", "pure texture before the rule entropy, blocks of 40 and 200 pixels",
+             "fine detail taken for noise", PureTexture},
+            {"signals",
+             "noise on texture, 8-bit steps, blocks of 40 and 200 pixels: where entropy stops",
+             "texture or rounding hides noise, or is taken for it", NoiseOnTexture},
             {"signals", "window of equal entropies", "0/0 in the normalisation", ConstantWindow},
             {"signals", "window of entropies that differ by their last bit",
              "values outside of [0, 1] by rounding", LastBitWindow},
