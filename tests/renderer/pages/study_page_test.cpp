@@ -95,7 +95,9 @@ TEST(MakeCollectedPage, ShowsTheImageOfItsStudy) {
     viewpoint.study = StudyId(study);
     viewpoint.levels = study.levels;
     viewpoint.observers = 1;
-    viewpoint.blocks = {{.mean = 40}, {.mean = 20}};
+    viewpoint.blocks.resize(2);
+    viewpoint.blocks[0].mean = 40;
+    viewpoint.blocks[1].mean = 20;
     collected.refused = {{"bad.json", "</script>"}};
     const std::string reference = json["references"][0].get<std::string>();
     const std::string page = MakeCollectedPage(collected, json);
