@@ -22,8 +22,9 @@ class Follower final : public RankExecutor {
         bool told = false;
         while (!ended) {
             Exchange();
-            if (!told && IsCancelled()) Post(0, Pack(RankWord::Interrupted));
-            told = IsCancelled();
+            if (told || !IsCancelled()) continue;
+            Post(0, Pack(RankWord::Interrupted));
+            told = true;
         }
         Quiesce();
         return Result();
