@@ -173,6 +173,10 @@ TEST(BadInput, BadModelFile) {
     directory.Write("model.h5", "not HDF5 at all");
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:model.h5", {"model.h5"});
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:gone.h5", {"gone.h5"});
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:gone",
+                  {"gone", "entropy, ", "noise, paper"});
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --stop dammertz --caution 2",
+                  {"caution", "entropy, lnoise"});
 }
 
 // What is broken but harmless is counted, not refused.

@@ -144,12 +144,12 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "room.csv\nroom.html\n");
     const std::string csv = ReadBytes(directory.File("room.csv"));
-    for (const char* part :
-         {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,", "\nlnoise,0.5,random,",
-          "\nlearned,,sobol,", "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
+    for (const char* part : {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,",
+                             "\nlnoise,0.5,random,", "\nentropy,0.5,random,", "\nlearned,,sobol,",
+                             "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
         EXPECT_TRUE(Contains(csv, part)) << part << csv;
-    // Fixed, 4 sweeps of 8, learned and the extra rule, for both samplers, and the line of names.
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 32 + 2) + 1);
+    // Fixed, 5 sweeps of 8, learned and the extra rule, for both samplers, and the line of names.
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 40 + 2) + 1);
     for (const auto& entry : std::filesystem::directory_iterator(directory.path))
         EXPECT_FALSE(Contains(entry.path().string(), "checkpoint")) << entry.path();
 }
