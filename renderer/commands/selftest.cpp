@@ -19,7 +19,7 @@ namespace {
 struct SelftestOptions {
     HardCaseOptions cases;
     std::string only;  // a part of the names of those to run; empty: all
-    std::string model = ModelPath("", ModelFolder());
+    std::string model = ModelFolder() + "/" + defaultModelName + ".h5";
     bool markdown = false;
 };
 
