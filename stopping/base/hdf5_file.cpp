@@ -251,6 +251,10 @@ void Hdf5Group::SetStrings(const std::string& name, std::span<const std::string>
     WriteAttribute(*id, name, type, space, padded.data());
 }
 
+bool Hdf5Group::HasArray(const std::string& name) const {
+    return H5Lexists(*id, name.c_str(), H5P_DEFAULT) > 0;
+}
+
 std::vector<int64_t> Hdf5Group::Shape(const std::string& path) const {
     const std::string what = "find the array '" + path + "'";
     const Handle data(H5Dopen2(*id, path.c_str(), H5P_DEFAULT), H5Dclose, what);

@@ -46,6 +46,7 @@ class Hdf5Group {
 
     // Read and write arrays of T, one of float, double, int32_t and std::byte, row-major. Array()
     // checks the shape before it takes memory for the array.
+    bool HasArray(const std::string& name) const;
     std::vector<int64_t> Shape(const std::string& path) const;
     template <typename T>
     std::vector<T> Array(const std::string& path, std::span<const int64_t> shape) const;

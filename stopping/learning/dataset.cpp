@@ -22,8 +22,11 @@ float RoundBits(float value, int bits) {
     return std::bit_cast<float>((std::bit_cast<uint32_t>(value) + half) & ~mask);
 }
 
-bool IsEntropy(const Channel& channel) {
-    return channel.name.starts_with('h') && channel.count > 1 && channel.name != "half_noise";
+// What is looked at relative to its own change over a window needs more bits.
+int SignificantBits(const Channel& channel) {
+    const bool isEntropy =
+        channel.name.starts_with('h') && channel.count > 1 && channel.name != "half_noise";
+    return isEntropy || channel.name == "attributes26" ? 19 : 12;
 }
 
 std::string BlockName(int block) {
@@ -45,10 +48,11 @@ void WriteBlock(const BlockRecording& block, Hdf5Group group) {
     const std::vector<int32_t> stops(block.cyclesStops.begin(), block.cyclesStops.end());
     group.AddArray<int32_t>("cycles_stops", std::array{int64_t(stops.size())}, stops);
     for (const Channel& channel : kChannels) {
+        if (block.absent[ChannelIndex(channel.name)]) continue;
         std::vector<float> values;
         for (int i = 0; i < block.Count(); ++i)
             for (const float v : block.Values(i, channel.name))
-                values.push_back(RoundBits(v, IsEntropy(channel) ? 19 : 12));
+                values.push_back(RoundBits(v, SignificantBits(channel)));
         group.AddArray<float>(std::string(channel.name), std::array{count, int64_t(channel.count)},
                               values, Hdf5Storage::Compressed);
     }
@@ -68,6 +72,10 @@ BlockRecording ReadBlock(const Hdf5Group& group) {
 
     block.values.resize(spp.size() * kRecordLength);
     for (const Channel& channel : kChannels) {
+        if (channel.optional && !group.HasArray(std::string(channel.name))) {
+            block.absent.set(ChannelIndex(channel.name));
+            continue;
+        }
         const std::vector<float> values = group.Array<float>(
             std::string(channel.name), std::array{shape[0], int64_t(channel.count)});
         const size_t offset = size_t(ChannelOffset(channel.name));

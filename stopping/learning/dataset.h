@@ -23,11 +23,12 @@ struct ViewpointRecording {
     std::map<int, std::string> blockNotes;  // what each recording cost
 };
 
-// Reads all viewpoints of a file. Throws std::runtime_error beginning with the file's name.
+// Reads all viewpoints of a file. Blocks may lack optional channels, each by itself. Throws
+// std::runtime_error beginning with the file's name.
 std::vector<ViewpointRecording> ReadDataset(const std::string& path);
 
-// Returns the bytes of a data set file. Statistics are rounded to 12 significant bits and entropies
-// to 19, which compresses them to half their size.
+// Returns the bytes of a data set file. Statistics are rounded to 12 significant bits, entropies
+// and attributes to 19, which compresses them to half their size.
 std::vector<std::byte> EncodeDataset(std::span<const ViewpointRecording> viewpoints);
 
 // Adds the blocks of a viewpoint, in place of those that were there; a new viewpoint if there was

@@ -22,15 +22,21 @@ void Append(std::span<const float> from, std::vector<float>* to) {
     to->insert(to->end(), from.begin(), from.end());
 }
 
-// Appends the entropies h4 ... h400, h1 and h2.
-void AppendEntropies(const BlockView& view, std::vector<float>* to) {
+// Returns L of the display image.
+std::vector<double> DisplayedLightness(const BlockView& view) {
     std::vector<uint8_t> srgb(view.mean.size());
     EncodeSrgb8(view.mean, srgb);
     std::vector<double> lightness(view.mean.size() / 3);
     Lightness(srgb, lightness);
+    return lightness;
+}
+
+// Appends the entropies h4 ... h400, h1 and h2.
+void AppendEntropies(std::span<const double> lightness, int width, int height,
+                     std::vector<float>* to) {
     std::vector<float> h1, h2;
     for (const int m : {4, 25, 100, 400})
-        for (const SvdEntropy& e : SubBlockEntropies(lightness, view.width, view.height, m)) {
+        for (const SvdEntropy& e : SubBlockEntropies(lightness, width, height, m)) {
             to->push_back(float(e.h));
             if (m != kStatisticsSubBlocks) continue;
             h1.push_back(float(e.h1));
@@ -42,7 +48,8 @@ void AppendEntropies(const BlockView& view, std::vector<float>* to) {
 
 // Computes a record: all channels in their order.
 void AppendRecord(const BlockView& view, std::vector<float>* to) {
-    AppendEntropies(view, to);
+    const std::vector<double> lightness = DisplayedLightness(view);
+    AppendEntropies(lightness, view.width, view.height, to);
     const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
                                                           view.height, kStatisticsSubBlocks);
     for (const std::vector<float>* channel : {&s.lightness, &s.deviation, &s.texture, &s.noise,
@@ -50,26 +57,30 @@ void AppendRecord(const BlockView& view, std::vector<float>* to) {
         Append(*channel, to);
     to->push_back(float(DammertzError(view)));
     to->push_back(float(LuxTileError(view)));
+    for (const double v : ComputeAttributes(lightness, view.width, view.height))
+        to->push_back(float(v));
 }
 
 }  // namespace
 
+size_t ChannelIndex(std::string_view name) {
+    const auto channel = std::ranges::find(kChannels, name, &Channel::name);
+    if (channel == kChannels.end())
+        throw std::invalid_argument("nothing called '" + std::string(name) + "' is recorded");
+    return size_t(channel - kChannels.begin());
+}
+
 int ChannelOffset(std::string_view name) {
     int offset = 0;
-    for (const Channel& channel : kChannels) {
-        if (channel.name == name) return offset;
-        offset += channel.count;
-    }
-    throw std::invalid_argument("nothing called '" + std::string(name) + "' is recorded");
+    for (size_t i = 0; i < ChannelIndex(name); ++i) offset += kChannels[i].count;
+    return offset;
 }
 
-int ChannelCount(std::string_view name) {
-    for (const Channel& channel : kChannels)
-        if (channel.name == name) return channel.count;
-    throw std::invalid_argument("nothing called '" + std::string(name) + "' is recorded");
-}
+int ChannelCount(std::string_view name) { return kChannels[ChannelIndex(name)].count; }
 
 std::span<const float> BlockRecording::Values(int i, std::string_view channel) const {
+    if (absent[ChannelIndex(channel)])
+        throw std::invalid_argument("a block was recorded without '" + std::string(channel) + "'");
     return std::span(values).subspan(size_t(i) * kRecordLength + size_t(ChannelOffset(channel)),
                                      size_t(ChannelCount(channel)));
 }
@@ -125,7 +136,9 @@ void Recorder::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
     reader.Expect(recorderTag);
     if (reader.Get<int32_t>() != kRecordLength)
-        throw std::runtime_error("the saved recording has other channels");
+        throw std::runtime_error(
+            "the saved recording has other channels: it can be finished only by the version of "
+            "lull that began it");
     const int32_t count = reader.Get<int32_t>();
     if (count < 0 || size_t(count) * kRecordLength * sizeof(float) > reader.Left())
         throw std::runtime_error("the saved recording is damaged");

@@ -3,28 +3,31 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "stopping/rules/criterion.h"
+#include "stopping/signals/attributes26.h"
 
 namespace lull {
 
-// Names numbers that are recorded of a block: one for each of `count` sub-blocks, row-major, or one
-// for the whole block.
+// Names numbers that are recorded of a block: one for each of `count` sub-blocks, row-major, or, of
+// the whole block, one or a list.
 struct Channel {
     std::string_view name;
     int count;
+    bool optional = false;  // blocks that were recorded before it came do not have it
 };
 
 // Holds all of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
 // deviation are mean and standard deviation of L; texture is the mean of t, and noise, noise_mean,
 // masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
-// of those rules (baselines.h).
-inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
+// of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L.
+inline constexpr std::array<Channel, 16> kChannels = {{{"h4", 4},
                                                        {"h25", 25},
                                                        {"h100", 100},
                                                        {"h400", 400},
@@ -38,10 +41,12 @@ inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"masked_noise", 100},
                                                        {"half_noise", 100},
                                                        {"dammertz", 1},
-                                                       {"luxtile", 1}}};
+                                                       {"luxtile", 1},
+                                                       {"attributes26", kAttributes, true}}};
 
-// Returns the place of a channel's first number in a record. Throws std::invalid_argument for a
-// name that there is not.
+// Returns which of kChannels it is, the place of its first number in a record, or how many there
+// are. Each throws std::invalid_argument for a name that there is not.
+size_t ChannelIndex(std::string_view name);
 int ChannelOffset(std::string_view name);
 int ChannelCount(std::string_view name);
 inline constexpr int kRecordLength = [] {
@@ -58,12 +63,14 @@ inline constexpr std::array<double, 13> kCyclesThresholds = {
 // Holds the history of one block.
 struct BlockRecording {
     std::vector<int> spp;       // of the records, increasing
-    std::vector<float> values;  // kRecordLength for each of them
+    std::vector<float> values;  // kRecordLength for each of them, 0 in channels that are absent
+    std::bitset<kChannels.size()> absent;  // which of kChannels this block does not have
     // spp at which `cycles` stopped at each of kCyclesThresholds; 0: not within the recording.
     std::array<int, kCyclesThresholds.size()> cyclesStops = {};
 
     int Count() const { return int(spp.size()); }
-    // Returns the numbers of one channel in record i.
+    // Returns the numbers of one channel in record i. Throws std::invalid_argument for a channel
+    // that the block does not have.
     std::span<const float> Values(int i, std::string_view channel) const;
 };
 

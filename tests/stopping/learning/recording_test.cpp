@@ -7,6 +7,7 @@
 #include "stopping/learning/dataset.h"
 #include "stopping/network/model_inputs.h"
 #include "stopping/rules/baselines.h"
+#include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
@@ -64,6 +65,14 @@ TEST(Recorder, RecordsWhatTheRulesCompute) {
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "texture"), s.texture));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "deviation"), s.deviation));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "lightness"), s.lightness));
+        std::vector<uint8_t> srgb(view.mean.size());
+        EncodeSrgb8(view.mean, srgb);
+        std::vector<double> lightness(srgb.size() / 3);
+        Lightness(srgb, lightness);
+        const std::span<const float> attributes = recording.Values(i, "attributes26");
+        const auto expected = ComputeAttributes(lightness, 80, 60);
+        ASSERT_EQ(attributes.size(), expected.size());
+        for (size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(attributes[k], float(expected[k]));
     }
     EXPECT_THROW(ChannelOffset("no such"), std::invalid_argument);
 }
@@ -154,6 +163,43 @@ TEST(Dataset, KeepsWhatWasRecorded) {
     }
     // What has been read is written to the same bytes.
     EXPECT_EQ(EncodeDataset(read), EncodeDataset(read));
+}
+
+// Files from before there were attributes, to which newer blocks are added.
+TEST(Dataset, HasBlocksWithoutAttributesBesideOthers) {
+    ViewpointRecording older = MakeViewpoint("a");
+    const size_t attributes = ChannelIndex("attributes26");
+    for (auto& [number, block] : older.blocks) block.absent.set(attributes);
+    const ScratchFile file(".h5");
+    WriteBytes(file.path, EncodeDataset({&older, 1}));
+    std::vector<ViewpointRecording> dataset = ReadDataset(file.path);
+    ViewpointRecording more{"a", 16, 10000, 20, older.provenance, {}, {}};
+    more.blocks[7] = RecordNoise(2, 1000);
+    AddToDataset(more, &dataset);
+    WriteBytes(file.path, EncodeDataset(dataset));
+
+    dataset = ReadDataset(file.path);
+    ASSERT_EQ(dataset[0].blocks.size(), 3u);
+    for (const int number : {3, 12}) {
+        const BlockRecording& block = dataset[0].blocks.at(number);
+        EXPECT_EQ(block.absent.count(), 1u);
+        EXPECT_TRUE(block.absent[attributes]);
+        EXPECT_THROW(block.Values(0, "attributes26"), std::invalid_argument);
+        EXPECT_GT(block.Values(0, "luxtile")[0], 0);
+    }
+    EXPECT_TRUE(dataset[0].blocks.at(7).absent.none());
+    for (size_t k = 0; k < 26; ++k) {
+        const float value = more.blocks.at(7).Values(1, "attributes26")[k];
+        EXPECT_NEAR(dataset[0].blocks.at(7).Values(1, "attributes26")[k], value, value * 0x1p-19);
+    }
+}
+
+TEST(Dataset, ReadsWhatTheProjectHas) {
+    const ViewpointRecording read =
+        ReadDataset(LULL_SCENES_DIR "/../stopping/data/coffee-splash-view0.h5").at(0);
+    EXPECT_EQ(read.blocks.size(), 16u);
+    for (const auto& [number, block] : read.blocks)
+        EXPECT_GT(block.Values(block.Count() - 1, "h100")[0], 0) << number;
 }
 
 TEST(Dataset, AddsBlocksOfTheSameRecordingOnly) {
