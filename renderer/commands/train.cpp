@@ -208,8 +208,13 @@ ExitCode RunTrain(const TrainOptions& options) {
     if (!options.output.empty()) CheckWritable(options.output);
     if (!options.csv.empty()) CheckWritable(options.csv);
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<JudgedBlock> judged =
         ReadJudgedBlocks(viewpoints, options.human, options.without);
+    const std::vector<JudgedBlock> blocks = KeepRecorded(judged, options.settings);
+    if (blocks.empty()) throw Error("no block was recorded with attributes26");
+    if (blocks.size() < judged.size())
+        fmt::print(stderr, "lull: {} of {} blocks were recorded without attributes26\n",
+                   judged.size() - blocks.size(), judged.size());
     CheckSpacing(options.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(options, blocks);
     Checkpoint checkpoint(options.output.empty() ? "" : options.output + ".checkpoint",

@@ -20,6 +20,8 @@ Features for --features (also --channels), a list with commas:
   entropy_drop, entropy_drop_h1, entropy_drop_h2
                      the fall of these entropies since half as many samples
   visible_drop       the noise in lightness that the fall of H makes visible, of 10x10 sub-blocks
+  attributes26       how much 13 filters take out of the block, means and deviations; blocks that were
+                     recorded without are left aside
   logspp             the logarithm of the samples per pixel
 --pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
 rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %.
@@ -115,8 +117,8 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
              "What the network is given [H]");
     AddNames(app, "--pool", ParsePools, &s->pools, "Statistics in place of all sub-blocks");
     app.add_flag("--snorm,!--no-snorm", s->snorm,
-                 "Normalise entropies over the window [the default]");
-    app.add_flag("--bnorm", s->bnorm, "Normalise the entropies of each step");
+                 "Normalise entropies, attributes26 too, over the window [the default]");
+    app.add_flag("--bnorm", s->bnorm, "Normalise the entropies, or attributes26, of each step");
     AddNames(app, "--spacing", ParseSpacing, &s->spacing,
              "Steps of a window n spp apart (fixed), or each at --ratio times\nthe spp of the one "
              "before, looked at every n spp (geometric) [fixed]");

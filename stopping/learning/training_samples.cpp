@@ -58,6 +58,17 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     return measures;
 }
 
+std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
+                                      const ModelSettings& settings) {
+    std::vector<JudgedBlock> kept;
+    for (const JudgedBlock& block : blocks)
+        if (std::ranges::find(settings.features, Feature::Attributes26) ==
+                settings.features.end() ||
+            !block.recording->absent[ChannelIndex("attributes26")])
+            kept.push_back(block);
+    return kept;
+}
+
 std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
                                    std::span<const ThresholdsRow> human,
                                    std::vector<std::string>* unknown) {

@@ -16,7 +16,7 @@ SubBlockLightness LightnessOf(const BlockRecording& recording, int i);
 
 // Returns what record i of a block says of the features that the settings ask for. Throws
 // std::invalid_argument if recordings do not have them: entropies are recorded for m = 4, 25, 100
-// and 400, H1 and H2 for m = 100 only.
+// and 400, H1 and H2 for m = 100 only, and older blocks have no attributes.
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
 
 // Names a block that was recorded and that people judged.
@@ -35,6 +35,11 @@ struct JudgedBlock {
 std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
                                    std::span<const ThresholdsRow> human,
                                    std::vector<std::string>* unknown);
+
+// Returns the blocks that were recorded with all that the settings ask for: older recordings have
+// no attributes.
+std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
+                                      const ModelSettings& settings);
 
 // Holds windows, one after the other.
 struct TrainingSamples {

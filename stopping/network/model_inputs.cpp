@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
+#include "stopping/signals/attributes26.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"
@@ -24,14 +26,27 @@ bool NeedsEntropies(const ModelSettings& settings) {
                                [](Feature f) { return IsEntropy(f) || IsDrop(f); });
 }
 
-bool NeedsStatistics(const ModelSettings& settings) {
-    return std::any_of(settings.features.begin(), settings.features.end(), [](Feature f) {
-        return !IsEntropy(f) && !IsDrop(f) && f != Feature::LogSpp;
-    });
+bool NeedsDisplayed(const ModelSettings& settings) {
+    return NeedsEntropies(settings) || Needs(settings, Feature::Attributes26);
 }
 
-void MeasureEntropies(const BlockView& view, const ModelSettings& settings,
+bool NeedsStatistics(const ModelSettings& settings) {
+    return std::any_of(settings.features.begin(), settings.features.end(),
+                       [](Feature f) { return HasSubBlocks(f) && !IsEntropy(f) && !IsDrop(f); });
+}
+
+// Measures what is seen in the display image.
+void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
+    if (Needs(settings, Feature::Attributes26)) {
+        std::vector<uint8_t> srgb(view.mean.size());
+        EncodeSrgb8(view.mean, srgb);
+        std::vector<double> lightness(view.mean.size() / 3);
+        Lightness(srgb, lightness);
+        const auto attributes = ComputeAttributes(lightness, view.width, view.height);
+        measures->Of(Feature::Attributes26).assign(attributes.begin(), attributes.end());
+    }
+    if (!NeedsEntropies(settings)) return;
     for (const SvdEntropy& e : PictureEntropies(view, settings.m)) {
         if (NeedsEntropy(settings, Feature::H)) measures->Of(Feature::H).push_back(e.h);
         if (NeedsEntropy(settings, Feature::H1)) measures->Of(Feature::H1).push_back(e.h1);
@@ -56,7 +71,8 @@ void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
         DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
 }
 
-int SubBlocks(const ModelSettings& settings, Feature feature) {
+int ValueCount(const ModelSettings& settings, Feature feature) {
+    if (feature == Feature::Attributes26) return kAttributes;
     const bool isEntropy =
         IsEntropy(feature) || (IsDrop(feature) && feature != Feature::VisibleDrop);
     return isEntropy ? settings.m : kMeasuredSubBlocks;
@@ -75,7 +91,7 @@ double Pooled(const Pool& pool, std::vector<double> values) {
 
 // Brings values near the unit interval, or to where differences mean the same everywhere.
 double Scaled(Feature feature, double value) {
-    if (IsEntropy(feature)) return value;
+    if (IsNormalized(feature)) return value;
     if (feature == Feature::Lightness) return value / 100;
     if (feature == Feature::Deviation || feature == Feature::Texture)
         return std::log1p(std::max(value, 0.0) / 4) / 2;
@@ -87,14 +103,14 @@ double Scaled(Feature feature, double value) {
 
 ViewNeed NeedOf(const ModelSettings& settings) {
     return NeedsStatistics(settings)  ? ViewNeed::MeanAndHalf
-           : NeedsEntropies(settings) ? ViewNeed::Mean
+           : NeedsDisplayed(settings) ? ViewNeed::Mean
                                       : ViewNeed::Nothing;
 }
 
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
     CheckView(view, NeedOf(settings));
     BlockMeasures measures{.spp = view.spp};
-    if (NeedsEntropies(settings)) MeasureEntropies(view, settings, &measures);
+    if (NeedsDisplayed(settings)) MeasureDisplayed(view, settings, &measures);
     if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
     if (Needs(settings, Feature::VisibleDrop))
         measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);
@@ -107,9 +123,10 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings) {
     for (Feature feature : settings.features) {
         InputRange range{feature, begin, 1, 1};
         if (feature != Feature::LogSpp) {
-            const bool pooled = !settings.pools.empty();
-            range.count = pooled ? int(settings.pools.size()) : SubBlocks(settings, feature);
-            range.side = pooled ? 1 : int(std::lround(std::sqrt(range.count)));
+            const bool pooled = !settings.pools.empty() && HasSubBlocks(feature);
+            range.count = pooled ? int(settings.pools.size()) : ValueCount(settings, feature);
+            if (!pooled && HasSubBlocks(feature))
+                range.side = int(std::lround(std::sqrt(range.count)));
         }
         ranges.push_back(range);
         begin += range.count;
@@ -131,12 +148,14 @@ std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettin
             continue;
         }
         const std::vector<double>& values = measures.Of(feature);
-        if (values.size() != size_t(SubBlocks(settings, feature)))
+        if (values.size() != size_t(ValueCount(settings, feature)))
             throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +
-                                        " do not have one value for each sub-block");
+                                        " do not have as many values as there must be");
         const double factor = IsNoise(feature) ? settings.caution : 1;
-        if (settings.pools.empty())
+        if (settings.pools.empty() || !HasSubBlocks(feature)) {
             for (double v : values) inputs.push_back(Scaled(feature, factor * v));
+            continue;
+        }
         for (const Pool& pool : settings.pools)
             inputs.push_back(Scaled(feature, factor * Pooled(pool, values)));
     }

@@ -15,8 +15,8 @@ namespace lull {
 inline constexpr int kMeasuredSubBlocks = 100;
 
 // Holds what was measured of a block at one spp: for each feature the values of its sub-blocks,
-// row-major (m entropies, kMeasuredSubBlocks of other statistics); empty where it is not asked
-// for, and always for LogSpp.
+// row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
+// empty where it is not asked for, and always for LogSpp.
 struct BlockMeasures {
     int spp = 0;
     std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};

@@ -13,7 +13,7 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 16> featureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 17> featureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
@@ -29,6 +29,7 @@ constexpr std::array<std::pair<Feature, const char*>, 16> featureNames = {
      {Feature::EntropyDrop1, "entropy_drop_h1"},
      {Feature::EntropyDrop2, "entropy_drop_h2"},
      {Feature::VisibleDrop, "visible_drop"},
+     {Feature::Attributes26, "attributes26"},
      {Feature::LogSpp, "logspp"}}};
 
 Feature ParseFeature(const std::string& name) {

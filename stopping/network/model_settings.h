@@ -12,7 +12,8 @@ namespace lull {
 // Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
 // features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
 // the fall of the entropies of m sub-blocks since half as many samples and the noise that it makes
-// visible (see entropy_drop.h; for m = 100), and the logarithm of the spp, one number.
+// visible (see entropy_drop.h; for m = 100), of the whole block how much filters take out of it
+// (see attributes26.h), and the logarithm of the spp, one number.
 enum class Feature {
     H,
     H1,
@@ -29,13 +30,15 @@ enum class Feature {
     EntropyDrop1,
     EntropyDrop2,
     VisibleDrop,
+    Attributes26,
     LogSpp
 };
 
 // Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
 // "noise_mean", "masked_noise", "half_noise", "detail_masked_noise", "entropy_drop" (of H),
-// "entropy_drop_h1", "entropy_drop_h2", "visible_drop" and "logspp"; a list has commas between
-// them. ParseFeatures() throws std::invalid_argument for others, and for one that comes twice.
+// "entropy_drop_h1", "entropy_drop_h2", "visible_drop", "attributes26" and "logspp"; a list has
+// commas between them. ParseFeatures() throws std::invalid_argument for others, and for one that
+// comes twice.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
@@ -53,6 +56,12 @@ inline bool IsNoise(Feature feature) {
     return (feature >= Feature::Noise && feature <= Feature::DetailMaskedNoise) ||
            feature == Feature::VisibleDrop;
 }
+// Says whether a window is normalised over this feature, as the paper did with both of its.
+inline bool IsNormalized(Feature feature) {
+    return IsEntropy(feature) || feature == Feature::Attributes26;
+}
+// Says whether there is a value for each of a number of sub-blocks.
+inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
 
 // Summarises the values of all sub-blocks in one number.
 struct Pool {
@@ -86,10 +95,11 @@ struct ModelSettings {
     int m = 100;  // sub-blocks that entropies are computed of, a square number
     std::vector<Feature> features = {Feature::H};
     std::vector<Pool> pools = {};  // empty: the network is given the value of each sub-block
-    bool snorm = true;             // normalise entropies over the window, each by itself
-    bool bnorm = false;            // normalise the entropies of a step, before that
-    int votes = 3;                 // noiseless votes in a row that stop a block
-    int voteSpacing = 0;           // spp between votes; 0: vote after every pass
+    // Normalise entropies, and attributes, over the window, each by itself; before that those of a
+    // step together.
+    bool snorm = true, bnorm = false;
+    int votes = 3;        // noiseless votes in a row that stop a block
+    int voteSpacing = 0;  // spp between votes; 0: vote after every pass
     Spacing spacing = Spacing::Fixed;
     double ratio = 2;                 // of geometric spacing, > 1
     NoiseVisibility visibility = {};  // of visible_drop

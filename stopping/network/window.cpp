@@ -59,7 +59,7 @@ const std::vector<double>* FeatureHistory::Find(int spp) const {
     return it != entries.end() && it->spp == spp ? &it->feature : nullptr;
 }
 
-void FeatureHistory::NormalizeEntropies(Eigen::Ref<Eigen::ArrayXXd> window) const {
+void FeatureHistory::NormalizeRange(Eigen::Ref<Eigen::ArrayXXd> window) const {
     if (settings.bnorm)
         for (int step = 0; step < settings.k; ++step)
             window.col(step) = Normalize(window.col(step));
@@ -77,8 +77,8 @@ std::optional<Eigen::MatrixXf> FeatureHistory::WindowAt(int spp) const {
     }
     // Normalise in double: late in a rendering the values of a window differ by little.
     for (const InputRange& range : ranges)
-        if (IsEntropy(range.feature))
-            NormalizeEntropies(window.middleRows(range.begin, range.count));
+        if (IsNormalized(range.feature))
+            NormalizeRange(window.middleRows(range.begin, range.count));
     return window.matrix().cast<float>();
 }
 

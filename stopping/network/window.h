@@ -25,10 +25,11 @@ class FeatureHistory {
     void Add(int spp, std::span<const double> feature);
 
     // Returns the window that ends at `spp`, InputCount() x k, the oldest step first, its entropies
-    // normalised as the settings say (the level of other features matters); nothing unless there
-    // are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the steps are those
-    // that are nearest to spp / ratio, spp / ratio^2, ... of what is kept, eight an octave (see
-    // ladder.h): for k steps 2 + 8 (k - 1) log2(ratio) inputs at most; `spp` is the last one added.
+    // and attributes normalised as the settings say (the level of other features matters); nothing
+    // unless there are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the
+    // steps are those that are nearest to spp / ratio, spp / ratio^2, ... of what is kept, eight an
+    // octave (see ladder.h): for k steps 2 + 8 (k - 1) log2(ratio) inputs at most; `spp` is the
+    // last one added.
     std::optional<Eigen::MatrixXf> WindowAt(int spp) const;
 
     struct Entry {
@@ -41,7 +42,7 @@ class FeatureHistory {
   private:
     const std::vector<double>* FindStep(int spp, int stepsBefore) const;
     const std::vector<double>* Find(int spp) const;
-    void NormalizeEntropies(Eigen::Ref<Eigen::ArrayXXd> window) const;
+    void NormalizeRange(Eigen::Ref<Eigen::ArrayXXd> window) const;
 
     ModelSettings settings;
     std::vector<InputRange> ranges;

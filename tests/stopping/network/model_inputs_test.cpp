@@ -17,7 +17,7 @@ namespace {
 TEST(ModelSettings, NameFeaturesAndPools) {
     const std::string features =
         "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,half_noise,"
-        "detail_masked_noise,logspp";
+        "detail_masked_noise,attributes26,logspp";
     EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
     EXPECT_EQ(PoolNames(ParsePools("mean,rms,p3,p9,q0,q10,q100")), "mean,rms,p3,p9,q0,q10,q100");
     EXPECT_TRUE(ParsePools("").empty());
@@ -93,14 +93,37 @@ TEST(FeatureHistory, NormalisesEntropiesOnly) {
     EXPECT_TRUE(history.WindowAt(40)->isApprox(expected, 1e-6f));
 }
 
+TEST(FeatureHistory, NormalisesAttributesAsEntropies) {
+    const ModelSettings settings = {.k = 2,
+                                    .n = 20,
+                                    .m = 1,
+                                    .features = ParseFeatures("attributes26,H"),
+                                    .pools = ParsePools("mean"),
+                                    .snorm = false,
+                                    .bnorm = true};
+    ASSERT_EQ(InputCount(settings), 27);  // attributes are never pooled
+    EXPECT_EQ(NeedOf(settings), ViewNeed::Mean);
+    FeatureHistory history(settings);
+    for (const int spp : {20, 40}) {
+        BlockMeasures measures{.spp = spp};
+        for (int i = 0; i < 26; ++i) measures.Of(Feature::Attributes26).push_back(spp + i);
+        measures.Of(Feature::H) = {0.5};
+        history.Add(spp, InputVector(measures, settings));
+    }
+    const Eigen::MatrixXf window = *history.WindowAt(40);
+    for (int step = 0; step < 2; ++step)
+        for (int i = 0; i < 26; ++i) EXPECT_NEAR(window(i, step), i / 25.0, 1e-6);
+    EXPECT_EQ(window(26, 1), 0);
+}
+
 // What a network is trained on, from a recording, must be what it is given when it judges.
 TEST(ModelInputs, AreThoseOfRecordings) {
     for (int m : {25, 100}) {
         ModelSettings settings = {.m = m};
         settings.features = ParseFeatures(
             m == 100 ? "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,"
-                       "half_noise,detail_masked_noise,logspp"
-                     : "H,noise,logspp");
+                       "half_noise,detail_masked_noise,attributes26,logspp"
+                     : "H,attributes26,noise,logspp");
         BlockRecording recording;
         Recorder recorder(20, 100, 100, &recording);
         for (int spp = 20; spp <= 100; spp += 20) {
@@ -111,7 +134,8 @@ TEST(ModelInputs, AreThoseOfRecordings) {
             const std::vector<double> recorded =
                 InputVector(MeasuresOf(recording, spp / 20 - 1, settings), settings);
             ASSERT_EQ(recorded.size(), live.size());
-            for (size_t i = 0; i < live.size(); ++i) EXPECT_NEAR(recorded[i], live[i], 1e-6);
+            for (size_t i = 0; i < live.size(); ++i)
+                EXPECT_NEAR(recorded[i], live[i], 1e-6 * std::max(1.0, live[i]));
         }
     }
 }

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "stopping/signals/lightness.h"
 #include "stopping/signals/haar_shrinkage.h"
+#include "stopping/signals/lightness.h"
 #include "tests/stopping/shared_data.h"
 
 namespace lull {
