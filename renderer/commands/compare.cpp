@@ -19,8 +19,6 @@ namespace lull {
 
 namespace {
 
-bool IsImage(const std::string& file) { return file.ends_with(".exr"); }
-
 std::vector<PixelRect> RectsOf(const std::vector<Block>& blocks) {
     std::vector<PixelRect> rects;
     for (const Block& block : blocks) rects.push_back(block.pixels);
@@ -28,8 +26,12 @@ std::vector<PixelRect> RectsOf(const std::vector<Block>& blocks) {
 }
 
 // Writes figures and page, and prints the table and the names of the files, `images` first.
-void WriteReport(const CompareOptions& options, const ComparisonReport& report,
+void WriteReport(const CompareOptions& options, ComparisonReport report,
                  const std::vector<std::string>& images) {
+    if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
+        fmt::print(stderr, "lull: {}\n", note);
+        report.notes.push_back(note);
+    }
     const std::string json = options.output + ".compare.json";
     WriteFileAtomically(json, Dump(ComparisonJson(report)));
     if (!options.report.empty()) WriteFileAtomically(options.report, MakeComparisonPage(report));
@@ -50,8 +52,9 @@ ExitCode CompareFiles(CompareOptions options) {
     if (options.reference.empty() || (options.automatic.empty() && options.human.empty()))
         throw Error(
             "compare: a scene is missing, or images: --reference and --automatic or --human");
-    if (!options.human.empty() && !IsImage(options.human))
-        throw Error("--human " + options.human + ": thresholds need a scene; without one, an .exr");
+    if (!options.human.empty() && !IsImageFile(options.human))
+        throw Error("--human " + options.human +
+                    ": thresholds need a scene; without one, an image");
     CheckOutputs(options);
 
     std::vector<ComparedFile> files;
@@ -63,13 +66,10 @@ ExitCode CompareFiles(CompareOptions options) {
     ComparisonReport report;
     report.title = options.reference;
     Comparison& comparison = report.comparison;
-    comparison.region = files.back().region;
+    comparison.region = CommonRegion(files, options.reference);
     comparison.blocks = RectsOf(MakeBlocks(comparison.region, options.render.schedule));
     comparison.hasReference = true;
     for (ComparedFile& file : files) {
-        if (!(file.region == comparison.region))
-            throw Error(fmt::format("{}: shows another part of the image than the {} one",
-                                    options.reference, file.image.name));
         SetCosts(comparison.blocks, &file);
         comparison.images.push_back(std::move(file.image));
     }
@@ -102,7 +102,7 @@ Job Prepare(const CompareOptions& options) {
     const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);
     job.rules.push_back(MakeRule("automatic", automatic));
     std::string humanChecksum = "none";
-    if (!options.human.empty() && !IsImage(options.human)) {
+    if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = settings;
         plain.caution = 1;
         const CriterionFactory human =
@@ -176,7 +176,11 @@ std::vector<std::string> WriteImages(const CompareOptions& options, const Job& j
 ComparedImage ReadBeside(const std::string& path, const std::string& name,
                          const Comparison& comparison) {
     ComparedFile file = ReadComparedFile(path, name);
-    if (!(file.region == comparison.region))
+    const PixelRect& region = comparison.region;
+    if (file.image.isDisplay && file.region.Width() == region.Width() &&
+        file.region.Height() == region.Height())
+        file.region = region;
+    if (!(file.region == region))
         throw Error(path + ": shows another part of the image than the scene would");
     SetCosts(comparison.blocks, &file);
     if (!file.image.wallSeconds) file.image.wallSeconds = 0;
@@ -201,7 +205,8 @@ ExitCode CompareRenders(CompareOptions options) {
     comparison.cap = settings.schedule.cap;
     comparison.hasReference = true;
     std::vector<ComparedImage> fromFiles;
-    if (IsImage(options.human)) fromFiles.push_back(ReadBeside(options.human, "human", comparison));
+    if (IsImageFile(options.human))
+        fromFiles.push_back(ReadBeside(options.human, "human", comparison));
     if (!options.reference.empty())
         fromFiles.push_back(ReadBeside(options.reference, "reference", comparison));
 
@@ -235,7 +240,7 @@ ExitCode CompareRenders(CompareOptions options) {
         comparison.images.push_back(TakeImage(observed, job.rules, i));
     if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
     for (ComparedImage& image : fromFiles) comparison.images.push_back(std::move(image));
-    if (options.snapshots && IsImage(options.human))  // the reference is to be the last
+    if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
         std::swap(comparison.images.back(), *(comparison.images.end() - 2));
     Measure(&comparison);
     if (options.snapshots)

@@ -16,7 +16,8 @@ images rendered before are compared.
 Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
 lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
 8-bit image that a display shows; "seams", how much more the noise jumps across the borders of
-blocks than inside (1: not at all). Seconds are of processors; "~" marks those that are estimated.
+blocks than inside (1: not at all). Images from files are .exr, or .png and .jpeg for displays, of
+which there are no linear figures. Seconds are of processors; "~" marks those that are estimated.
 
 Files, beside each other:
   OUT.automatic.exr .png, OUT.human..., OUT.reference...   the images, where they were rendered
@@ -27,6 +28,7 @@ Examples:
   lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
   lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
+  lull compare --automatic a.png --reference photo.jpg -o room
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -41,13 +43,13 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
                      ->capture_default_str();
     AddCautionOption(app, &o->render.caution);
     app.add_option("--human", o->human, "Thresholds of people, or an image rendered with them")
-        ->type_name("H.csv[:NAME]|H.exr");
+        ->type_name("H.csv[:NAME]|H.exr|H.png");
     app.add_option("--automatic", o->automatic, "Image rendered before by an automatic rule")
-        ->type_name("A.exr")
+        ->type_name("A.exr|A.png")
         ->excludes(scene)
         ->excludes(stop);
-    auto* reference =
-        app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
+    auto* reference = app.add_option("--reference", o->reference, "Image to compare with")
+                          ->type_name("R.exr|R.png");
     app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
         ->needs(scene)
         ->excludes(reference);

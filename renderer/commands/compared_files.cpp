@@ -1,11 +1,60 @@
 #include "renderer/commands/compared_files.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/output/image_io.h"
 
 namespace lull {
 
+namespace {
+
+std::string ExtensionOf(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) { return std::tolower(c); });
+    return extension;
+}
+
+bool IsDisplayFile(const std::string& path) {
+    const std::string extension = ExtensionOf(path);
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
+ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
+    const Image picture = ReadImage(path);
+    ComparedFile file;
+    file.region = {{0, 0}, {picture.width, picture.height}};
+    file.image.name = name;
+    file.image.isDisplay = true;
+    const size_t channels = size_t(picture.channels);
+    const auto at = [&](size_t i) {
+        return std::visit(
+            [&](const auto& texels) {
+                constexpr bool isBytes = std::is_same_v<decltype(texels[0]), const uint8_t&>;
+                return float(texels[i]) / (isBytes ? 255.f : 1.f);
+            },
+            picture.texels);
+    };
+    RgbImage& image = file.image.image;
+    image = {picture.width, picture.height, {}};
+    for (size_t i = 0; i < size_t(file.region.Area()); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            image.values.push_back(LinearFromSrgb(at(channels * i + (channels < 3 ? 0 : c))));
+    return file;
+}
+
+}  // namespace
+
+bool IsImageFile(const std::string& path) {
+    return ExtensionOf(path) == ".exr" || IsDisplayFile(path);
+}
+
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name) {
+    if (IsDisplayFile(path)) return ReadDisplayFile(path, name);
     const ExrImage exr = ReadExr(path);
     ComparedFile file;
     file.region = {exr.origin, exr.origin + Vec2i(exr.width, exr.height)};
@@ -26,6 +75,29 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
         if (const auto* seconds = std::get_if<float>(&at->second))
             file.image.wallSeconds = double(*seconds);
     return file;
+}
+
+PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference) {
+    const auto isPlaced = [](const ComparedFile& file) { return !file.image.isDisplay; };
+    const auto first = std::ranges::find_if(files, isPlaced);
+    const PixelRect region = first == files.end() ? files.back().region : first->region;
+    for (const ComparedFile& file : files)
+        if (isPlaced(file)
+                ? !(file.region == region)
+                : file.region.Width() != region.Width() || file.region.Height() != region.Height())
+            throw Error(fmt::format("{}: shows another part of the image than the {} one",
+                                    reference, files.front().image.name));
+    return region;
+}
+
+std::string DisplayNote(const Comparison& comparison) {
+    std::string names;
+    for (const ComparedImage& image : comparison.images)
+        if (image.isDisplay) names += (names.empty() ? "" : ", ") + image.name;
+    return names.empty() ? ""
+                         : "Pictures for displays, of 8 bits a channel: " + names +
+                               ". They hold no radiance, so that RMSE and relMSE are left out; "
+                               "their other figures are those of the display image.";
 }
 
 void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {

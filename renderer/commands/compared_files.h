@@ -11,8 +11,21 @@ struct ComparedFile {
     std::vector<float> spp;  // of each pixel; empty: not known
 };
 
-// Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds. Throws Error.
+// Says whether a name is that of an image: .exr, or .png, .jpg and .jpeg, in any case.
+bool IsImageFile(const std::string& path);
+
+// Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds; or a picture
+// for displays, taken as sRGB whatever profile it has, without its alpha, whose region begins at
+// (0, 0). Throws Error.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
+
+// Returns the region of the files: as the EXRs among them have it, and a picture for displays of
+// the same size can be of any part. The last of `files` is the reference, from the file of that
+// name. Throws Error if they do not fit together.
+PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);
+
+// Says what is not measured of pictures for displays; empty if there are none among the images.
+std::string DisplayNote(const Comparison&);
 
 // Sets what each block took where all of its pixels took the same.
 void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file);

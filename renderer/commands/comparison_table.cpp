@@ -14,9 +14,9 @@ std::string ImageLine(const Comparison& comparison, const ComparedImage& image) 
     std::string line = fmt::format("{:<12}", image.name);
     if (image.figures) {
         const ErrorFigures& f = *image.figures;
-        line += fmt::format(" {:>9.4g} {:>9.3g} {:>7.3f} {:>7} {:>8} {:>7.4f}", f.rmse, f.relMse,
-                            f.rmseLightness, Figure("{:.2f}", f.psnr), Figure("{:.5f}", f.ssim),
-                            f.flip);
+        line += fmt::format(" {:>9} {:>9} {:>7.3f} {:>7} {:>8} {:>7.4f}", Figure("{:.4g}", f.rmse),
+                            Figure("{:.3g}", f.relMse), f.rmseLightness, Figure("{:.2f}", f.psnr),
+                            Figure("{:.5f}", f.ssim), f.flip);
     } else {
         line += fmt::format(" {:>9} {:>9} {:>7} {:>7} {:>8} {:>7}", "-", "-", "-", "-", "-", "-");
     }

@@ -1,6 +1,7 @@
 #include "renderer/measure/comparison.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "renderer/base/error.h"
 #include "stopping/rules/baselines.h"
@@ -89,6 +90,15 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
         Paste(snapshot.noise, local, 1, region.Width(), &image->noise);
 }
 
+// Leaves only the figures of the display image.
+void ForgetLinear(ComparedImage* image) {
+    const auto forget = [](ErrorFigures* figures) {
+        figures->rmse = figures->relMse = std::numeric_limits<double>::quiet_NaN();
+    };
+    forget(&*image->figures);
+    for (ErrorFigures& figures : image->blockFigures) forget(&figures);
+}
+
 ScheduleOptions ScheduleFor(const ObservedRule& rule, ScheduleOptions schedule) {
     schedule.smallestSide = rule.smallestSide;
     return schedule;
@@ -117,6 +127,7 @@ void Measure(Comparison* comparison) {
             image.figures = Average(maps);
             for (const PixelRect& block : blocks)
                 image.blockFigures.push_back(Average(maps, block));
+            if (image.isDisplay || comparison->images.back().isDisplay) ForgetLinear(&image);
             image.flip = maps.flip;
             if (image.noise.empty()) image.noise = LightnessError(image.image, *reference);
         }

@@ -25,7 +25,8 @@ struct ComparedImage {
     std::string name;  // automatic, human, reference, or as the user calls it
     std::string rule;  // empty: not known
     RgbImage image;
-    std::vector<float> noise;           // of the lightness, with its sign; empty: not known
+    bool isDisplay = false;    // was a picture for displays, so that its linear values are rounded
+    std::vector<float> noise;  // of the lightness, with its sign; empty: not known
     std::vector<BlockCost> costs;       // of each block; empty: not known
     std::optional<double> wallSeconds;  // as the header of its file says
 

@@ -27,8 +27,8 @@ struct ErrorMaps {
 // Compares two images; not finite values count as 0. Throws Error if their sizes differ.
 ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference);
 
-// Holds figures of an image or a part of it. An infinite PSNR says that the display images are the
-// same; ssim is NaN where no window lies inside the image.
+// Holds figures of an image or a part of it; NaN where one is not known. An infinite PSNR says that
+// the display images are the same; ssim is NaN where no window lies inside the image.
 struct ErrorFigures {
     double rmse = 0;    // of linear radiance
     double relMse = 0;  // mean of squared errors / (reference^2 + 0.01) [Rousselle et al. 2011]

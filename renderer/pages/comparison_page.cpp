@@ -21,6 +21,7 @@ Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
     Json json = {{"name", image.name},
                  {"label", image.rule.empty() ? image.name : image.name + " (" + image.rule + ")"},
                  {"rule", image.rule}};
+    if (image.isDisplay) json["display"] = true;
     if (image.wallSeconds) json["wallSeconds"] = *image.wallSeconds;
     if (image.figures) json["figures"] = FiguresJson(*image.figures);
     if (image.seams)

@@ -1,4 +1,6 @@
 // Runs `lull compare` and `lull bench` as their help describes them.
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -63,6 +65,69 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
     }
     EXPECT_EQ(one["againstHuman"]["spp"], other["againstHuman"]["spp"]);
     EXPECT_EQ(one["images"][2]["cost"]["samples"], 100 * 90 * 160);
+}
+
+// Pictures have the figures of the display image of the EXRs beside them, and no others.
+TEST(Compare, TakesPicturesForDisplays) {
+    const SceneDirectory directory;
+    const std::string part = " --crop 0.25,1,0,1 ";
+    for (const char* spp : {"20", "160"})
+        RunLull(directory, std::string("render scene.pbrt") + kSize + part + "--spp " + spp +
+                               " -o at" + spp + ".exr");
+    const std::string files = "compare --block 40 ";
+    const Outcome exr =
+        RunLull(directory, files + "--automatic at20.exr --reference at160.exr -o exr");
+    ASSERT_EQ(exr.exitCode, 0) << exr.err;
+    EXPECT_FALSE(Contains(exr.err, "displays"));
+    const Json expected = directory.Read("exr.compare.json")["images"][0];
+    for (const char* names :
+         {"--human at20.png --reference at160.exr", "--human at20.exr --reference at160.png",
+          "--human at20.png --reference at160.png --report r.html"}) {
+        const Outcome outcome = RunLull(directory, files + names + " -o png");
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, "of 8 bits a channel: ")) << outcome.err;
+        const Json json = directory.Read("png.compare.json"), image = json["images"][0];
+        EXPECT_TRUE(Contains(json["notes"][0].get<std::string>(), "no radiance"));
+        for (const Json& figures : {image["figures"], image["blocks"][0]}) {
+            EXPECT_TRUE(figures["rmse"].is_null());
+            EXPECT_TRUE(figures["relMse"].is_null());
+        }
+        for (const char* figure : {"rmseLightness", "psnr", "ssim", "flip"}) {
+            EXPECT_EQ(image["figures"][figure], expected["figures"][figure]) << names << figure;
+            EXPECT_EQ(image["blocks"][1][figure], expected["blocks"][1][figure]);
+        }
+    }
+    // Beside a render, too.
+    const Outcome beside =
+        RunLull(directory, std::string("compare scene.pbrt") + kSize + part +
+                               "--stop fixed:20 --reference at160.png --cap 160 -o beside");
+    ASSERT_EQ(beside.exitCode, 0) << beside.err;
+    const Json image = directory.Read("beside.compare.json")["images"][0];
+    EXPECT_EQ(image["figures"]["flip"], expected["figures"]["flip"]);
+    EXPECT_TRUE(image["figures"]["rmse"].is_null());
+}
+
+TEST(Compare, ReadsJpegAndGreyPictures) {
+    const SceneDirectory directory;
+    OIIO::ImageSpec grey(64, 64, 1, OIIO::TypeDesc::UINT8),
+        colour(64, 64, 3, OIIO::TypeDesc::UINT8);
+    const auto write = [&](const char* name, const OIIO::ImageSpec& spec) {
+        const std::vector<uint8_t> texels(size_t(64 * 64 * spec.nchannels), 128);
+        const auto out = OIIO::ImageOutput::create(directory.File(name));
+        ASSERT_TRUE(out && out->open(directory.File(name), spec));
+        ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, texels.data()));
+        out->close();
+    };
+    write("grey.png", grey);
+    write("colour.JPG", colour);
+    const Outcome outcome =
+        RunLull(directory, "compare --automatic grey.png --reference colour.JPG -o both");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Json figures = directory.Read("both.compare.json")["images"][0]["figures"];
+    EXPECT_LT(figures["rmseLightness"], 0.5);  // a step of 8 bits, if the JPEG has rounded
+    RunLull(directory, "render scene.pbrt --spp 1 --quiet -o small.exr");
+    ExpectFailure(directory, "compare --automatic small.exr --reference colour.JPG",
+                  {"colour.JPG", "another part"});
 }
 
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
