@@ -42,6 +42,8 @@ Files, beside each other:
   OUT.png             the same image for displays, 8-bit sRGB
   OUT.spp.png         samples per pixel of each block in false colours
   OUT.thresholds.csv  samples per pixel at which each block stopped, row by row
+  OUT.ranges.csv      between which samples per pixel people would have stopped each block, in 80 of
+                      100 cases, where the model of the rule knows; also in the report
 
 Examples:
   lull render scene.pbrt -o image.exr
@@ -145,6 +147,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
 void PrintFiles(const RenderFiles& files, const RenderResult& result) {
     fmt::print("{}\n{}\n{}\n", files.exr, files.png, files.sppMap);
     if (!result.cancelled) fmt::print("{}\n", files.thresholds);
+    if (!result.cancelled && !files.ranges.empty()) fmt::print("{}\n", files.ranges);
     if (!files.report.empty()) fmt::print("{}\n", files.report);
 }
 
@@ -180,7 +183,8 @@ ExitCode RunRender(Options options, Job* job) {
     const CriterionFactory factory = ReadRule(options, region, &settings);
     CheckBlocks(region, settings.schedule, input.warnings);
     const RenderFiles files =
-        NameFiles(options.output.empty() ? input.film.filename : options.output, options.report);
+        NameFiles(options.output.empty() ? input.film.filename : options.output, options.report,
+                  !factory.logRatios.empty());
     if (leads) CheckWritable(files, settings.scene.file);
     if (leads) CheckCheckpoint(settings.checkpoint);
 
@@ -192,6 +196,7 @@ ExitCode RunRender(Options options, Job* job) {
     provenance.criterion = factory.rule;
     provenance.checksum = factory.checksum;
     provenance.clock = options.clock.Text();
+    provenance.logRatios = factory.logRatios;
     const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
     if (!settings.checkpoint.file.empty() || job->Count() > 1) {

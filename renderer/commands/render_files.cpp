@@ -9,6 +9,7 @@
 #include "renderer/output/image_io.h"
 #include "renderer/output/spp_map.h"
 #include "renderer/pages/html_page.h"
+#include "stopping/network/human_range.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -90,6 +91,23 @@ void WriteThresholdsRow(const std::string& file, const Provenance& provenance,
     WriteFileAtomically(file, text.str());
 }
 
+// Says of each block between which spp people would have stopped to see noise; an upper end that is
+// not known is left empty.
+void WriteRanges(const std::string& file, const Provenance& provenance,
+                 const RenderResult& result) {
+    std::string csv = "block,x,y,width,height,spp,stopped,people_from,people_to\n";
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        const Block& block = result.blocks[i].block;
+        const PixelRect& r = block.pixels;
+        const HumanRange people =
+            RangeOfPeople(block.spp, block.stoppedByVote, provenance.logRatios);
+        csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", i, r.min.x(), r.min.y(), r.Width(),
+                           r.Height(), block.spp, int(block.stoppedByVote), people.low,
+                           people.high ? std::to_string(*people.high) : "");
+    }
+    WriteFileAtomically(file, csv);
+}
+
 path Normal(const std::string& file) { return std::filesystem::absolute(file).lexically_normal(); }
 
 }  // namespace
@@ -99,19 +117,25 @@ bool HasImageExtension(const std::string& output) {
     return extension == ".exr" || extension == ".png";
 }
 
-RenderFiles NameFiles(const std::string& output, const std::string& report) {
+RenderFiles NameFiles(const std::string& output, const std::string& report, bool withRanges) {
     auto with = [&](const char* extension) {
         return path(output).replace_extension(extension).string();
     };
-    return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
+    return {with(".exr"),
+            with(".png"),
+            with(".spp.png"),
+            with(".thresholds.csv"),
+            withRanges ? with(".ranges.csv") : "",
+            report};
 }
 
 void CheckWritable(const RenderFiles& files, const std::string& scene) {
-    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds, scene})
+    for (const std::string& file :
+         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, scene})
         if (!files.report.empty() && Normal(file) == Normal(files.report))
             throw Error("--report " + files.report + ": would replace " + file);
     for (const std::string& file :
-         {files.exr, files.png, files.sppMap, files.thresholds, files.report})
+         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, files.report})
         if (!file.empty()) CheckWritable(file);
 }
 
@@ -133,6 +157,7 @@ void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
     WriteSppMap(files.sppMap, film, provenance.schedule, result);
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
     if (!result.cancelled) WriteThresholdsRow(files.thresholds, provenance, result);
+    if (!result.cancelled && !files.ranges.empty()) WriteRanges(files.ranges, provenance, result);
     if (files.report.ends_with(".html"))
         WriteFileAtomically(files.report,
                             MakeRenderPage(provenance, result, film, histories, warnings.Counts()));

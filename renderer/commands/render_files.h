@@ -9,11 +9,11 @@ namespace lull {
 
 // Names the files; those not wanted are empty.
 struct RenderFiles {
-    std::string exr, png, sppMap, thresholds, report;
+    std::string exr, png, sppMap, thresholds, ranges, report;
 };
 
 // Returns the names for `output`, a name that ends in .exr or .png; all lie beside each other.
-RenderFiles NameFiles(const std::string& output, const std::string& report);
+RenderFiles NameFiles(const std::string& output, const std::string& report, bool withRanges);
 
 // Says whether `output` ends as an image that can be written.
 bool HasImageExtension(const std::string& output);

@@ -4,6 +4,7 @@
 
 #include "renderer/measure/report_json.h"
 #include "renderer/measure/shortfall.h"
+#include "stopping/network/human_range.h"
 
 namespace lull {
 
@@ -14,12 +15,20 @@ const char* EndOf(const Block& block, bool timeUp) {
     return block.stoppedByVote ? "stopped" : "cap";
 }
 
-Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
+// Says between which spp people would have stopped to see noise; null: more than is known.
+Json RangeJson(const Block& block, const std::vector<double>& logRatios) {
+    const HumanRange range = RangeOfPeople(block.spp, block.stoppedByVote, logRatios);
+    return {{"from", range.low}, {"to", range.high ? Json(*range.high) : Json(nullptr)}};
+}
+
+Json BlockJson(const BlockResult& result, int cap, bool timeUp,
+               const std::vector<double>& logRatios) {
     const Block& block = result.block;
     Json json = RectJson(block.pixels);
     json["spp"] = block.spp;
     json["threshold"] = block.stoppedByVote || (timeUp && !block.stopped) ? block.spp : cap;
     json["end"] = EndOf(block, timeUp);
+    if (!logRatios.empty() && block.stopped) json["people"] = RangeJson(block, logRatios);
     if (std::isfinite(block.noise)) json["visibleNoise"] = block.noise;
     if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
     json["seconds"] = result.seconds;
@@ -116,7 +125,7 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
     report["blocks"] = Json::array();
     for (const BlockResult& block : result.blocks)
-        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap, result.timeUp));
+        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
     if (result.timeUp) AddShortfall(provenance, result, &report);
     report["warnings"] = warnings;
     return report;

@@ -28,6 +28,7 @@ function showBlock(data, i) {
   for (const [name, label] of figureNames) add(label, b => name in b, b => showFigure(b, name));
   const difference = differenceToHuman(data, i);
   if (difference) rows.push(["against human", difference, ...images.slice(1).map(() => "")]);
+  if (block.people) rows.push(["people, 80 of 100 times", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", {stopped: "its rule stopped it", cap: "it went to the cap", interrupted: "interrupted", time: "the time was up"}[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
   if (isNumber(block.neededSeconds)) rows.push(["seconds of processors it would have needed", `~${showSeconds(block.neededSeconds)}`]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "renderer/render/schedule.h"
 #include "renderer/transport/path_tracer.h"
@@ -15,6 +16,7 @@ struct Provenance {
     SamplerKind sampler = SamplerKind::Sobol;
     Estimator estimator = Estimator::Combined;
     std::string criterion, checksum;  // the stopping rule and that of its file, if any
+    std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
     ScheduleOptions schedule;
     int maxDepth = 0;
     int threads = 0;  // 0: all

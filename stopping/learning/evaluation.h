@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace lull {
+#include "stopping/network/human_range.h"
 
-// The spp at which the human thresholds end: nobody was shown more.
-inline constexpr int kJudgedCap = 10000;
+namespace lull {
 
 // Holds what a rule said of a block at some spp.
 struct Verdict {

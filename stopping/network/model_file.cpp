@@ -1,6 +1,7 @@
 #include "stopping/network/model_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -10,6 +11,7 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
+#include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
 
 namespace lull {
@@ -126,6 +128,16 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     return s;
 }
 
+std::vector<double> ReadLogRatios(const Hdf5Group& file) {
+    if (!file.HasGroup("lull") || !file.Group("lull").HasArray("log_ratios")) return {};
+    std::vector<double> ratios =
+        file.Group("lull").Array<double>("log_ratios", std::array{int64_t(kLogRatios)});
+    if (!std::ranges::all_of(ratios, [](double v) { return std::abs(v) < 100; }) ||
+        !std::ranges::is_sorted(ratios))
+        throw std::runtime_error("/lull/log_ratios holds no quantiles");
+    return ratios;
+}
+
 // Writes the weights of one layer, transposed back; those of one column get one dimension.
 void WriteLayer(Hdf5Group root, const std::string& layer,
                 const std::vector<std::pair<std::string, Eigen::MatrixXf>>& weights) {
@@ -141,7 +153,7 @@ void WriteLayer(Hdf5Group root, const std::string& layer,
 }
 
 void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
-           const std::map<std::string, std::string>& record) {
+           const std::map<std::string, std::string>& record, std::span<const double> logRatios) {
     file.SetString("model_config", WriteKerasConfig(network, s.k));
     Hdf5Group root = file.MakeGroup("model_weights");
     for (Hdf5Group* group : {&file, &root}) {
@@ -180,6 +192,8 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
         group.SetInt("reference", s.visibility.reference);
         group.SetReal("nearness", s.visibility.nearness);
     }
+    if (!logRatios.empty())
+        group.AddArray<double>("log_ratios", std::array{int64_t(logRatios.size())}, logRatios);
     if (record.empty()) return;
     Hdf5Group training = group.MakeGroup("training");
     for (const auto& [name, text] : record) training.SetString(name, text);
@@ -203,6 +217,7 @@ Model ReadModel(const std::string& path) {
             throw std::runtime_error("the first kernel does not have the shape of the input");
         model.settings = ReadSettings(file, config.timeSteps, inputs);
         model.network = ReadNetwork(root, config, values);
+        model.logRatios = ReadLogRatios(file);
         CheckNetwork(model.network);
     } catch (const std::exception& error) {
         throw std::runtime_error(path + ": " + error.what());
@@ -211,13 +226,14 @@ Model ReadModel(const std::string& path) {
 }
 
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
-                const std::map<std::string, std::string>& record) {
+                const std::map<std::string, std::string>& record,
+                std::span<const double> logRatios) {
     CheckNetwork(network);
     CheckSettings(settings);
     const std::string newPath = path + ".new";
     try {
         Hdf5Group file = Hdf5Group::Create(newPath);
-        Write(file, network, settings, record);
+        Write(file, network, settings, record, logRatios);
         file.Flush();
     } catch (const std::exception& error) {
         throw std::runtime_error(newPath + ": " + error.what());

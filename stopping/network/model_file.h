@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "stopping/network/lstm.h"
 #include "stopping/network/window.h"
@@ -13,7 +15,8 @@ namespace lull {
 struct Model {
     Network network;
     ModelSettings settings;
-    std::string checksum;  // of the file it was read from, see FileChecksum()
+    std::string checksum;                // of the file it was read from, see FileChecksum()
+    std::vector<double> logRatios = {};  // see human_range.h; empty: not known
 };
 
 // Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as
@@ -27,10 +30,12 @@ Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; to a new file that then
 // takes the place of an old one. `record` says how it was trained; each of its texts (64 KiB at the
-// most) becomes an attribute of the group /lull/training. Throws std::invalid_argument for a
-// network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it
-// cannot be written.
+// most) becomes an attribute of the group /lull/training. `logRatios` is empty or holds the
+// quantiles of human_range.h, which become the array /lull/log_ratios. Throws std::invalid_argument
+// for a network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error
+// if it cannot be written.
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
-                const std::map<std::string, std::string>& record = {});
+                const std::map<std::string, std::string>& record = {},
+                std::span<const double> logRatios = {});
 
 }  // namespace lull

@@ -13,6 +13,7 @@
 #include "stopping/rules/learned.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/rules/thresholds.h"
+#include "stopping/rules/votes.h"
 
 namespace lull {
 
@@ -142,6 +143,8 @@ CriterionFactory Learned(const std::string& argument, const RuleContext& context
         throw std::runtime_error(path + ": " + error.what());
     }
     return {.checksum = model->checksum,
+            .logRatios = model->logRatios,
+            .trend = {RuleTrend::Probability, model->settings.votes},
             .smallestSide = smallestVotingSide,
             .make = [model, passSpp = context.passSpp](const BlockInfo&) {
                 return MakeLearned(model, passSpp);
@@ -192,6 +195,8 @@ CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContex
             const auto end = std::to_chars(text, text + sizeof(text), context.caution).ptr;
             factory.rule.append(", caution ").append(text, end);
         }
+        if (kind == "fixed" || kind == "thresholds") factory.trend.kind = RuleTrend::Samples;
+        if (kind == "lnoise" || kind == "entropy") factory.trend.votes = VoteCounter().needed;
         return factory;
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument("stopping rule '" + rule + "': " + error.what());

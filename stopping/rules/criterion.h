@@ -66,10 +66,24 @@ struct RuleContext {
     double caution = 1;
 };
 
+// Says how the number that a rule compares goes with the samples.
+struct RuleTrend {
+    enum Kind {
+        Error,        // above 0; falls as a power of the spp
+        Probability,  // in [0, 1]; falls too
+        Samples       // the spp themselves, which rise to the threshold
+    };
+    Kind kind = Error;
+    int votes = 1;  // in a row that stop a block
+};
+
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.
 struct CriterionFactory {
     std::string rule = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that the rule reads; empty if it reads none
+    // How its stops lie to those of people, see network/human_range.h; empty: not known.
+    std::vector<double> logRatios = {};
+    RuleTrend trend = {};
     // Pixels a side below which a block does not judge itself but follows a neighbour (see
     // small_blocks.h); 0 for rules that only count samples.
     int smallestSide = 0;

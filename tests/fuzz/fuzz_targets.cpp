@@ -7,6 +7,7 @@
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "stopping/learning/observers.h"
+#include "stopping/learning/search.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/thresholds.h"
@@ -100,6 +101,22 @@ void FuzzAnswers(std::span<const char> bytes) {
     WriteThresholds(out, ThresholdsOf(collected));
 }
 
+// What is read makes as many combinations as it has.
+void FuzzGrid(std::span<const char> bytes) {
+    std::istringstream in(std::string(bytes.begin(), bytes.end()));
+    std::vector<SearchAxis> axes;
+    try {
+        axes = ReadGrid(in, "input");
+    } catch (const std::runtime_error&) {
+        return;
+    }
+    const size_t count = CombinationCount(axes);
+    if (count < 1 || count > kMostCombinations)
+        throw std::logic_error("a grid has too few or too many combinations");
+    if (count > 1 && CombinationAt(axes, 0) == CombinationAt(axes, count - 1))
+        throw std::logic_error("two combinations are the same");
+}
+
 }  // namespace
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
@@ -109,7 +126,8 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"model", FuzzModel},
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds},
-            {"answers", FuzzAnswers}};
+            {"answers", FuzzAnswers},
+            {"grid", FuzzGrid}};
 }
 
 }  // namespace lull

@@ -1,4 +1,9 @@
 // Trains models as a user would.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
 #include "renderer/output/file_io.h"
 #include "stopping/network/model_file.h"
 #include "tests/integration/run_lull.h"
@@ -77,6 +82,26 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     EXPECT_EQ(
         RunLull(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5").exitCode,
         0);
+    // How far people are from its stops is known then, and renders say so.
+    EXPECT_TRUE(Contains(outcome.out, "80 % of the thresholds of people lie between "));
+    EXPECT_EQ(model.logRatios.size(), 11u);
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome render =
+        RunLull(directory,
+                "render scene.pbrt --resolution 88x44 --block 44 --cap 200 --quiet "
+                "--stop learned:model.h5 -o i.exr --report i.json");
+    ASSERT_EQ(render.exitCode, 0) << render.err;
+    EXPECT_TRUE(Contains(render.out, "i.ranges.csv\n")) << render.out;
+    const std::string ranges = ReadBytes(directory.File("i.ranges.csv"));
+    EXPECT_TRUE(
+        ranges.starts_with("block,x,y,width,height,spp,stopped,people_from,people_to\n"
+                           "0,0,0,44,44,"))
+        << ranges;
+    EXPECT_EQ(std::ranges::count(ranges, '\n'), 3);
+    const auto report = nlohmann::json::parse(ReadBytes(directory.File("i.json")));
+    const int from = report["blocks"][1]["people"]["from"], spp = report["blocks"][1]["spp"];
+    EXPECT_NEAR(from, spp * std::exp(model.logRatios[1]), 1);
+
     // Left out, it is judged by the same network as when each is left out in turn.
     const Outcome single = RunLull(directory, options + "-o one.h5 --leave-out barn-b");
     EXPECT_EQ(single.exitCode, 0) << single.err;
@@ -92,6 +117,89 @@ TEST(Train, SplitsBlocks) {
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "windows of 5 blocks")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
+}
+
+const std::string kSearch = "train data.h5 --human human.csv --search grid.txt --csv s.csv ";
+
+TEST(Train, SearchesAGrid) {
+    const TrainingDirectory directory;
+    directory.Write("grid.txt", "k 2 4\nfeatures H noise\nsnorm 0 1\nbatch 32 64\n");
+    const Outcome outcome = RunLull(directory, kSearch + "--units 4 --epochs 2 --json-progress");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, R"("combinations":16,"remainingSeconds":)")) << outcome.err;
+    const std::string csv = ReadBytes(directory.File("s.csv"));
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 17) << csv;
+    EXPECT_EQ(csv.substr(0, 35), "k,features,snorm,batch,auc_left_out");
+    double last = 1;
+    for (size_t at = csv.find('\n'); at + 1 < csv.size(); at = csv.find('\n', at + 1)) {
+        size_t field = at;
+        for (int i = 0; i < 4; ++i) field = csv.find(',', field + 1);
+        const double auc = std::stod(csv.substr(field + 1));
+        EXPECT_LE(auc, last);
+        last = auc;
+    }
+    EXPECT_TRUE(Contains(outcome.out, ReadBytes(directory.File("s.md"))));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("s.csv.checkpoint")));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("s.csv.training.checkpoint")));
+
+    // A combination is trained as it would be by itself.
+    const Outcome single = RunLull(
+        directory,
+        "train data.h5 --human human.csv --units 4 --epochs 2 --k 2 --features noise --no-snorm "
+        "--batch 32 --cross-validate --csv one.csv");
+    EXPECT_EQ(single.exitCode, 0) << single.err;
+    const std::string one = ReadBytes(directory.File("one.csv"));
+    size_t field = one.find("\neach viewpoint left out,all,");
+    for (int i = 0; i < 6; ++i) field = one.find(',', field) + 1;
+    const std::string criticalError = one.substr(field, 8);
+    const size_t row = csv.find("2,noise,0,32,");
+    EXPECT_TRUE(Contains(csv.substr(row, csv.find('\n', row) - row), "," + criticalError + ","))
+        << one << csv;
+}
+
+TEST(Train, GoesOnWithASearch) {
+    const TrainingDirectory directory;
+    directory.Write("grid.txt", "k 2 4 8\nepochs 1 2 3 60\n");
+    const std::string options = kSearch + "--units 16,8 --leave-out barn-b --quiet ";
+    EXPECT_EQ(RunLull(directory, options).exitCode, 0);
+    // All but the last column, which are seconds.
+    const auto figures = [&] {
+        std::istringstream in(ReadBytes(directory.File("s.csv")));
+        std::vector<std::string> lines;
+        for (std::string line; std::getline(in, line);)
+            lines.push_back(line.substr(0, line.rfind(',')));
+        return lines;
+    };
+    const std::vector<std::string> whole = figures();
+    const Outcome part = RunAndSignal(directory, "LULL " + options, "INT", "s.csv.checkpoint", 0.1);
+    ASSERT_EQ(part.exitCode, 130) << part.err;
+    EXPECT_LT(figures().size(), whole.size());
+    // Other options are another search.
+    const Outcome other = RunLull(directory, options + "--resume --learning-rate 0.01");
+    EXPECT_EQ(other.exitCode, 1);
+    EXPECT_TRUE(Contains(other.err, "s.csv.checkpoint: the saved search had other")) << other.err;
+    const Outcome rest = RunLull(directory, options + "--resume");
+    EXPECT_EQ(rest.exitCode, 0) << rest.err;
+    EXPECT_EQ(figures(), whole);
+}
+
+TEST(Train, RefusesSearchesThatCannotBe) {
+    const TrainingDirectory directory;
+    const auto expect = [&](const std::string& grid, const std::vector<std::string>& parts) {
+        directory.Write("grid.txt", grid);
+        ExpectFailure(directory, kSearch, parts);
+    };
+    expect("k 2\nm 25 7\n", {"grid.txt:2: m 7: "});
+    expect("k 2\nspeed 1\n", {"grid.txt:2: speed 1: this is no option that a search can vary"});
+    expect("k 2 0\n", {"grid.txt:1: k 0: "});
+    expect("n 40 30\n", {"grid.txt: n 30: ", "multiples"});
+    expect("m 25\nfeatures H H1\n", {"grid.txt: m 25, features H1: H1 with m = 25"});
+    expect("\n", {"grid.txt:1: there is no option to vary"});
+    for (const char* bad : {"--search grid.txt", "--search grid.txt --csv s.csv -o m.h5",
+                            "--search nowhere.txt --csv s.csv"})
+        EXPECT_EQ(
+            RunLull(directory, std::string("train data.h5 --human human.csv ") + bad).exitCode, 2)
+            << bad;
 }
 
 TEST(Train, SaysWhatIsWrong) {
