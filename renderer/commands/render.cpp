@@ -212,6 +212,7 @@ ExitCode RunRender(Options options, Job* job) {
     CatchInterrupts();
     RenderOptions renderOptions = MakeRenderOptions(settings, provenance.sampler, &printer);
     renderOptions.makeCriterion = MakeCriteria(factory, withCurves, &histories);
+    renderOptions.trend = factory.trend;
     if (clock)
         renderOptions.secondsLeft = [&, reserve = SecondsToWrite(region.Area())] {
             return clock() - reserve;

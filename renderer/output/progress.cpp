@@ -10,19 +10,28 @@ namespace lull {
 namespace {
 
 double Fraction(const RenderProgress& p) {
-    const double all = double(p.samples) + double(p.samplesToCap);
+    const double all = double(p.samples) + p.predictedSamples.value_or(double(p.samplesToCap));
     return all > 0 ? double(p.samples) / all : 1;
 }
 
-// Returns the seconds until the end, at most; nothing where nobody knows.
-std::optional<double> Remaining(const RenderProgress& p, double rate) {
-    std::optional<double> seconds;
+struct TimeLeft {
+    double seconds;
+    bool isBound;  // or less
+};
+
+// Says how long it takes from here; nothing where nobody knows.
+std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool adaptive) {
+    std::optional<TimeLeft> left;
     if (p.samplesToCap == 0)
-        seconds = 0;
+        left = {0, adaptive};
+    else if (adaptive && p.predictedSeconds)
+        left = {*p.predictedSeconds, false};
     else if (rate > 0)
-        seconds = double(p.samplesToCap) / rate;
-    if (p.secondsLeft) seconds = std::max(0.0, std::min(seconds.value_or(1e15), *p.secondsLeft));
-    return seconds;
+        left = {double(p.samplesToCap) / rate, adaptive};
+    if (!p.secondsLeft) return left;
+    const double clock = std::max(0.0, *p.secondsLeft);
+    if (!left || clock < left->seconds) left = {clock, adaptive};
+    return left;
 }
 
 // Rounds down, so that 100 means done.
@@ -69,23 +78,27 @@ std::string ProgressText(const RenderProgress& p, double rate, bool adaptive) {
     std::string text = fmt::format(
         "{:3}%  {}/{} blocks stopped  median {} spp  {} samples/s  {} elapsed", Percent(p),
         p.stoppedBlocks, p.blocks, p.medianSpp, FormatCount(rate), FormatDuration(p.seconds));
-    const std::optional<double> left = Remaining(p, rate);
+    const std::optional<TimeLeft> left = Remaining(p, rate, adaptive);
     if (p.samplesToCap > 0 && left)
-        text += fmt::format("  {}{} left", adaptive ? "at most " : "", FormatDuration(*left));
+        text += fmt::format("  {}{} left",
+                            left->isBound ? "at most "
+                            : adaptive    ? "about "
+                                          : "",
+                            FormatDuration(left->seconds));
     return text;
 }
 
 std::string ProgressJson(const RenderProgress& p, double rate, bool adaptive) {
-    const std::optional<double> left = Remaining(p, rate);
+    const std::optional<TimeLeft> left = Remaining(p, rate, adaptive);
     const std::string remaining = p.samplesToCap == 0 ? "0"
-                                  : left              ? fmt::format("{:.3f}", *left)
+                                  : left              ? fmt::format("{:.3f}", left->seconds)
                                                       : "null";
     return fmt::format(
         R"({{"percent":{:.2f},"blocks":{},"stoppedBlocks":{},"medianSpp":{},"samples":{},)"
         R"("samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},"remainingSeconds":{},)"
         R"("remainingIsUpperBound":{}}})",
         100 * Fraction(p), p.blocks, p.stoppedBlocks, p.medianSpp, p.samples, rate, p.seconds,
-        remaining, adaptive);
+        remaining, left ? left->isBound : adaptive);
 }
 
 void ProgressPrinter::Print(const RenderProgress& p) {

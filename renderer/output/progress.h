@@ -16,6 +16,9 @@ struct RenderProgress {
     int64_t samplesToCap = 0;                // still to take if no block stops before the cap
     double seconds = 0;                      // since the start
     std::optional<double> secondsLeft = {};  // of a clock that ends the render
+    // Still to take until the rule has stopped all blocks, and how long that will be, where that
+    // can be predicted.
+    std::optional<double> predictedSamples = {}, predictedSeconds = {};
 };
 
 // Estimates the speed from what was done lately, since the blocks that are left can be slower
@@ -32,8 +35,9 @@ class RateMeter {
     std::deque<RenderProgress> history;
 };
 
-// Format a report of progress. Where blocks stop by themselves (`adaptive`) the time left is an
-// upper bound, and said to be; `rate` is in samples per second.
+// Format a report of progress. Where blocks stop by themselves (`adaptive`) the time left is a
+// prediction or, as long as there is none, an upper bound, and said to be; `rate` is in samples per
+// second.
 std::string ProgressText(const RenderProgress&, double rate, bool adaptive);
 std::string ProgressJson(const RenderProgress&, double rate, bool adaptive);
 

@@ -92,6 +92,7 @@ Executor::Executor(const SampleSource& source, const RenderOptions& options, Fil
       results(interrupted ? interrupted->blocks
                           : std::vector<BlockResult>(schedule.Blocks().size())),
       criteria(MakeCriteria(interrupted)),
+      trends(MakeTrends()),
       samples(film->SampleCount()) {}
 
 bool Executor::Fits(const RenderState& state, const PixelRect& region,
@@ -239,6 +240,16 @@ std::vector<std::unique_ptr<Criterion>> Executor::MakeCriteria(
     return made;
 }
 
+// Follows the decisions so far. Of several ranks, none knows what all blocks have cost.
+std::vector<StopTrend> Executor::MakeTrends() const {
+    if (!options.trend || !options.onProgress || options.peers) return {};
+    std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
+    for (size_t i = 0; i < results.size(); ++i)
+        for (const DecisionRecord& record : results[i].decisions)
+            made[i].Add(record.spp, record.decision);
+    return made;
+}
+
 // Nobody else touches a block between the end of its pass and the decision.
 Executor::Judgement Executor::Judge(int i) {
     if (!criteria[i] && !hasClock) return {};
@@ -247,6 +258,10 @@ Executor::Judgement Executor::Judge(int i) {
     const BlockView view = ViewOf(i, spp);
     const Decision decision = criteria[i] ? criteria[i]->Observe(view) : Decision();
     if (decision.judged) results[i].decisions.push_back({spp, decision});
+    if (decision.judged && !trends.empty()) {
+        std::lock_guard lock(mutex);
+        trends[size_t(i)].Add(spp, decision);
+    }
     Judgement judgement{.stop = decision.stop};
     if (hasClock) judgement.noise = decision.visibleNoise ? *decision.visibleNoise : NoiseOf(view);
     results[i].criterionSeconds += ThreadSeconds() - start;
@@ -297,7 +312,27 @@ RenderProgress Executor::CurrentProgress() const {
                             schedule.MedianSpp(),          samples,
                             schedule.SamplesToCap(),       Seconds()};
     if (hasClock) progress.secondsLeft = options.secondsLeft();
+    if (!trends.empty()) Predict(&progress);
     return progress;
+}
+
+// Predicts what is left. A sample of a block costs what its samples have cost so far, and the
+// seconds of processors go by as fast as they did.
+void Executor::Predict(RenderProgress* progress) const {
+    const std::span<const Block> blocks = schedule.Blocks();
+    const auto stops = PredictStops(trends, blocks, options.schedule.cap);
+    if (!stops) return;
+    double spent = 0;
+    for (const BlockResult& result : results) spent += result.seconds;
+    double left = 0, secondsLeft = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const double area = double(blocks[i].pixels.Area()), had = area * blocks[i].spp;
+        const double missing = area * ((*stops)[i] - blocks[i].spp);
+        left += missing;
+        secondsLeft += missing * (had > 0 ? results[i].seconds / had : spent / double(samples));
+    }
+    progress->predictedSamples = left;
+    if (spent > 0) progress->predictedSeconds = secondsLeft / spent * progress->seconds;
 }
 
 }  // namespace lull

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "renderer/render/forecast.h"
 #include "renderer/render/render.h"
 #include "renderer/render/undo.h"
 #include "stopping/base/parallel.h"
@@ -75,10 +76,12 @@ class Executor {
     double nextCheckpoint = 0;
     const bool hasClock;
 
-    std::mutex mutex;  // guards the schedule, `samples`, the tiles' seconds in `results`, `undo`
+    // Guards the schedule, `trends`, `samples`, the tiles' seconds in `results`, `undo`.
+    std::mutex mutex;
     Schedule schedule;
     std::vector<BlockResult> results;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
+    std::vector<StopTrend> trends;                     // of the blocks; empty: nothing is predicted
     int64_t samples;
     PassUndo undo;            // for renders that have a clock
     bool timeCalled = false;  // it has run down
@@ -105,7 +108,9 @@ class Executor {
     std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderState* interrupted) const;
     Judgement Judge(int block);
     BlockView ViewOf(int block, int spp);
+    std::vector<StopTrend> MakeTrends() const;
     RenderProgress CurrentProgress() const;
+    void Predict(RenderProgress*) const;
     void NoteBlocks();
 };
 

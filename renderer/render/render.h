@@ -42,6 +42,9 @@ struct RenderOptions {
 
     // Makes each block's own stopping criterion; empty: all go on to the cap.
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
+    // How the numbers in their decisions go, from which progress predicts the end; nothing: it does
+    // not.
+    std::optional<RuleTrend> trend;
     // Is told how far things are, by one thread at a time, about every `progressInterval` seconds
     // and at the end. Can be empty.
     std::function<void(const RenderProgress&)> onProgress;

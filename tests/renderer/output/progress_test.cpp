@@ -58,6 +58,25 @@ TEST(ProgressText, SaysWhetherTheTimeLeftIsABound) {
     EXPECT_FALSE(Contains(ProgressText(Halfway(), 50000, false), "at most"));
 }
 
+TEST(ProgressText, PredictsTheEndWhereItCan) {
+    RenderProgress progress = Halfway();
+    progress.predictedSamples = 1250000;
+    progress.predictedSeconds = 30;
+    EXPECT_EQ(ProgressText(progress, 50000, true),
+              " 80%  9/16 blocks stopped  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
+              "about 30.0s left");
+    EXPECT_TRUE(Contains(ProgressJson(progress, 50000, true),
+                         R"("remainingSeconds":30.000,"remainingIsUpperBound":false)"));
+    // A clock can end it before.
+    progress.secondsLeft = 12;
+    EXPECT_TRUE(Contains(ProgressText(progress, 50000, true), "at most 12.0s left"));
+    // Nothing is left when all have stopped.
+    progress.samplesToCap = 0;
+    progress.predictedSamples = 0;
+    EXPECT_TRUE(ProgressText(progress, 50000, true).starts_with("100%"));
+    EXPECT_FALSE(Contains(ProgressText(progress, 50000, true), "left"));
+}
+
 TEST(ProgressText, GuessesNothingWithoutARate) {
     EXPECT_FALSE(Contains(ProgressText(Halfway(), 0, true), "left"));
     EXPECT_TRUE(Contains(ProgressText({}, 0, true), "100%"));

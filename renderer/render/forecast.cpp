@@ -1,0 +1,154 @@
+#include "renderer/render/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lull {
+
+namespace {
+
+constexpr double kMostLevel = 12;  // of numbers that are 0, infinite or certain
+// Above this share of the highest level of all blocks, a network counts as sure as it can be: the
+// layers of an LSTM are bounded, and so are its odds.
+constexpr double kCertain = 0.85;
+// A slope that this many points show counts as much as that of the other blocks.
+constexpr double kPointsOfOthers = 4;
+
+double Level(const RuleTrend& rule, const Decision& d) {
+    double level = std::log(d.value / d.threshold);
+    if (rule.kind == RuleTrend::Probability) level += std::log((1 - d.threshold) / (1 - d.value));
+    return std::isnan(level) ? kMostLevel : std::clamp(level, -kMostLevel, kMostLevel);
+}
+
+template <typename T>
+T MedianOf(std::vector<T>* values) {
+    const auto middle = values->begin() + ptrdiff_t(values->size() / 2);
+    std::nth_element(values->begin(), middle, values->end());
+    return *middle;
+}
+
+// Bounds a slope to what there can be; probabilities fall as fast as a network likes.
+double Bounded(const RuleTrend& rule, double slope) {
+    return rule.kind == RuleTrend::Probability ? std::clamp(slope, -40.0, -0.2)
+                                               : std::clamp(slope, -2.0, -0.1);
+}
+
+// Returns the level above which a number says no more.
+double CertainLevel(std::span<const StopTrend> trends) {
+    double highest = 0;
+    for (const StopTrend& trend : trends)
+        if (trend.Rule().kind == RuleTrend::Probability)
+            highest = std::max(highest, trend.HighestLevel());
+    return highest > 0 ? kCertain * highest : std::numeric_limits<double>::infinity();
+}
+
+// Returns the median of the slopes that the blocks show; 0 if there is none.
+double UsualSlope(std::span<const StopTrend> trends, double certain) {
+    std::vector<double> slopes;
+    bool isError = false;
+    for (const StopTrend& trend : trends) {
+        const StopTrend::Line line = trend.Fit(certain);
+        isError |= trend.LastSpp() > 0 && trend.Rule().kind == RuleTrend::Error;
+        if (line.slope != 0) slopes.push_back(Bounded(trend.Rule(), line.slope));
+    }
+    if (slopes.empty()) return isError ? -0.5 : 0;
+    return MedianOf(&slopes);
+}
+
+// Says at which spp a block stops, without regard to the cap.
+struct Stop {
+    double spp = 0;
+    bool isLeast = true;  // more than that is not to be told
+};
+
+Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
+    if (trend.LastSpp() == 0) return {};
+    if (trend.Rule().kind == RuleTrend::Samples) return {trend.Threshold(), false};
+    const StopTrend::Line line = trend.Fit(certain);
+    double stop = trend.LastSpp();
+    if (line.level > 0) {
+        if (usualSlope == 0) return {stop, true};
+        const double own = line.slope == 0 ? 0 : line.points / (line.points + kPointsOfOthers);
+        const double slope = Bounded(trend.Rule(), std::lerp(usualSlope, line.slope, own));
+        stop *= std::exp(std::min(std::min(line.level, certain) / -slope, 50.0));
+    }
+    return {stop + trend.VotesLeft(), line.level > certain};
+}
+
+}  // namespace
+
+void StopTrend::Add(int spp, const Decision& decision) {
+    const double level = Level(rule, decision);
+    Bin& bin = bins[size_t(PlaceOf(spp))];
+    bin.logSpp += float(std::log(double(spp)));
+    bin.level += float(level);
+    bin.count += 1;
+    highest = std::max(highest, level);
+    spacing = spp - lastSpp;
+    lastSpp = spp;
+    votes = decision.votes;
+    threshold = decision.threshold;
+}
+
+int StopTrend::PlaceOf(int spp) {
+    return std::clamp(int(std::log2(double(spp)) * kBinsPerOctave), 0, kBins - 1);
+}
+
+int StopTrend::VotesLeft() const { return std::max(0, rule.votes - 1 - votes) * spacing; }
+
+StopTrend::Line StopTrend::Fit(double certain) const {
+    struct Point {
+        double x, y;
+    };
+    std::vector<Point> points;  // the last first
+    const int last = PlaceOf(std::max(1, lastSpp));
+    std::optional<double> latest;
+    for (int i = last; i >= std::max(0, last - 2 * kBinsPerOctave + 1); --i) {
+        const Bin& bin = bins[size_t(i)];
+        if (bin.count == 0) continue;
+        const Point point{double(bin.logSpp / bin.count), double(bin.level / bin.count)};
+        if (!latest) latest = point.y;
+        if (point.y <= certain) points.push_back(point);
+    }
+    Line line{.level = latest.value_or(0), .slope = 0, .points = int(points.size())};
+    if (points.size() < 3) return line;
+    std::vector<double> slopes, levels;
+    for (size_t i = 0; i < points.size(); ++i)
+        for (size_t j = i + 1; j < points.size(); ++j)
+            slopes.push_back((points[i].y - points[j].y) / (points[i].x - points[j].x));
+    line.slope = MedianOf(&slopes);
+    for (size_t i = 0; i < std::min(points.size(), size_t(kBinsPerOctave)); ++i)
+        levels.push_back(points[i].y + line.slope * (std::log(double(lastSpp)) - points[i].x));
+    line.level = MedianOf(&levels);
+    return line;
+}
+
+std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trends,
+                                                std::span<const Block> blocks, int cap) {
+    const double certain = CertainLevel(trends), usualSlope = UsualSlope(trends, certain);
+    std::vector<Stop> found(blocks.size());
+    std::vector<double> known;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        if (!blocks[i].votes) continue;
+        found[i] = blocks[i].stopped ? Stop{double(blocks[i].spp), false}
+                                     : PredictStop(trends[i], usualSlope, certain);
+        if (!found[i].isLeast) known.push_back(found[i].spp);
+    }
+    if (known.empty()) return {};
+    const double usual = MedianOf(&known);
+    std::vector<double> stops(blocks.size());
+    const auto bounded = [&](size_t i, double stop) {
+        const double spp = blocks[i].spp;
+        return blocks[i].stopped ? spp : std::clamp(stop, spp, std::max(spp, double(cap)));
+    };
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i].votes)
+            stops[i] = bounded(i, found[i].isLeast ? std::max(found[i].spp, usual) : found[i].spp);
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (const int leader = blocks[i].leader; !blocks[i].votes)
+            stops[i] = bounded(i, leader < 0 ? double(cap) : stops[size_t(leader)]);
+    return stops;
+}
+
+}  // namespace lull

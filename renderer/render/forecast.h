@@ -1,0 +1,66 @@
+// Predicts when blocks will stop, from how the number that their rule compares has gone so far.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/render/schedule.h"
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Follows the number that a rule compares for one block, as its level above the threshold: the
+// logarithm of the ratio of both or, of probabilities, of their odds. Takes 2.3 KiB, however long
+// the render.
+class StopTrend {
+  public:
+    explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
+
+    // Notes what the criterion said when it looked at the block at `spp` > 0, which increases.
+    void Add(int spp, const Decision& decision);
+
+    // Describes the last two doublings by a straight line of the level over log(spp). Levels above
+    // `certain` are left out: a network that is as sure as it can be does not say by how much.
+    struct Line {
+        double level = 0;  // at the last spp
+        double slope = 0;  // 0: not to be seen yet
+        int points = 0;    // that the slope is seen in, eight a doubling
+    };
+    Line Fit(double certain) const;
+    double HighestLevel() const { return highest; }  // so far
+
+    const RuleTrend& Rule() const { return rule; }
+    int LastSpp() const { return lastSpp; }  // 0: the rule has not looked at the block
+    double Threshold() const { return threshold; }
+    // Returns the spp that the votes in a row still take, at the least.
+    int VotesLeft() const;
+
+  private:
+    static constexpr int kBinsPerOctave = 8, kBins = 24 * kBinsPerOctave;
+    static int PlaceOf(int spp);
+
+    struct Bin {
+        float logSpp = 0, level = 0, count = 0;  // sums
+    };
+
+    RuleTrend rule;
+    std::array<Bin, kBins> bins = {};
+    int lastSpp = 0, spacing = 0, votes = 0;
+    double threshold = 0, highest = 0;
+};
+
+// Returns the spp at which each block stops: its own where it has stopped, a predicted one between
+// its spp and the cap where it has not, that of its leader where it does not vote. Blocks of which
+// nothing can be told go as far as the others in the median, at the least; nothing is returned if
+// none can. `trends` are those of the blocks.
+//
+// The error of a Monte Carlo estimate falls as a power of the samples, with the exponent -1/2 if
+// they are independent: in logarithms a line. It is fitted by the median of the slopes between any
+// two points (Theil 1950, Sen 1968), so that no single pass matters; where a block has shown little
+// of it, the slope of the other blocks counts for more.
+std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trends,
+                                                std::span<const Block> blocks, int cap);
+
+}  // namespace lull
