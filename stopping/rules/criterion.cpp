@@ -142,8 +142,11 @@ CriterionFactory Learned(const std::string& argument, const RuleContext& context
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(path + ": " + error.what());
     }
+    // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
+    std::vector<double> logRatios = model->logRatios;
+    for (double& ratio : logRatios) ratio -= 2 * std::log(context.caution);
     return {.checksum = model->checksum,
-            .logRatios = model->logRatios,
+            .logRatios = std::move(logRatios),
             .trend = {RuleTrend::Probability, model->settings.votes},
             .smallestSide = smallestVotingSide,
             .make = [model, passSpp = context.passSpp](const BlockInfo&) {
