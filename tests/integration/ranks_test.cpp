@@ -27,7 +27,7 @@ struct RanksTest : testing::Test {
     Outcome Run(const std::string& command) { return RunShell(directory, command); }
 
     std::vector<float> Texels(const std::string& name) {
-        return ReadImage(directory.File(name + ".exr")).texels;
+        return std::get<std::vector<float>>(ReadImage(directory.File(name + ".exr")).texels);
     }
     void ExpectSame(const std::string& a, const std::string& b) {
         EXPECT_EQ(Texels(a), Texels(b)) << a << " " << b;
