@@ -27,18 +27,18 @@ uint32_t LaineKarras(uint32_t x, uint32_t seed) {
     return x;
 }
 
-uint32_t OwenScramble(uint32_t x, uint32_t seed) {
-    return ReverseBits(LaineKarras(ReverseBits(x), seed));
+// Returns the second dimension of Sobol's sequence, its bits reversed. The matrix is then Pascal's
+// triangle mod 2, which takes a polynomial p(x) over GF(2) to p(x + 1); as (x + 1)^(2^j) is
+// x^(2^j) + 1, one shift does all powers whose exponents have bit j.
+uint32_t SobolSecondReversed(uint32_t index) {
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    return index ^ (index >> 16);
 }
 
-// Returns the second dimension of Sobol's sequence: its matrix is Pascal's triangle mod 2, so
-// each column follows from the one before.
-uint32_t SobolSecond(uint32_t index) {
-    uint32_t result = 0;
-    for (uint32_t v = 1u << 31; index; index >>= 1, v ^= v >> 1)
-        if (index & 1) result ^= v;
-    return result;
-}
+float ToUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; }
 
 }  // namespace
 
@@ -47,20 +47,27 @@ void Sampler::StartSample(const Vec2i& pixel, uint32_t sampleIndex) {
     state = Mix(Mix(seed + 0x9e3779b97f4a7c15ull) ^ place);
     if (kind == SamplerKind::Random)
         state = Mix(state + 0xd1342543de82ef95ull * (uint64_t(sampleIndex) + 1));
-    index = sampleIndex;
+    reversedIndex = ReverseBits(sampleIndex);
     dimension = 0;
+    nextPair = kPairs;
 }
 
 // Pads independent two-dimensional Owen-scrambled Sobol sets: the index is shuffled anew for each
-// pair, which keeps every pair a (0,2)-sequence over the samples of a pixel (Burley 2020).
-Vec2f Sampler::Sobol2D() {
-    const uint64_t h = Mix(state + 0x9e3779b97f4a7c15ull * ++dimension);
-    const uint64_t g = Mix(h);
-    const uint32_t shuffled = OwenScramble(index, uint32_t(h));
-    // The first dimension is the bit reversal, which scrambling undoes again at once.
-    const uint32_t x = ReverseBits(LaineKarras(shuffled, uint32_t(g)));
-    const uint32_t y = OwenScramble(SobolSecond(shuffled), uint32_t(g >> 32));
-    return {float(x >> 8) * 0x1p-24f, float(y >> 8) * 0x1p-24f};
+// pair, which keeps every pair a (0,2)-sequence over the samples of a pixel (Burley 2020). To
+// scramble a number is to reverse its bits, permute and reverse them back; the first dimension is
+// itself the reversed index, and of what happens to the second only the last reversal is left.
+// No pair waits for another, so that the compiler can make all of them at once.
+void Sampler::MakePairs() {
+    for (uint32_t i = 0; i < kPairs; ++i) {
+        const uint64_t h = Mix(state + 0x9e3779b97f4a7c15ull * (dimension + i + 1));
+        const uint64_t g = Mix(h);
+        const uint32_t shuffled = ReverseBits(LaineKarras(reversedIndex, uint32_t(h)));
+        const uint32_t x = LaineKarras(shuffled, uint32_t(g));
+        const uint32_t y = LaineKarras(SobolSecondReversed(shuffled), uint32_t(g >> 32));
+        xs[i] = ToUnit(ReverseBits(x));
+        ys[i] = ToUnit(ReverseBits(y));
+    }
+    dimension += kPairs;
 }
 
 }  // namespace lull

@@ -16,7 +16,7 @@ class Sampler {
     void StartSample(const Vec2i& pixel, uint32_t index);
 
     // Return the next one or two dimensions, each in [0, 1).
-    float Get1D() { return kind == SamplerKind::Random ? Random1D() : Sobol2D().x(); }
+    float Get1D() { return kind == SamplerKind::Random ? Random1D() : Sobol1D(); }
     Vec2f Get2D() { return kind == SamplerKind::Random ? Random2D() : Sobol2D(); }
 
   private:
@@ -33,12 +33,29 @@ class Sampler {
         const uint64_t r = NextRandom();
         return {float(r >> 40) * 0x1p-24f, float((r >> 8) & 0xffffff) * 0x1p-24f};
     }
-    Vec2f Sobol2D();
+    // Sobol: returns the place of the next pair among those that are made.
+    uint32_t NextPair() {
+        if (nextPair == kPairs) {
+            MakePairs();
+            nextPair = 0;
+        }
+        return nextPair++;
+    }
+    float Sobol1D() { return xs[NextPair()]; }
+    Vec2f Sobol2D() {
+        const uint32_t i = NextPair();
+        return {xs[i], ys[i]};
+    }
+    // Makes the next kPairs pairs of dimensions.
+    void MakePairs();
 
+    static constexpr uint32_t kPairs = 8;
     uint64_t seed;
-    uint64_t state = 0;      // random: the counter; Sobol: the hash of (seed, pixel)
-    uint32_t index = 0;      // Sobol only
-    uint32_t dimension = 0;  // Sobol only: how many pairs were taken
+    uint64_t state = 0;  // random: the counter; Sobol: the hash of (seed, pixel)
+    // Sobol only: the sample's index, bits reversed; how many pairs of dimensions were made; the
+    // last kPairs of these, and which of them is next.
+    uint32_t reversedIndex = 0, dimension = 0, nextPair = kPairs;
+    std::array<float, kPairs> xs{}, ys{};
     SamplerKind kind;
 };
 

@@ -171,6 +171,75 @@ TEST(Sampler, SobolRunsAreNets) {
     }
 }
 
+// Defines the points step by step, as the papers have them; the sampler takes short cuts.
+namespace slow {
+
+uint64_t Mix(uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+}
+
+uint32_t ReverseBits(uint32_t x) {
+    uint32_t result = 0;
+    for (int bit = 0; bit < 32; ++bit) result |= ((x >> bit) & 1) << (31 - bit);
+    return result;
+}
+
+// Laine and Karras 2011, with the constants of Vegdahl 2021.
+uint32_t OwenScramble(uint32_t x, uint32_t seed) {
+    x = ReverseBits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return ReverseBits(x);
+}
+
+// Multiplies by the generator matrix column by column: each follows from the one before.
+uint32_t SobolSecond(uint32_t index) {
+    uint32_t result = 0;
+    for (uint32_t v = 1u << 31; index; index >>= 1, v ^= v >> 1)
+        if (index & 1) result ^= v;
+    return result;
+}
+
+Vec2f Point(uint64_t seed, const Vec2i& pixel, uint32_t index, uint32_t dimension) {
+    const uint64_t place = (uint64_t(uint32_t(pixel.y())) << 32) | uint32_t(pixel.x());
+    const uint64_t state = Mix(Mix(seed + 0x9e3779b97f4a7c15ull) ^ place);
+    const uint64_t h = Mix(state + 0x9e3779b97f4a7c15ull * (dimension + 1));
+    const uint64_t g = Mix(h);
+    const uint32_t shuffled = OwenScramble(index, uint32_t(h));
+    const uint32_t x = OwenScramble(ReverseBits(shuffled), uint32_t(g));
+    const uint32_t y = OwenScramble(SobolSecond(shuffled), uint32_t(g >> 32));
+    return {float(x >> 8) * 0x1p-24f, float(y >> 8) * 0x1p-24f};
+}
+
+}  // namespace slow
+
+TEST(Sampler, SobolIsItsDefinition) {
+    const auto expectPoints = [](uint64_t seed, const Vec2i& pixel, uint32_t index) {
+        Sampler pairs(SamplerKind::Sobol, seed), singles(SamplerKind::Sobol, seed);
+        pairs.StartSample(pixel, index);
+        singles.StartSample(pixel, index);
+        for (uint32_t dimension = 0; dimension < 6; ++dimension) {
+            const Vec2f expected = slow::Point(seed, pixel, index, dimension);
+            ASSERT_EQ(pairs.Get2D(), expected) << seed << " " << index << " " << dimension;
+            ASSERT_EQ(singles.Get1D(), expected.x()) << seed << " " << index << " " << dimension;
+        }
+    };
+    for (const uint64_t seed : {0ull, 7ull, 0x123456789abcdef0ull, ~0ull})
+        for (const Vec2i& pixel : {Vec2i(0, 0), Vec2i(-3, 99), Vec2i(1919, 1079)}) {
+            for (uint32_t index = 0; index < 1024; ++index) expectPoints(seed, pixel, index);
+            for (int bit = 10; bit < 32; ++bit)
+                for (const uint32_t index : {1u << bit, (1u << bit) - 1, ~(1u << bit)})
+                    expectPoints(seed, pixel, index);
+        }
+    // Indices without a pattern.
+    for (uint32_t i = 0; i < 4096; ++i) expectPoints(i, Vec2i(int(i), 5), uint32_t(slow::Mix(i)));
+}
+
 TEST(Sampler, SobolScramblesDimensionsDifferently) {
     Sampler sampler(SamplerKind::Sobol, 7);
     constexpr int kDimensions = 64;
