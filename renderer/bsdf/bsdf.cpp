@@ -15,6 +15,14 @@ constexpr bool IsTwoSided() {
 
 }  // namespace
 
+bool Bsdf::Transmits() const {
+    for (int i = 0; i < lobeCount; ++i)
+        if (VisitLobe(lobes[i],
+                      []<typename L>(const L&) { return !L::kIsSpecular && L::kTransmits; }))
+            return true;
+    return false;
+}
+
 const Lobe& Bsdf::Choose(int choice, LobeSet set) const {
     if (set == LobeSet::All || specularCount == 0) return lobes[choice];
     int i = 0;

@@ -44,6 +44,9 @@ class Bsdf {
     int LobeCount(LobeSet set) const {
         return set == LobeSet::All ? lobeCount : lobeCount - specularCount;
     }
+    // Says whether light from the other side of the surface can be scattered to this one, other
+    // than by specular lobes.
+    bool Transmits() const;
     const Lobe& At(int i) const { return lobes[i]; }
     float Eta() const { return eta; }
     const Frame& Shading() const { return shading; }

@@ -124,7 +124,7 @@ Job Prepare(const Options& options) {
         }
     CheckWritable(options.output + ".csv");
     if (!options.report.empty()) CheckWritable(options.report);
-    job.scene = Compile(input.description, settings.scene.compile, input.warnings);
+    job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     job.sceneHash = SceneHash(input.description);
     job.provenance = MakeProvenance(settings, *job.scene, input.film);

@@ -112,7 +112,7 @@ Job Prepare(const CompareOptions& options) {
     }
     CheckOutputs(options);
     CheckCheckpoint(settings.checkpoint);
-    job.scene = Compile(input.description, settings.scene.compile, input.warnings);
+    job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     job.warnings = input.warnings.Counts();
     job.provenance = MakeProvenance(settings, *job.scene, input.film);

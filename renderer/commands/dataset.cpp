@@ -151,7 +151,7 @@ ExitCode RunDataset(const Options& options) {
     }
 
     const std::unique_ptr<const Scene> scene =
-        Compile(input.description, settings.scene.compile, input.warnings);
+        Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));

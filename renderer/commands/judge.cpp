@@ -85,7 +85,7 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     }
 
     const std::unique_ptr<const Scene> scene =
-        Compile(input.description, settings.scene.compile, input.warnings);
+        Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion =

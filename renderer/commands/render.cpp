@@ -189,7 +189,7 @@ ExitCode RunRender(Options options, Job* job) {
     if (leads) CheckCheckpoint(settings.checkpoint);
 
     const std::unique_ptr<const Scene> scene =
-        Compile(input.description, settings.scene.compile, input.warnings);
+        Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
 
     Provenance provenance = MakeProvenance(settings, *scene, input.film);

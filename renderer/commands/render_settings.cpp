@@ -63,6 +63,12 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     app.add_flag("--json-progress", s->jsonProgress, "Print progress as JSON, an object a line");
 }
 
+CompileOptions MakeCompileOptions(const RenderSettings& settings) {
+    CompileOptions options = settings.scene.compile;
+    options.lightHierarchy = settings.estimator == Estimator::Combined;
+    return options;
+}
+
 int FixedSpp(const std::string& rule) {
     int spp = 0;
     if (rule.starts_with("fixed:"))

@@ -9,7 +9,9 @@ struct CompileOptions {
     bool substitute = false;  // replace what is not modelled, with counted warnings
     FilmOverrides film;
     int maxDepth = -1;  // -1: as the scene says
-    int threads = 0;    // for the acceleration structure; 0: all
+    // Where there are many lights, choose them by a hierarchy instead of pbrt-v3's tables.
+    bool lightHierarchy = true;
+    int threads = 0;  // for the acceleration structure; 0: all
 };
 
 // Throws Error, with file and line, for the first thing that is wrong or not modelled.

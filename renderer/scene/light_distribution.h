@@ -7,17 +7,24 @@
 #include <span>
 
 #include "renderer/base/sampling.h"
+#include "renderer/scene/light_hierarchy.h"
 
 namespace lull {
 
-// Holds the probabilities of choosing each light, as running sums: the last one is 1.
+// Holds the probabilities of choosing each light: as running sums, the last one of which is 1, or
+// as what a hierarchy has for a receiver.
 class LightChoice {
   public:
     explicit LightChoice(std::span<const float> sums) : sums(sums) {}
+    LightChoice(const LightHierarchy& hierarchy, const Receiver& receiver)
+        : hierarchy(&hierarchy), receiver(receiver) {}
     LightChoice() = default;
 
-    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive.
+    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive but for
+    // hierarchies that know of no light that reaches the receiver.
     int Sample(float u, float* pmf) const {
+        if (hierarchy) [[unlikely]]
+            return hierarchy->Sample(receiver, u, pmf);
         // Count the sums that u has passed; short tables fastest without a branch.
         constexpr size_t kShort = 32;
         int i = 0;
@@ -28,10 +35,16 @@ class LightChoice {
         *pmf = Pmf(i);
         return i;
     }
-    float Pmf(int i) const { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
+    float Pmf(int i) const {
+        if (hierarchy) [[unlikely]]
+            return hierarchy->Pmf(receiver, i);
+        return i == 0 ? sums[0] : sums[i] - sums[i - 1];
+    }
 
   private:
     std::span<const float> sums;
+    const LightHierarchy* hierarchy = nullptr;
+    Receiver receiver;
 };
 
 // Follows pbrt-v3's light sampling strategies; "spatial", with a table for every voxel of the

@@ -5,6 +5,9 @@
 namespace lull {
 namespace {
 
+// More lights than these are chosen by a hierarchy.
+constexpr size_t kMostTableLights = 100;
+
 struct WorldSphere {
     Vec3f center;
     float radius;
@@ -49,10 +52,34 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     return light;
 }
 
+size_t CountLights(const Description& description, const ShapeTable& shapes) {
+    size_t count = description.lights.size();
+    for (size_t i = 0; i < size_t(shapes.worldShapeCount); ++i)
+        if (description.shapes[i].areaLight) count += shapes.shapes[i].PrimitiveCount();
+    return count;
+}
+
+std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
+    std::vector<LightBounds> bounds;
+    bounds.reserve(lights.size());
+    std::vector<int> unbounded;
+    for (const Light& light : lights)
+        bounds.push_back(std::visit(
+            [&]<typename L>(const L& l) -> LightBounds {
+                if constexpr (requires { l.Bounds(); }) return l.Bounds();
+                unbounded.push_back(int(&light - lights.data()));
+                return {};
+            },
+            light));
+    return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
+}
+
 }  // namespace
 
-LightTable::LightTable(const Description& description, ShapeTable& shapes, Warnings& warnings) {
+LightTable::LightTable(const Description& description, ShapeTable& shapes, bool allowHierarchy,
+                       Warnings& warnings) {
     const WorldSphere world = BoundingSphere(shapes.bounds);
+    lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
         lights.push_back(MakeLight(description, entity, world.radius, warnings));
         entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
@@ -88,9 +115,15 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, Warni
 
     const Entity& integrator = description.integrator;
     std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
-    if (strategy != "uniform" && strategy != "power" && strategy != "spatial") {
+    if (strategy != "uniform" && strategy != "power" && strategy != "spatial" &&
+        strategy != "bvh") {
         warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used", strategy);
         strategy = "spatial";
+    }
+    const bool isMany = allowHierarchy && lights.size() > kMostTableLights;
+    if (strategy == "bvh" || (strategy == "spatial" && isMany)) {
+        hierarchy = MakeHierarchy(lights);
+        return;
     }
     std::vector<float> weights(lights.size(), 1.f);
     if (strategy == "power")

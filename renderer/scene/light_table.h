@@ -22,14 +22,20 @@ class LightTable {
   public:
     LightTable() = default;
     // Makes the lights of the description and one for each primitive of an emitting shape, which
-    // it tells (Shape::firstLight); `shapes` must outlive the table and stay where it is. Throws
-    // Error with file and line for unknown kinds.
-    LightTable(const Description&, ShapeTable& shapes, Warnings&);
+    // it tells (Shape::firstLight); `shapes` must outlive the table and stay where it is. Lights
+    // are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power", "spatial" (by
+    // tables, or by a hierarchy where there are many lights and `allowHierarchy` says that this
+    // may be) or, which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error with file and
+    // line for unknown kinds.
+    LightTable(const Description&, ShapeTable& shapes, bool allowHierarchy, Warnings&);
 
     int Count() const { return int(lights.size()); }
     const Light& operator[](int i) const { return lights[i]; }
     // Lists the lights that rays meet when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
+
+    // Says whether lights are chosen by a hierarchy.
+    bool HasHierarchy() const { return hierarchy != nullptr; }
 
     // Says whether a ray can meet any light at all.
     bool AnyVisible() const { return anyVisible; }
@@ -37,7 +43,13 @@ class LightTable {
     // Samples light i as seen from `from`. Returns nothing where it gives no light there.
     std::optional<LightSample> Sample(int i, const Vec3f& from, const Vec2f& u) const;
 
-    // Chooses a light for points near p, as the scene's strategy says.
+    // Returns how lights are chosen at a hit, as the scene's strategy says.
+    LightChoice Choice(const SurfaceInteraction& hit, const Bsdf& bsdf) const {
+        if (hierarchy) [[unlikely]]
+            return {*hierarchy, {hit.p, FaceForward(hit.n, hit.wo), bsdf.Transmits()}};
+        return Choice(hit.p);
+    }
+    // The same where there is no hierarchy, for points near p.
     LightChoice Choice(const Vec3f& p) const {
         return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
             const auto sample = Sample(i, q, u);
@@ -55,6 +67,7 @@ class LightTable {
     std::vector<int> infinite;
     bool anyVisible = false;
     std::unique_ptr<LightDistribution> distribution;
+    std::unique_ptr<LightHierarchy> hierarchy;  // instead of `distribution`
 };
 
 }  // namespace lull

@@ -131,7 +131,7 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         // Sample the light that arrives directly from lights.
         const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
-            path.choice = scene.lights.Choice(hit.p);
+            path.choice = scene.lights.Choice(hit, bsdf);
             L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice);
         }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
 #include "renderer/scene/shape_table.h"
 
@@ -52,6 +53,7 @@ struct AreaLight {
         if (const auto* disk = std::get_if<const Disk*>(&surface)) return (*disk)->Area();
         return std::get<const Revolved*>(surface)->Area();
     }
+    LightBounds Bounds() const;
     Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L; }
 
   private:

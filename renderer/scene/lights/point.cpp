@@ -22,4 +22,8 @@ std::optional<LightSample> PointLight::Sample(const Vec3f& from) const {
                        .p = p};
 }
 
+LightBounds PointLight::Bounds() const {
+    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+}
+
 }  // namespace lull

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/input/description.h"
+#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -13,6 +14,7 @@ struct PointLight {
     static PointLight Make(const LightEntity&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
     Rgb Power() const { return 4 * kPi * I; }
+    LightBounds Bounds() const;
 };
 
 }  // namespace lull

@@ -31,4 +31,16 @@ std::optional<LightSample> SpotLight::Sample(const Vec3f& from) const {
     return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
 }
 
+// Within the cone the light is taken as bright as a point light of this intensity; it leaves along
+// "normals" up to where it begins to fall off.
+LightBounds SpotLight::Bounds() const {
+    const float start = std::acos(std::clamp(cosFalloffStart, -1.f, 1.f));
+    const float total = std::acos(std::clamp(cosTotalWidth, -1.f, 1.f));
+    return {.box = {p, p},
+            .axis = axis,
+            .cosNormals = std::cos(std::clamp(start, 0.f, total)),
+            .cosEmission = std::cos(std::clamp(total - start, 0.f, total) + 1e-3f),
+            .power = BoundedPower(4 * kPi * I)};
+}
+
 }  // namespace lull

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/input/description.h"
+#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -13,6 +14,7 @@ struct SpotLight {
 
     static SpotLight Make(const LightEntity&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
+    LightBounds Bounds() const;
     Rgb Power() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)) * I; }
 };
 

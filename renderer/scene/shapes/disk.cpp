@@ -42,13 +42,17 @@ void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds,
     hit->surfaceDpdv = hit->dpdv;
 }
 
+Vec3f SampledNormal(const Disk& disk) {
+    const Vec3f n = TransformNormal(disk.place.shapeFromWorld, Vec3f(0, 0, 1)).normalized();
+    return disk.place.reverseOrientation ? Vec3f(-n) : n;
+}
+
 std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {
     const Vec2f d = disk.radius * SampleConcentricDisk(u);
     ShapeSample sample;
     std::tie(sample.p, sample.pError) = TransformWithError(
         disk.place.worldFromShape, Vec3f(d.x(), d.y(), disk.height), Vec3f::Zero());
-    sample.n = TransformNormal(disk.place.shapeFromWorld, Vec3f(0, 0, 1)).normalized();
-    if (disk.place.reverseOrientation) sample.n = -sample.n;
+    sample.n = SampledNormal(disk);
     sample.pdf = SolidAnglePdf(1 / disk.Area(), from, sample.p, sample.n);
     if (!(sample.pdf > 0)) return {};
     return sample;

@@ -47,6 +47,9 @@ void Interact(const Disk&, const Ray&, float t, SurfaceNeeds, SurfaceInteraction
 std::optional<ShapeSample> Sample(const Sphere&, const Vec3f& from, const Vec2f& u);
 std::optional<ShapeSample> Sample(const Disk&, const Vec3f& from, const Vec2f& u);
 
+// Returns the normal that samples of the disk have.
+Vec3f SampledNormal(const Disk&);
+
 // Return the density, 1/sr, with which Sample finds the point p of the shape with normal n.
 float Pdf(const Sphere&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 float Pdf(const Disk&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
