@@ -65,7 +65,7 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
 
 CompileOptions MakeCompileOptions(const RenderSettings& settings) {
     CompileOptions options = settings.scene.compile;
-    options.lightHierarchy = settings.estimator == Estimator::Combined;
+    options.lightsAsPbrtV3 = settings.estimator == Estimator::PbrtV3;
     return options;
 }
 

@@ -9,8 +9,9 @@ struct CompileOptions {
     bool substitute = false;  // replace what is not modelled, with counted warnings
     FilmOverrides film;
     int maxDepth = -1;  // -1: as the scene says
-    // Where there are many lights, choose them by a hierarchy instead of pbrt-v3's tables.
-    bool lightHierarchy = true;
+    // Choose and sample lights as pbrt-v3 does, for its estimator: by tables however many there
+    // are, and environment maps by all of their brightness.
+    bool lightsAsPbrtV3 = false;
     int threads = 0;  // for the acceleration structure; 0: all
 };
 

@@ -24,10 +24,9 @@ class LightTable {
     // Makes the lights of the description and one for each primitive of an emitting shape, which
     // it tells (Shape::firstLight); `shapes` must outlive the table and stay where it is. Lights
     // are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power", "spatial" (by
-    // tables, or by a hierarchy where there are many lights and `allowHierarchy` says that this
-    // may be) or, which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error with file and
-    // line for unknown kinds.
-    LightTable(const Description&, ShapeTable& shapes, bool allowHierarchy, Warnings&);
+    // tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or, which pbrt-v3
+    // does not know, "bvh" (by a hierarchy). Throws Error with file and line for unknown kinds.
+    LightTable(const Description&, ShapeTable& shapes, bool asPbrtV3, Warnings&);
 
     int Count() const { return int(lights.size()); }
     const Light& operator[](int i) const { return lights[i]; }

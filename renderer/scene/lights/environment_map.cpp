@@ -27,26 +27,31 @@ int ChooseFar(float nearWeight, float farWeight, float* t) {
 
 }  // namespace
 
-EnvironmentMap::EnvironmentMap(Image i, const Rgb& s)
+EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
     : image(std::move(i)),
       scale(s),
       luminanceWeights(s * Rgb(Luminance({1, 0, 0}), Luminance({0, 1, 0}), Luminance({0, 0, 1}))) {
     const int rows = 2 * image.height;
     for (int v = 0; v < rows; ++v) rowWeights.push_back(std::sin(kPi * (v + 0.5f) / rows));
 
-    std::vector<float> weights;
-    weights.reserve(size_t(image.width) * size_t(image.height));
-    double total = 0;
-    for (int j = 0; j < image.height; ++j) {
-        for (int i = 0; i < image.width; ++i) {
-            const std::array<float, 4> corners = Corners(i, j);
-            float weight = 0;
-            for (int v = 0; v < 2; ++v)
-                for (int u = 0; u < 2; ++u)
-                    weight +=
-                        rowWeights[Wrapped(2 * j + 1 + v, rows)] * CellBrightness(corners, u, v);
-            weights.push_back(weight);
-            total += weight;
+    // Weigh the quads; to compensate, once more by what lies above the mean.
+    std::vector<float> weights(size_t(image.width) * size_t(image.height));
+    double total = 0, solidAngle = 0;
+    for (int pass = 0; pass <= int(isCompensated); ++pass) {
+        if (pass == 1) compensation = float(total / solidAngle);
+        total = solidAngle = 0;
+        for (int j = 0; j < image.height; ++j) {
+            for (int i = 0; i < image.width; ++i) {
+                const std::array<float, 4> corners = Corners(i, j);
+                float weight = 0;
+                for (int v = 0; v < 2; ++v) {
+                    const float rowWeight = rowWeights[Wrapped(2 * j + 1 + v, rows)];
+                    for (int u = 0; u < 2; ++u) weight += rowWeight * CellWeight(corners, u, v);
+                    solidAngle += 2 * rowWeight;
+                }
+                weights[size_t(j) * image.width + i] = weight;
+                total += weight;
+            }
         }
     }
     quads = Distribution2D(weights, image.width, image.height);
@@ -72,6 +77,12 @@ std::array<float, 4> EnvironmentMap::Corners(int i, int j) const {
         image.texels);
 }
 
+float EnvironmentMap::CellWeight(const std::array<float, 4>& corners, int u, int v) const {
+    constexpr float kLeast = 0.1f;
+    const float brightness = CellBrightness(corners, u, v);
+    return std::max(brightness - compensation, kLeast * brightness);
+}
+
 Vec2f EnvironmentMap::Sample(const Vec2f& u, float* pdf) const {
     // Choose a quad.
     const Vec2f p = quads.SampleContinuous(u);
@@ -85,8 +96,7 @@ Vec2f EnvironmentMap::Sample(const Vec2f& u, float* pdf) const {
     std::array<std::array<float, 2>, 2> density;
     for (const int v : {0, 1})
         for (const int h : {0, 1})
-            density[v][h] =
-                rowWeights[Wrapped(2 * j + 1 + v, rows)] * CellBrightness(corners, h, v);
+            density[v][h] = rowWeights[Wrapped(2 * j + 1 + v, rows)] * CellWeight(corners, h, v);
     const float nearV = density[0][0] + density[0][1], farV = density[1][0] + density[1][1];
     *pdf = 0;
     if (!(nearV + farV > 0)) return p;
@@ -104,7 +114,7 @@ float EnvironmentMap::Pdf(const Vec2f& st) const {
     const int row = std::clamp(int(st.y() * float(rows)), 0, rows - 1);
     // Cells 2 i + 1 and 2 i + 2 are those of quad i, where cell 0 follows the last.
     const int u = Wrapped(column + columns - 1, columns), v = Wrapped(row + rows - 1, rows);
-    return rowWeights[row] * CellBrightness(Corners(u / 2, v / 2), u % 2, v % 2);
+    return rowWeights[row] * CellWeight(Corners(u / 2, v / 2), u % 2, v % 2);
 }
 
 Rgb EnvironmentMap::MeanTexel() const {

@@ -19,8 +19,10 @@ class EnvironmentMap {
     static constexpr float kMaxTexel = 1e37f;
 
     // Multiplies the texels by `scale`. The products must be from 0 to kMaxTexel. Rows run from
-    // theta = 0; the density follows the solid angle of a row.
-    EnvironmentMap(Image image, const Rgb& scale);
+    // theta = 0; the density follows the solid angle of a row. A map that is compensated leaves
+    // what is darker than the mean to BSDF sampling, which is good enough at it (Karlik et al.
+    // 2019).
+    EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false);
 
     // Returns the radiance at a point of the unit square.
     Rgb Radiance(const Vec2f& st) const;
@@ -36,9 +38,14 @@ class EnvironmentMap {
     // (i + 1, j + 1), where the last neighbours the first.
     std::array<float, 4> Corners(int i, int j) const;
 
+    // Returns what the density of a cell is in proportion to, but for its solid angle. The dark
+    // keeps some: what scatters light but is never sampled, as shading normals make, needs it.
+    float CellWeight(const std::array<float, 4>& corners, int u, int v) const;
+
     Image image;
     Rgb scale, luminanceWeights;
     Distribution2D quads;
+    float compensation = 0;         // brightness that is left to BSDF sampling
     std::vector<float> rowWeights;  // from brightness to density, by row of cells
 };
 

@@ -38,7 +38,7 @@ int Blacken(const Rgb& L, Image* image) {
 }  // namespace
 
 InfiniteLight InfiniteLight::Make(const Description& description, const LightEntity& entity,
-                                  float worldRadius, Warnings& warnings) {
+                                  float worldRadius, bool isCompensated, Warnings& warnings) {
     const Parameters& params = entity.parameters;
     InfiniteLight light;
     light.worldRadius = worldRadius;
@@ -53,7 +53,7 @@ InfiniteLight InfiniteLight::Make(const Description& description, const LightEnt
         Image image = ReadImage(ResolvePath(description, file));
         for (int bad = Blacken(L, &image); bad > 0; --bad)
             warnings.Add(entity.loc, "environment map texel that is not finite or negative", file);
-        light.map = std::make_shared<const EnvironmentMap>(std::move(image), L);
+        light.map = std::make_shared<const EnvironmentMap>(std::move(image), L, isCompensated);
     } catch (const Error& error) {
         throw Error(entity.loc, error.what());
     }

@@ -13,8 +13,9 @@ namespace lull {
 class InfiniteLight {
   public:
     // Reads the image, if any. Throws Error where it cannot be read; texels that are not finite or
-    // negative count as black, with a counted warning.
-    static InfiniteLight Make(const Description&, const LightEntity&, float worldRadius, Warnings&);
+    // negative count as black, with a counted warning. `isCompensated`: see EnvironmentMap.
+    static InfiniteLight Make(const Description&, const LightEntity&, float worldRadius,
+                              bool isCompensated, Warnings&);
 
     // Returns the radiance that arrives from direction w (unit, world).
     Rgb Le(const Vec3f& w) const;

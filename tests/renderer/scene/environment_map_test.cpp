@@ -64,22 +64,58 @@ TEST(EnvironmentMap, DensityFollowsBrightnessAndSolidAngle) {
     EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
 }
 
-// The mean of radiance by density is the integral, whatever the place within cells.
-TEST(EnvironmentMap, EstimatesItsIntegral) {
-    const EnvironmentMap map(TestImage(), Rgb::Ones());
-    Random random(2);
-    double estimate = 0, squares = 0, uniform = 0;
+// A compensated map takes the mean brightness off the density, but nothing that is bright away.
+TEST(EnvironmentMap, CompensatedLeavesTheDarkToOthers) {
+    const EnvironmentMap plain(TestImage(), Rgb::Ones()), map(TestImage(), Rgb::Ones(), true);
+    std::vector<double> expected;
+    int less = 0;
+    for (int v = 0; v < 2 * kHeight; ++v)
+        for (int u = 0; u < 2 * kWidth; ++u) {
+            const Vec2f centre((u + 0.5f) / (2 * kWidth), (v + 0.5f) / (2 * kHeight));
+            expected.push_back(map.Pdf(centre) / (4 * kWidth * kHeight));
+            EXPECT_EQ(map.Pdf(centre) > 0, plain.Pdf(centre) > 0);
+            less += map.Pdf(centre) < 0.5f * plain.Pdf(centre);
+        }
+    EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), 1, 1e-5);
+    EXPECT_GT(less, kWidth * kHeight);
+
     constexpr int kSamples = 200000;
+    Random random(6);
+    std::vector<int64_t> cells(expected.size());
     for (int k = 0; k < kSamples; ++k) {
         float pdf;
         const Vec2f st = map.Sample(random.Point(), &pdf);
-        const double value = Luminance(map.Radiance(st)) / pdf;
-        estimate += value / kSamples;
-        squares += value * value / kSamples;
-        uniform += Luminance(map.Radiance({(k % 500 + 0.5f) / 500, (k / 500 + 0.5f) / 400})) /
-                   double(kSamples);
+        const int cell = int(st.y() * 2 * kHeight) * 2 * kWidth + int(st.x() * 2 * kWidth);
+        ASSERT_NEAR(pdf, expected[cell] * expected.size(), 1e-4 * (1 + pdf));
+        ++cells[cell];
     }
-    EXPECT_NEAR(estimate, uniform, 4 * std::sqrt((squares - estimate * estimate) / kSamples));
+    EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
+
+    // Where all is equally bright, nothing lies above the mean.
+    const EnvironmentMap even({2, 1, 1, std::vector<float>{3, 3}}, Rgb::Ones(), true);
+    EXPECT_NEAR(even.Pdf({0.2f, 0.5f}),
+                EnvironmentMap({2, 1, 1, std::vector<float>{3, 3}}, Rgb::Ones()).Pdf({0.2f, 0.5f}),
+                1e-4);
+}
+
+// The mean of radiance by density is the integral, whatever the place within cells.
+TEST(EnvironmentMap, EstimatesItsIntegral) {
+    for (const bool isCompensated : {false, true}) {
+        const EnvironmentMap map(TestImage(), Rgb::Ones(), isCompensated);
+        Random random(2);
+        double estimate = 0, squares = 0, uniform = 0;
+        constexpr int kSamples = 200000;
+        for (int k = 0; k < kSamples; ++k) {
+            float pdf;
+            const Vec2f st = map.Sample(random.Point(), &pdf);
+            const double value = Luminance(map.Radiance(st)) / pdf;
+            estimate += value / kSamples;
+            squares += value * value / kSamples;
+            uniform += Luminance(map.Radiance({(k % 500 + 0.5f) / 500, (k / 500 + 0.5f) / 400})) /
+                       double(kSamples);
+        }
+        EXPECT_NEAR(estimate, uniform, 4 * std::sqrt((squares - estimate * estimate) / kSamples));
+    }
 }
 
 TEST(EnvironmentMap, FormsOfTexelsAgree) {

@@ -136,7 +136,7 @@ TEST(LightHierarchy, StandsAnyArrangement) {
 }
 
 std::unique_ptr<const Scene> MakeLights(const std::string& lights, const char* strategy,
-                                        bool lightHierarchy = true) {
+                                        bool lightsAsPbrtV3 = false) {
     const TemporaryDirectory directory;
     Warnings warnings;
     const std::string text = fmt::format(
@@ -146,7 +146,7 @@ std::unique_ptr<const Scene> MakeLights(const std::string& lights, const char* s
     const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
     CompileOptions options;
     options.threads = 1;
-    options.lightHierarchy = lightHierarchy;
+    options.lightsAsPbrtV3 = lightsAsPbrtV3;
     auto scene = Compile(d, options, warnings);
     EXPECT_EQ(warnings.Total(), 0);
     return scene;
@@ -211,9 +211,9 @@ TEST(LightHierarchy, IsForManyLights) {
     };
     EXPECT_FALSE(MakeLights(lights(100), "spatial")->lights.HasHierarchy());
     EXPECT_TRUE(MakeLights(lights(101), "spatial")->lights.HasHierarchy());
-    EXPECT_FALSE(MakeLights(lights(101), "spatial", false)->lights.HasHierarchy());
+    EXPECT_FALSE(MakeLights(lights(101), "spatial", true)->lights.HasHierarchy());
     EXPECT_FALSE(MakeLights(lights(101), "power")->lights.HasHierarchy());
-    EXPECT_TRUE(MakeLights(lights(2), "bvh", false)->lights.HasHierarchy());
+    EXPECT_TRUE(MakeLights(lights(2), "bvh", true)->lights.HasHierarchy());
 }
 
 }  // namespace
