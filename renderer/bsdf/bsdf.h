@@ -57,8 +57,16 @@ class Bsdf {
     // values are finite; where float cannot hold one, both are 0.
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
 
-    // Chooses one lobe of the set uniformly with u.x and a direction from it. Returns nothing
-    // where no light can be scattered by the choice (f is 0 or the density is 0).
+    // Lets Sample choose among LobeSet::All by the share of light that each lobe scatters to wo,
+    // and Evaluate give the density of that; the non-specular lobes by themselves are still chosen
+    // uniformly. To be called when all lobes are there, with wo as it will be for both.
+    void ChooseByShare(const Vec3f& wo);
+    // Returns the same before that.
+    Bsdf WithoutShares() const;
+
+    // Chooses one lobe of the set, uniformly unless ChooseByShare was called, with u.x and a
+    // direction from it. Returns nothing where no light can be scattered by the choice (f is 0 or
+    // the density is 0).
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
 
   private:
@@ -71,6 +79,8 @@ class Bsdf {
     Vec3f ng;
     float eta;
     int lobeCount = 0, specularCount = 0;
+    bool hasShares = false;
+    std::array<float, kMaxLobes> shares;  // probabilities of lobes, where hasShares
     std::array<Lobe, kMaxLobes> lobes;
 };
 

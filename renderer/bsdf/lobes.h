@@ -136,6 +136,7 @@ struct FresnelBlend {
     StoredRgb rd, rs;
     TrowbridgeReitz distribution;
     StoredRgb scale = Rgb(1, 1, 1);  // f is not linear in rs
+    float glossyShare = 0.5f;        // of the samples, in (0, 1)
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
         const Vec3f h = wo + wi;
@@ -154,14 +155,16 @@ struct FresnelBlend {
         const Rgb f = Rgb(scale) * (diffuse + glossy);
         if (!SameHemisphere(wo, wi)) return {f, 0};
         const float glossyPdf = 0.5f * d / (cosO + distribution.Stretch(wo));
-        return {f, 0.5f * (cosI * kInvPi + glossyPdf)};
+        return {f, (1 - glossyShare) * (cosI * kInvPi) + glossyShare * glossyPdf};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
-        if (u.x() < 0.5f) {
-            *wi = SampleCosine(wo, {std::min(2 * u.x(), kOneMinusEpsilon), u.y()}, false);
+        const float diffuseShare = 1 - glossyShare;
+        if (u.x() < diffuseShare) {
+            const float x = std::min(u.x() / diffuseShare, kOneMinusEpsilon);
+            *wi = SampleCosine(wo, {x, u.y()}, false);
             return true;
         }
-        const Vec2f v(std::min(2 * (u.x() - 0.5f), kOneMinusEpsilon), u.y());
+        const Vec2f v(std::min((u.x() - diffuseShare) / glossyShare, kOneMinusEpsilon), u.y());
         const Vec3f h = distribution.SampleVisibleNormal(wo, v);
         *wi = (2 * wo.dot(h)) * h - wo;
         return SameHemisphere(wo, *wi);
@@ -180,6 +183,14 @@ static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
 Lobe Scaled(const Lobe& lobe, const Rgb& scale);
+
+// Estimates the share of the light that the lobe scatters to wo (z != 0): its reflectance for even
+// light, but for roughness, as a luminance.
+float EstimatedAlbedo(const Lobe& lobe, const Vec3f& wo);
+
+// Lets a FresnelBlend choose between its parts by what they scatter to wo, but each of them with a
+// probability of at least `least`; leaves other lobes alone.
+void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe);
 
 // Calls f with the lobe inside; f must take every kind and return the same type for all. A switch,
 // since std::visit goes through a table of functions for this many kinds, which nothing inlines.

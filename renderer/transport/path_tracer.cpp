@@ -31,7 +31,10 @@ Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteractio
     // pbrt-v3's weight in both, so that the mean stays the same.
     const bool hasOwnRay = estimator == Estimator::PbrtV3 || light->isHidden;
     const BsdfValue value =
-        bsdf.Evaluate(hit.wo, light->wi, hasOwnRay ? LobeSet::NonSpecular : LobeSet::All);
+        !hasOwnRay ? bsdf.Evaluate(hit.wo, light->wi, LobeSet::All)
+        : estimator == Estimator::PbrtV3
+            ? bsdf.Evaluate(hit.wo, light->wi, LobeSet::NonSpecular)
+            : bsdf.WithoutShares().Evaluate(hit.wo, light->wi, LobeSet::NonSpecular);
     if (IsBlack(value.f)) return Rgb::Zero();
     const float weight =
         light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
@@ -129,7 +132,8 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         }
 
         // Sample the light that arrives directly from lights.
-        const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+        Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+        if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
             path.choice = scene.lights.Choice(hit, bsdf);
             L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice);

@@ -93,6 +93,80 @@ TEST(BsdfSampling, FollowsItsDensity) {
         }
 }
 
+// Lobes of very different shares: a coat over a dark or a bright base, parts of one lobe, and
+// specular lobes among others.
+std::vector<std::vector<Lobe>> UnevenLobes() {
+    const Rgb dark(0.02f, 0.03f, 0.01f), bright(0.8f, 0.7f, 0.9f);
+    const TrowbridgeReitz d(0.3f, 0.3f), e(0.6f, 0.4f);
+    return {{LambertianReflection{bright}, DielectricReflection{bright, d, {1.5f}}},
+            {LambertianReflection{dark}, DielectricReflection{bright, e, {1.5f}}},
+            {FresnelBlend{bright, dark, d}},
+            {FresnelBlend{dark, bright, d}, OrenNayar(bright, 30), LambertianTransmission{dark}},
+            {SpecularTransmission{bright, 1}, LambertianReflection{dark},
+             DielectricReflection{bright, e, {1.5f}},
+             SpecularReflection<DielectricInterface>{bright, {1.5f}}}};
+}
+
+TEST(BsdfSampling, ByShareFollowsItsDensity) {
+    const double significance = Significance(int(UnevenLobes().size() * std::size(kAngles)));
+    uint64_t seed = 3000;
+    for (const std::vector<Lobe>& lobes : UnevenLobes())
+        for (double angle : kAngles) {
+            const Vec3f wo = FromAngles(angle, 200);
+            Bsdf bsdf = MakeBsdf(lobes);
+            bsdf.ChooseByShare(wo);
+            const SphereGrid grid = EvenGrid(20, 24);
+            const std::vector<double> expected = Integrate(grid, [&](const Vec3f& wi) {
+                return double(bsdf.Evaluate(wo, wi, LobeSet::All).pdf);
+            });
+            constexpr int kSamples = 50'000;
+            Random random(++seed);
+            std::vector<int64_t> observed(expected.size());
+            for (int i = 0; i < kSamples; ++i) {
+                const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
+                if (!s || s->isSpecular) continue;
+                ++observed[grid.CellOf(s->wi)];
+                ASSERT_NEAR(s->pdf, bsdf.Evaluate(wo, s->wi, LobeSet::All).pdf, 2e-3f * s->pdf);
+            }
+            EXPECT_GT(ChiSquarePValue(expected, observed, kSamples), significance)
+                << lobes.size() << " lobes, " << angle << " degrees, seed " << seed;
+        }
+}
+
+// However lobes are chosen, the light that they scatter is the same; by share with no more noise.
+TEST(BsdfSampling, ByShareLeavesTheMeanAsItIs) {
+    for (const std::vector<Lobe>& lobes : UnevenLobes()) {
+        const Vec3f wo = FromAngles(40, 200);
+        const Bsdf uniform = MakeBsdf(lobes);
+        Bsdf byShare = uniform;
+        byShare.ChooseByShare(wo);
+        constexpr int kSamples = 40'000;
+        double mean[2] = {}, variance[2] = {};
+        for (const int which : {0, 1}) {
+            const Bsdf& bsdf = which ? byShare : uniform;
+            Random random(5 + which);
+            double sum = 0, squares = 0;
+            for (int i = 0; i < kSamples; ++i) {
+                const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
+                if (!s) continue;
+                const double value = s->f.sum() * std::abs(s->wi.z()) / s->pdf;
+                sum += value;
+                squares += value * value;
+            }
+            mean[which] = sum / kSamples;
+            variance[which] = squares / kSamples - mean[which] * mean[which];
+        }
+        EXPECT_NEAR(mean[0], mean[1], 4.5 * std::sqrt((variance[0] + variance[1]) / kSamples))
+            << lobes.size() << " lobes";
+        EXPECT_LT(variance[1], 1.1 * variance[0]) << lobes.size() << " lobes";
+
+        const Bsdf again = byShare.WithoutShares();
+        const Vec3f wi = FromAngles(20, 10);
+        EXPECT_EQ(again.Evaluate(wo, wi, LobeSet::All).pdf,
+                  uniform.Evaluate(wo, wi, LobeSet::All).pdf);
+    }
+}
+
 // The remapped number must be uniform again: each lobe's own samples follow its own density.
 TEST(BsdfSampling, RemapsTheNumberThatChoseTheLobe) {
     const Rgb c(0.5f, 0.5f, 0.5f);
