@@ -209,8 +209,13 @@ float LightHierarchy::Importance(const Node& node, const Receiver& receiver) {
     const Vec3f half = 0.5f * node.box.Diagonal();
     const Vec3f toCenter = node.box.lower + half - receiver.p;
     const float reach = receiver.n.cwiseAbs().dot(half);
-    float height = receiver.n.dot(toCenter);
-    if (receiver.isTwoSided) height = std::abs(height);
+    const bool hasNormal = (receiver.n.array() != 0).any();
+    const auto heightOf = [&](const Vec3f& to) {
+        if (!hasNormal) return to.norm();
+        const float height = receiver.n.dot(to);
+        return receiver.isTwoSided ? std::abs(height) : height;
+    };
+    const float height = heightOf(toCenter);
     if (!(height + reach > 0)) return 0;
 
     // Find the least angle between a normal and the way to the receiver, from the sphere around the
@@ -252,8 +257,7 @@ float LightHierarchy::Importance(const Node& node, const Receiver& receiver) {
             const Vec3f to = toCenter + Vec3f(octant & 1 ? quarter.x() : -quarter.x(),
                                               octant & 2 ? quarter.y() : -quarter.y(),
                                               octant & 4 ? quarter.z() : -quarter.z());
-            float h = receiver.n.dot(to);
-            if (receiver.isTwoSided) h = std::abs(h);
+            const float h = heightOf(to);
             const float d2 = to.squaredNorm() + spread;
             sum += std::max(arriving(h, 0.5f * reach), 0.f) / (d2 * std::sqrt(d2));
         }

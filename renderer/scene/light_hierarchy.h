@@ -9,11 +9,12 @@
 
 namespace lull {
 
-// Holds what a surface point has to do with which lights reach it.
+// Holds what decides which lights reach a point, of a surface or a medium.
 struct Receiver {
     Vec3f p = Vec3f::Zero();
-    Vec3f n = Vec3f::UnitZ();  // geometric, unit, on the side that is looked at
-    bool isTwoSided = true;    // light from behind counts as well: the surface transmits
+    // Geometric, unit, on the side that is looked at; zero where light counts from anywhere.
+    Vec3f n = Vec3f::UnitZ();
+    bool isTwoSided = true;  // light from behind counts as well: the surface transmits
 };
 
 // Is a binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At

@@ -48,8 +48,10 @@ class LightTable {
             return {*hierarchy, {hit.p, FaceForward(hit.n, hit.wo), bsdf.Transmits()}};
         return Choice(hit.p);
     }
-    // The same where there is no hierarchy, for points near p.
+    // The same for a place whose surface, if it lies on any, does not matter.
     LightChoice Choice(const Vec3f& p) const {
+        if (hierarchy) [[unlikely]]
+            return {*hierarchy, {p, Vec3f::Zero(), true}};
         return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
             const auto sample = Sample(i, q, u);
             return sample ? Luminance(sample->L) / sample->pdf : 0.f;

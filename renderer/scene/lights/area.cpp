@@ -10,12 +10,15 @@ LightBounds AreaLight::Bounds() const {
     } else if (const auto* sphere = std::get_if<const Sphere*>(&surface)) {
         bounds.box = (*sphere)->WorldBounds();
         bounds.cosNormals = -1;
-    } else {
-        const Disk& disk = *std::get<const Disk*>(surface);
-        bounds.box = disk.WorldBounds();
-        bounds.axis = SampledNormal(disk);
+    } else if (const auto* disk = std::get_if<const Disk*>(&surface)) {
+        bounds.box = (*disk)->WorldBounds();
+        bounds.axis = SampledNormal(**disk);
         // Under a transform that mirrors, rays find light on the other side than samples.
-        bounds.isTwoSided |= disk.place.reverseOrientation != disk.place.flipNormals;
+        const QuadricPlacement& place = (*disk)->place;
+        bounds.isTwoSided |= place.reverseOrientation != place.flipNormals;
+    } else {
+        bounds.box = std::get<const Revolved*>(surface)->WorldBounds();
+        bounds.cosNormals = -1;
     }
     return bounds;
 }

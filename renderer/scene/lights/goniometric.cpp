@@ -27,4 +27,8 @@ std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from) const {
     return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
 }
 
+LightBounds GoniometricLight::Bounds() const {
+    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+}
+
 }  // namespace lull

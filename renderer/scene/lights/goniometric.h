@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_image.h"
 #include "renderer/scene/lights/light_sample.h"
 
@@ -16,6 +17,7 @@ struct GoniometricLight {
     // Throws Error where the image cannot be read.
     static GoniometricLight Make(const Description&, const LightEntity&, Warnings&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
+    LightBounds Bounds() const;
     Rgb Power() const { return image ? Rgb(4 * kPi * I * image->mean) : Rgb(4 * kPi * I); }
 };
 

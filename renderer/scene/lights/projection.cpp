@@ -47,4 +47,8 @@ Rgb ProjectionLight::Power() const {
     return 2 * kPi * (1 - cosCorner) * I * mean;
 }
 
+LightBounds ProjectionLight::Bounds() const {
+    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+}
+
 }  // namespace lull

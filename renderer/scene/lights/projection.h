@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_image.h"
 #include "renderer/scene/lights/light_sample.h"
 
@@ -19,6 +20,7 @@ struct ProjectionLight {
     // Throws Error for a field of view outside (0, 180) or an image that cannot be read.
     static ProjectionLight Make(const Description&, const LightEntity&, Warnings&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
+    LightBounds Bounds() const;
     Rgb Power() const;
 };
 

@@ -42,8 +42,10 @@ std::vector<LightBounds> RandomLights(int count, Random* random) {
 }
 
 Receiver RandomReceiver(Random* random) {
-    return {RandomPoint(random, 12), SampleUniformSphere(random->Point()),
-            random->Point().x() < 0.3f};
+    Receiver receiver{RandomPoint(random, 12), SampleUniformSphere(random->Point()),
+                      random->Point().x() < 0.3f};
+    if (random->Point().x() < 0.2f) receiver.n = Vec3f::Zero();
+    return receiver;
 }
 
 TEST(LightHierarchy, ChoosesWithTheProbabilitiesThatItStates) {
