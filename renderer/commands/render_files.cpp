@@ -132,7 +132,7 @@ RenderFiles NameFiles(const std::string& output, const std::string& report, bool
 void CheckWritable(const RenderFiles& files, const std::string& scene) {
     for (const std::string& file :
          {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, scene})
-        if (!files.report.empty() && Normal(file) == Normal(files.report))
+        if (!files.report.empty() && !file.empty() && Normal(file) == Normal(files.report))
             throw Error("--report " + files.report + ": would replace " + file);
     for (const std::string& file :
          {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, files.report})
