@@ -125,7 +125,8 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
     report["blocks"] = Json::array();
     for (const BlockResult& block : result.blocks)
-        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
+        report["blocks"].push_back(
+            BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
     if (result.timeUp) AddShortfall(provenance, result, &report);
     report["warnings"] = warnings;
     return report;

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kFormat = "lull-judge-answers";
+constexpr const char* kAnswersFormat = "lull-judge-answers";
 constexpr int kVersion = 1;
 // Bounds on what a damaged file can ask for.
 constexpr size_t kMostBytes = size_t(1) << 26;
@@ -122,7 +122,7 @@ void CheckThresholds(const ObserverAnswers& answers) {
 }
 
 ObserverAnswers Read(const Json& json) {
-    if (!json.is_object() || !json.contains("format") || json.at("format") != kFormat)
+    if (!json.is_object() || !json.contains("format") || json.at("format") != kAnswersFormat)
         Refuse("is no file of answers saved by the page of lull judge");
     if (GetInt(json, "version", 0, 1 << 20) != kVersion)
         Refuse("was saved by another version of the page");

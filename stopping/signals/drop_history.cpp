@@ -62,8 +62,7 @@ std::optional<std::vector<double>> AddVisible(int spp, std::span<const double> e
                                               const NoiseVisibility& visibility,
                                               DropHistory* history) {
     std::vector<double> weights;
-    for (const float l : lightness.mean)
-        weights.push_back(l * FlareFactor(l, visibility.flare));
+    for (const float l : lightness.mean) weights.push_back(l * FlareFactor(l, visibility.flare));
     const auto drop = history->Add(spp, entropies, weights);
     if (!drop) return {};
     return VisibleDrop(*drop, lightness, spp, visibility);

@@ -11,8 +11,8 @@ namespace lull {
 
 namespace {
 
-// Returns the square of the weighted sum of the roots of what the entropies of two states differ by:
-// few sub-blocks with much noise must not decide.
+// Returns the square of the weighted sum of the roots of what the entropies of two states differ
+// by: few sub-blocks with much noise must not decide.
 double Fall(const EntropyState& from, const EntropyState& to, std::span<const double> weights) {
     double sum = 0;
     for (size_t i = 0; i < to.values.size(); ++i)
