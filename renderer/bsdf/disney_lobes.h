@@ -6,12 +6,6 @@
 
 namespace lull {
 
-// Returns the weight of white in Schlick's approximation.
-inline float SchlickWeight(float cosine) {
-    const float m = std::clamp(1 - cosine, 0.f, 1.f);
-    return Sqr(Sqr(m)) * m;
-}
-
 // Holds one of the parts that are sampled by the cosine.
 struct DisneyDiffuse {
     static constexpr bool kIsSpecular = false, kTransmits = false;

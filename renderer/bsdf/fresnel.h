@@ -42,6 +42,12 @@ inline Rgb FresnelConductor(float cosI, const RgbLanes& n, const RgbLanes& k) {
     return r.head<3>();
 }
 
+// Returns the weight of the reflectance at grazing incidence in Schlick's approximation (1994).
+inline float SchlickWeight(float cosine) {
+    const float m = std::clamp(1 - cosine, 0.f, 1.f);
+    return Sqr(Sqr(m)) * m;
+}
+
 // Returns Schlick's approximation (1994) for reflectance r0 at normal incidence; `cosI` in [0, 1].
 inline Rgb FresnelSchlick(const Rgb& r0, float cosI) {
     const float c = std::max(0.f, 1 - cosI);
@@ -74,6 +80,11 @@ class ConductorInterface {
 
   private:
     float eta[4], k[4];  // in lanes, so that no hit has to assemble them
+};
+// Follows Schlick's approximation, from f0 at normal incidence to 1 at grazing.
+struct SchlickInterface {
+    float f0;
+    float operator()(float cosI) const { return f0 + (1 - f0) * SchlickWeight(std::abs(cosI)); }
 };
 struct PerfectMirror {
     float operator()(float) const { return 1; }

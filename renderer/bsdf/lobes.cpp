@@ -63,6 +63,25 @@ float Albedo(const FresnelBlend& lobe, const Vec3f& wo) {
     return DiffuseAlbedo(lobe, std::abs(wo.z())) + GlossyAlbedo(lobe, std::abs(wo.z()));
 }
 
+float Albedo(const LayeredReflection& lobe, const Vec3f& wo) {
+    const float cosO = std::abs(wo.z());
+    const InterfaceAbove above = lobe.stored;
+    const GgxAlbedo albedo = DirectionalAlbedo(cosO, lobe.alpha);
+    const Rgb base = Rgb(lobe.diffuse) * std::max(0.f, 1 - albedo(above.f0, above.f90));
+    const Rgb interface = Rgb(lobe.f0) * albedo.ofF0 + lobe.f90 * albedo.ofF90;
+    return Luminance(Rgb(lobe.scale) * (base + interface)) * ThroughCoat(lobe.coat, cosO, 1);
+}
+float Albedo(const ThinTransmission& lobe, const Vec3f& wo) {
+    return Luminance(lobe.t) * std::max(0.f, lobe.above.Through(std::abs(wo.z())));
+}
+float Albedo(const ThinSpecular& lobe, const Vec3f& wo) {
+    const float cosO = std::abs(wo.z());
+    const InterfaceAbove above = lobe.stored;
+    const Rgb f0 = lobe.f0, reflected = f0 + SchlickWeight(cosO) * (lobe.f90 - f0);
+    const Rgb through = Rgb(lobe.t) * std::max(0.f, above.Through(cosO));
+    return Luminance(Rgb(lobe.scale) * (reflected + through));
+}
+
 }  // namespace
 
 Lobe Scaled(const Lobe& lobe, const Rgb& scale) {

@@ -17,6 +17,7 @@
 #include "renderer/bsdf/disney_lobes.h"
 #include "renderer/bsdf/fourier_lobe.h"
 #include "renderer/bsdf/hair_lobe.h"
+#include "renderer/bsdf/layered_lobes.h"
 #include "renderer/bsdf/lobe_basics.h"
 #include "renderer/bsdf/microfacet_lobes.h"
 
@@ -178,7 +179,8 @@ using Lobe =
                  SpecularReflection<PerfectMirror>, SpecularReflection<DielectricInterface>,
                  SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
-                 HairLobe, FourierLobe>;
+                 HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
+                 ThinTransmission, ThinSpecular>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
@@ -215,10 +217,14 @@ auto VisitLobe(const Lobe& lobe, F&& f) {
         case 15: return f(*std::get_if<15>(&lobe));
         case 16: return f(*std::get_if<16>(&lobe));
         case 17: return f(*std::get_if<17>(&lobe));
-        default: return f(*std::get_if<18>(&lobe));
+        case 18: return f(*std::get_if<18>(&lobe));
+        case 19: return f(*std::get_if<19>(&lobe));
+        case 20: return f(*std::get_if<20>(&lobe));
+        case 21: return f(*std::get_if<21>(&lobe));
+        default: return f(*std::get_if<22>(&lobe));
             // clang-format on
     }
-    static_assert(std::variant_size_v<Lobe> == 19, "one case a kind");
+    static_assert(std::variant_size_v<Lobe> == 23, "one case a kind");
 }
 
 inline bool IsSpecular(const Lobe& lobe) {

@@ -50,6 +50,25 @@ inline std::vector<NamedLobe> SpreadLobes() {
         lobes.push_back({"conductor reflection" + suffix, ConductorReflection{color, d, copper}});
         lobes.push_back({"Fresnel blend" + suffix, FresnelBlend{color, Rgb(0.04f, 0.3f, 1), d}});
     }
+    for (const float alpha : {1e-4f, 0.01f, 0.1f, 0.5f, 1.f}) {
+        const std::string suffix = fmt::format(" {}", alpha);
+        const InterfaceAbove plastic{0.04f, 1}, dense{0.5f, 0.7f};
+        const Rgb white(1, 1, 1), gold(1, 0.7f, 0.3f);
+        const auto add = [&](const char* name, const Lobe& lobe) {
+            lobes.push_back({name + suffix, lobe});
+        };
+        add("white base below plastic",
+            LayeredReflection(white, Rgb::Constant(0.04f), 1, alpha, plastic, 0));
+        add("base below dense interface",
+            LayeredReflection(color, Rgb(0.5f, 0.1f, 0.3f), 0.7f, alpha, dense, 0));
+        add("metal", LayeredReflection(Rgb::Zero(), gold, 1, alpha, plastic, 0));
+        add("half metal, coated",
+            LayeredReflection(0.5f * color, 0.5f * gold + 0.02f, 1, alpha, plastic, 0.8f));
+        add("thin sheet", ThinTransmission{color, alpha, plastic, 0});
+        add("thin coated sheet", ThinTransmission{white, alpha, dense, 1});
+        add("clear coat", MicrofacetReflection<SchlickInterface>{
+                              white, TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
+    }
     return lobes;
 }
 
@@ -68,6 +87,8 @@ inline std::vector<NamedLobe> SpecularLobes() {
         lobes.push_back({"refraction" + suffix, SpecularTransmission{t, eta}});
         lobes.push_back({"glass" + suffix, FresnelSpecular{r, t, eta}});
     }
+    lobes.push_back({"thin glass",
+                     ThinSpecular{Rgb(0.04f, 0.04f, 0.04f), 1, t, InterfaceAbove{0.04f, 1}, 0.5f}});
     return lobes;
 }
 
@@ -76,6 +97,8 @@ inline Vec2f AlphasOf(const Lobe& lobe) {
     return VisitLobe(lobe, [](const auto& l) -> Vec2f {
         if constexpr (requires { l.distribution; })
             return {l.distribution.AlphaX(), l.distribution.AlphaY()};
+        else if constexpr (requires { l.alpha; })
+            return Vec2f::Constant(std::max(l.alpha, 1e-3f));
         else
             return {1, 1};
     });

@@ -142,6 +142,8 @@ TEST(Lobes, KeepEnergy) {
         if (std::holds_alternative<FresnelBlend>(l.lobe) && AlphasOf(l.lobe).minCoeff() > 1)
             continue;
         if (l.name == "Disney subsurface") continue;  // a fit that gives up to 17 % too much
+        // What reaches a base below an interface is from a table that is right to a hundredth.
+        const double slack = std::holds_alternative<LayeredReflection>(l.lobe) ? 0.015 : 1e-3;
         std::visit(
             [](auto& lobe) {
                 if constexpr (requires { lobe.r; }) lobe.r = kWhite;
@@ -167,7 +169,7 @@ TEST(Lobes, KeepEnergy) {
             const Eigen::Array3d mean = sum / kSamples;
             const Eigen::Array3d error =
                 ((sum2 / kSamples - mean.square()).max(0) / kSamples).sqrt();
-            EXPECT_TRUE((mean < 1 + 5 * error + 1e-3).all())
+            EXPECT_TRUE((mean < 1 + 5 * error + slack).all())
                 << l.name << ", " << angle << " degrees: " << mean.transpose();
         }
     }

@@ -16,6 +16,7 @@ Vec3f PeakOf(const Lobe& lobe, const Vec3f& wo) {
         if (!Refract(wo, {0, 0, std::copysign(1.f, wo.z())}, wo.z() > 0 ? 1 / t->eta : t->eta,
                      &peak))
             peak = Vec3f(-wo.x(), -wo.y(), -wo.z());
+    if (std::holds_alternative<ThinTransmission>(lobe)) peak = -wo;
     return peak.normalized();
 }
 

@@ -1,0 +1,182 @@
+// Holds the lobes of glTF's material: a base under a rough dielectric interface, metal, or anything
+// between, and thin sheets. (glTF 2.0, appendix B; KHR_materials_specular, _ior, _transmission and
+// _clearcoat.) See lobes.h for what a lobe is.
+#pragma once
+
+#include "renderer/bsdf/ggx_albedo.h"
+#include "renderer/bsdf/lobe_basics.h"
+
+namespace lull {
+
+// Says what an interface that reflects by Schlick's approximation leaves for the layer below, as
+// KHR_materials_specular has it: by the greatest of its channels, so that nothing is tinted twice.
+struct InterfaceAbove {
+    float f0 = 0, f90 = 0;
+
+    // Returns 1 - F.
+    float Through(float cosI) const { return 1 - (f0 + (f90 - f0) * SchlickWeight(cosI)); }
+};
+
+// Stores an interface in 4 bytes, to 2^-17, since a lobe has no room for more.
+class StoredInterface {
+  public:
+    StoredInterface(const InterfaceAbove& i) : f0(Store(i.f0)), f90(Store(i.f90)) {}
+    operator InterfaceAbove() const { return {float(f0) / 65535, float(f90) / 65535}; }
+
+  private:
+    static uint16_t Store(float v) { return uint16_t(std::clamp(v, 0.f, 1.f) * 65535 + 0.5f); }
+    uint16_t f0, f90;
+};
+
+// Returns what a clear coat of weight `coat`, with an index of 1.5, leaves of light that goes
+// through it on its way in and out, by the cosines of both directions.
+inline float ThroughCoat(float coat, float cosO, float cosI) {
+    if (coat == 0) return 1;
+    const InterfaceAbove above{0.04f * coat, coat};
+    return above.Through(cosO) * above.Through(cosI);
+}
+
+// Reflects diffusely below a rough interface and glossily at it. Both share one distribution of
+// microfacets and Schlick's reflectance from f0 to f90; metal is an interface without a base.
+//
+// Appendix B scales the base by 1 - F of the half vector and leaves better ways open, as the sum
+// can exceed 1 at grazing angles. Here the base gets what the interface, taken as a whole, does not
+// reflect, once for each direction (Kelemen and Szirmay-Kalos 2001): reciprocal, and a white base
+// reflects all light.
+struct LayeredReflection {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb diffuse;  // albedo of the base / (1 - mean albedo of the interface above it)
+    StoredRgb f0;
+    float f90;
+    float alpha;
+    StoredInterface stored;          // above the base
+    float coat;                      // weight of the clear coat over all, in [0, 1]
+    StoredRgb scale = Rgb(1, 1, 1);  // sampling does not depend on it
+
+    // Takes the albedo of the base, in [0, 1], and the rest as the members.
+    LayeredReflection(const Rgb& base, const Rgb& f0, float f90, float alpha,
+                      const InterfaceAbove& above, float coat)
+        : diffuse(base), f0(f0), f90(f90), alpha(alpha), stored(above), coat(coat) {
+        const float left = 1 - MeanAlbedo(alpha)(above.f0, above.f90);
+        diffuse *= Rgb::Constant(left > 1e-3f ? 1 / left : 0);
+    }
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
+        if (std::min(cosO, cosI) < kMinCosine) return {};
+        const Split split = SplitOf(cosO);
+        const InterfaceAbove above = stored;
+        BsdfValue value;
+        if (split.through > 0) {
+            const GgxAlbedo albedo = DirectionalAlbedo(cosI, alpha);
+            const float through = std::max(0.f, 1 - albedo(above.f0, above.f90));
+            value.f = Rgb(diffuse) * (kInvPi * split.through * through);
+            value.pdf = split.diffuseShare * cosI * kInvPi;
+        }
+        const Vec3f h = wo + wi;
+        const float h2 = h.squaredNorm();
+        if (h2 > kMinHalf2 && split.diffuseShare < 1) {
+            const TrowbridgeReitz distribution(alpha, alpha);
+            const float d = distribution.D(h, h2);
+            const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
+            const Rgb r = f0;
+            const Rgb reflectance = r + SchlickWeight(0.5f * std::sqrt(h2)) * (f90 - r);
+            value.f += reflectance * (0.5f * d / (cosI * so + cosO * si));
+            value.pdf += (1 - split.diffuseShare) * (0.5f * d / (cosO + so));
+        }
+        value.f *= Rgb(scale) * ThroughCoat(coat, cosO, cosI);
+        if (!SameHemisphere(wo, wi)) value.pdf = 0;
+        return value;
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        const float share = SplitOf(std::abs(wo.z())).diffuseShare;
+        if (u.x() < share) {
+            *wi = SampleCosine(wo, {std::min(u.x() / share, kOneMinusEpsilon), u.y()}, false);
+            return true;
+        }
+        const Vec2f v(std::min((u.x() - share) / (1 - share), kOneMinusEpsilon), u.y());
+        const Vec3f h = TrowbridgeReitz(alpha, alpha).SampleVisibleNormal(wo, v);
+        *wi = (2 * wo.dot(h)) * h - wo;
+        return SameHemisphere(wo, *wi);
+    }
+
+  private:
+    // Holds what reaches the base from one direction, and how often the base is to be sampled: by
+    // how much light it and the interface reflect there.
+    struct Split {
+        float through = 0, diffuseShare = 0;
+    };
+    Split SplitOf(float cosO) const {
+        const float base = diffuse.r + diffuse.g + diffuse.b;
+        if (!(base > 0)) return {};
+        const InterfaceAbove above = stored;
+        const GgxAlbedo albedo = DirectionalAlbedo(cosO, alpha);
+        const float through = std::max(0.f, 1 - albedo(above.f0, above.f90));
+        const float atBase = through * base;
+        const float atInterface = albedo(f0.r + f0.g + f0.b, 3 * f90);
+        const float sum = atBase + atInterface;
+        return {through, sum > 0 ? atBase / sum : 1};
+    }
+};
+
+// Lets light through a sheet too thin to bend it, blurred by the roughness of its surface: what
+// LayeredReflection's interface would reflect goes on at the other side instead, by 1 - F.
+struct ThinTransmission {
+    static constexpr bool kIsSpecular = false, kTransmits = true;
+    StoredRgb t;
+    float alpha;
+    InterfaceAbove above;
+    float coat;
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
+        if (std::min(cosO, cosI) < kMinCosine || SameHemisphere(wo, wi)) return {};
+        const Vec3f h = wo + Mirrored(wi);
+        const float h2 = h.squaredNorm();
+        if (!(h2 > kMinHalf2)) return {};
+        const TrowbridgeReitz distribution(alpha, alpha);
+        const float d = distribution.D(h, h2);
+        const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
+        const float through = above.Through(0.5f * std::sqrt(h2)) * ThroughCoat(coat, cosO, cosI);
+        return {Rgb(t) * (through * (0.5f * d / (cosI * so + cosO * si))), 0.5f * d / (cosO + so)};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        const Vec3f h = TrowbridgeReitz(alpha, alpha).SampleVisibleNormal(wo, u);
+        const Vec3f reflected = (2 * wo.dot(h)) * h - wo;
+        *wi = Mirrored(reflected);
+        return SameHemisphere(wo, reflected);
+    }
+
+  private:
+    static Vec3f Mirrored(const Vec3f& w) { return {w.x(), w.y(), -w.z()}; }
+};
+
+// Represents a smooth sheet: reflects as a mirror or lets light straight through.
+struct ThinSpecular {
+    static constexpr bool kIsSpecular = true, kTransmits = true;
+    StoredRgb f0;
+    float f90;
+    StoredRgb t;
+    StoredInterface stored;
+    float coat;
+    StoredRgb scale = Rgb(1, 1, 1);  // sampling does not depend on it
+
+    bool Sample(const Vec3f& wo, const Vec2f& u, SpecularSample* s) const {
+        const float cosO = std::abs(wo.z());
+        const InterfaceAbove above = stored;
+        const Rgb r = f0;
+        const Rgb reflected = r + SchlickWeight(cosO) * (f90 - r);
+        const Rgb through = Rgb(t) * std::max(0.f, above.Through(cosO));
+        const float sum = reflected.sum() + through.sum();
+        if (!(sum > 0)) return false;
+        const float share = reflected.sum() / sum;
+        const Rgb f = Rgb(scale) * (ThroughCoat(coat, cosO, cosO) / cosO);
+        if (u.x() < share)
+            *s = {reflected * f, share, {-wo.x(), -wo.y(), wo.z()}, false};
+        else
+            *s = {through * f, 1 - share, -wo, true};
+        return true;
+    }
+};
+
+}  // namespace lull
