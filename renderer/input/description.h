@@ -2,6 +2,7 @@
 // from. Loaders fill a Description; compile (renderer/scene/compile.h) makes a Scene of it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -129,6 +130,13 @@ struct InstanceEntity {
     FileLoc loc;
 };
 
+// Holds an image that lies inside the scene's file, as its own format encodes it.
+struct EmbeddedImage {
+    std::string name;  // for messages, unlike that of any other of the scene
+    std::string type;  // the extension that a file of this format would have, without the dot
+    std::vector<std::byte> bytes;
+};
+
 struct Description {
     Entity camera{"perspective", {}, {}}, film{"image", {}, {}}, filter{"box", {}, {}},
         sampler{"halton", {}, {}}, integrator{"path", {}, {}};
@@ -142,6 +150,7 @@ struct Description {
     std::vector<ShapeEntity> shapes;
     std::vector<ObjectEntity> objects;
     std::vector<InstanceEntity> instances;
+    std::vector<EmbeddedImage> images;
 
     std::string directory;  // of the scene's file; relative file names start there
 };

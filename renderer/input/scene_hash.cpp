@@ -120,6 +120,8 @@ std::string SceneHash(const Description& d) {
         hash.Matrix(medium.worldFromMedium);
     }
     if (!d.media.empty()) hash.Number(d.cameraMedium);
+    for (const EmbeddedImage& image : d.images)
+        hash.Text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
     return fmt::format("crc32:{:08x}", hash.Result());
 }
 

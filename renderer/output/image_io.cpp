@@ -38,7 +38,8 @@ std::unique_ptr<OIIO::ImageInput> Open(const std::string& path) {
 }
 
 // Refuses what no honest file holds before any memory is taken for it.
-void CheckSize(const std::string& path, const OIIO::ImageSpec& spec, int channels) {
+void CheckSize(const std::string& path, size_t fileSize, const OIIO::ImageSpec& spec,
+               int channels) {
     if (spec.deep) FailToRead(path, "deep images are not modelled");
     if (spec.depth > 1) FailToRead(path, "volumes are not modelled");
     const std::string size = fmt::format("{}x{}x{}", spec.width, spec.height, channels);
@@ -47,13 +48,17 @@ void CheckSize(const std::string& path, const OIIO::ImageSpec& spec, int channel
         FailToRead(path, "its size of " + size + " is absurd");
     const size_t bytes =
         size_t(spec.width) * size_t(spec.height) * size_t(channels) * spec.format.size();
-    std::error_code error;
-    const auto fileSize = std::filesystem::file_size(path, error);
-    if (!error && bytes > kAlwaysAllowed && bytes / kMaxCompression > fileSize)
+    if (bytes > kAlwaysAllowed && bytes / kMaxCompression > fileSize)
         FailToRead(path, "it is too short for its size of " + size);
     // As read, and once more as a texture keeps it.
     CheckMemory(int64_t(2 * bytes), fmt::format("image \"{}\" of {}", path, size),
                 "use a smaller version of it");
+}
+
+void CheckSize(const std::string& path, const OIIO::ImageSpec& spec, int channels) {
+    std::error_code error;
+    const auto fileSize = std::filesystem::file_size(path, error);
+    CheckSize(path, error ? std::numeric_limits<size_t>::max() : size_t(fileSize), spec, channels);
 }
 
 int CountChannels(const OIIO::ImageSpec& spec) {
@@ -72,6 +77,19 @@ std::vector<T> ReadTexels(const std::string& path, OIIO::ImageInput* input,
     if (!input->read_image(0, 0, 0, channels, type, texels.data()))
         FailToRead(path, input->geterror());
     return texels;
+}
+
+// Reads an image whose size has been checked.
+Image ReadTexels(const std::string& path, OIIO::ImageInput* input, int channels) {
+    const OIIO::ImageSpec& spec = input->spec();
+    Image image{spec.width, spec.height, channels, {}};
+    if (spec.format == OIIO::TypeDesc::UINT8)
+        image.texels = ReadTexels<uint8_t>(path, input, spec, channels, OIIO::TypeDesc::UINT8);
+    else if (spec.format == OIIO::TypeDesc::HALF)
+        image.texels = ReadTexels<Half>(path, input, spec, channels, OIIO::TypeDesc::HALF);
+    else
+        image.texels = ReadTexels<float>(path, input, spec, channels, OIIO::TypeDesc::FLOAT);
+    return image;
 }
 
 // Encodes in memory, so that every error of the disk meets the one place that handles them. The
@@ -151,19 +169,23 @@ std::map<std::string, ExrAttribute> GetAttributes(const OIIO::ImageSpec& spec) {
 
 Image ReadImage(const std::string& path) {
     const auto input = Open(path);
-    const OIIO::ImageSpec& spec = input->spec();
-    const int channels = CountChannels(spec);
-    CheckSize(path, spec, channels);
+    const int channels = CountChannels(input->spec());
+    CheckSize(path, input->spec(), channels);
+    return ReadTexels(path, input.get(), channels);
+}
 
-    Image image{spec.width, spec.height, channels, {}};
-    if (spec.format == OIIO::TypeDesc::UINT8)
-        image.texels =
-            ReadTexels<uint8_t>(path, input.get(), spec, channels, OIIO::TypeDesc::UINT8);
-    else if (spec.format == OIIO::TypeDesc::HALF)
-        image.texels = ReadTexels<Half>(path, input.get(), spec, channels, OIIO::TypeDesc::HALF);
-    else
-        image.texels = ReadTexels<float>(path, input.get(), spec, channels, OIIO::TypeDesc::FLOAT);
-    return image;
+Image ReadImage(const std::string& name, const std::string& type,
+                std::span<const std::byte> bytes) {
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+    OIIO::Filesystem::IOProxy* proxy = &memory;
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const auto input = OIIO::ImageInput::open("memory." + type, &config);
+    if (!input) FailToRead(name, OIIO::geterror());
+    const int channels = CountChannels(input->spec());
+    CheckSize(name, bytes.size(), input->spec(), channels);
+    return ReadTexels(name, input.get(), channels);
 }
 
 const ExrChannel* ExrImage::Find(const std::string& name) const {

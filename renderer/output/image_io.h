@@ -19,6 +19,10 @@ namespace lull {
 // a size that the file is too short for.
 Image ReadImage(const std::string& path);
 
+// Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,
+// and `name` stands for the path in messages.
+Image ReadImage(const std::string& name, const std::string& type, std::span<const std::byte> bytes);
+
 // Holds one channel of an EXR, row-major over the data window.
 struct ExrChannel {
     std::string name;

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-enum class Wrap : uint8_t { Repeat, Black, Clamp };
+enum class Wrap : uint8_t { Repeat, Black, Clamp, Mirror };
 
 // Holds the four texels around a point and their weights. The indices are always inside the
 // image, whatever the point; a texel outside a black-wrapped image has weight 0.
@@ -46,7 +46,29 @@ inline Footprint1D BoundedFootprint(float s, int n, bool blackOutside) {
     return f;
 }
 
+// Reflects every other copy of the image.
+inline Footprint1D MirrorFootprint(float s, int n) {
+    const float pair = 0.5f * s;
+    float fraction = pair - std::floor(pair);
+    fraction = fraction < 1 ? 2 * fraction : 0;
+    return BoundedFootprint(fraction < 1 ? fraction : 2 - fraction, n, false);
+}
+
+inline Footprint1D WrapFootprint(float s, int n, Wrap wrap) {
+    if (wrap == Wrap::Repeat) return RepeatFootprint(s, n);
+    if (wrap == Wrap::Mirror) return MirrorFootprint(s, n);
+    return BoundedFootprint(s, n, wrap == Wrap::Black);
+}
+
+// Wraps each axis its own way.
+inline Footprint BilinearFootprint(const Vec2f& st, int width, int height, Wrap wrapS, Wrap wrapT) {
+    const Footprint1D x = WrapFootprint(st.x(), width, wrapS);
+    const Footprint1D y = WrapFootprint(st.y(), height, wrapT);
+    return {x.i0, x.i1, y.i0, y.i1, x.w0 * y.w0, x.w1 * y.w0, x.w0 * y.w1, x.w1 * y.w1};
+}
+
 inline Footprint BilinearFootprint(const Vec2f& st, int width, int height, Wrap wrap) {
+    if (wrap == Wrap::Mirror) return BilinearFootprint(st, width, height, wrap, wrap);
     Footprint1D x, y;
     if (wrap == Wrap::Repeat) {
         x = RepeatFootprint(st.x(), width);

@@ -20,13 +20,27 @@ bool IsEncodedByDefault(const std::string& filename) {
     return false;
 }
 
-Wrap GetWrap(const TextureInput& input) {
-    const std::string wrap = input.entity.parameters.GetString("wrap", "repeat");
+Wrap GetWrap(const TextureInput& input, const char* parameter, const std::string& otherwise) {
+    const std::string wrap = input.entity.parameters.GetString(parameter, otherwise);
     if (wrap == "black") return Wrap::Black;
     if (wrap == "clamp") return Wrap::Clamp;
+    if (wrap == "mirrored") return Wrap::Mirror;
     if (wrap != "repeat")
         input.warnings.Add(input.entity.loc, "unknown wrap mode replaced by repeat", wrap);
     return Wrap::Repeat;
+}
+
+// Reads which channels the texture is made of.
+TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
+    if (!isFloat) return TextureChannels::Rgb;
+    const std::string channel = input.entity.parameters.GetString("channel", "");
+    if (channel == "red") return TextureChannels::Red;
+    if (channel == "green") return TextureChannels::Green;
+    if (channel == "blue") return TextureChannels::Blue;
+    if (channel == "alpha") return TextureChannels::Alpha;
+    if (!channel.empty())
+        input.warnings.Add(input.entity.loc, "unknown channel replaced by luminance", channel);
+    return TextureChannels::Luminance;
 }
 
 template <typename T>
@@ -44,15 +58,23 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
     const TextureEntity& entity = input.entity;
     const Parameters& parameters = entity.parameters;
     const std::string filename = parameters.GetString("filename", "");
+    const int embedded = parameters.GetInt("embeddedimage", -1);
     const bool gamma = parameters.GetBool("gamma", IsEncodedByDefault(filename));
-    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), GetWrap(input)};
+    const TextureChannels channels = GetChannels(input, std::is_same_v<T, float>);
+    const Wrap wrap = GetWrap(input, "wrap", "repeat");
+    const Wrap wrapT = GetWrap(input, "wrapt", parameters.GetString("wrap", "repeat"));
+    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT};
     parameters.GetBool("trilinear", false);
     parameters.GetFloat("maxanisotropy", 8);
 
     try {
-        if (filename.empty()) throw Error("imagemap without \"string filename\"");
-        map.image = input.images.Get(ResolvePath(input.description, filename), gamma,
-                                     std::is_same_v<T, float>);
+        const std::vector<EmbeddedImage>& images = input.description.images;
+        if (embedded >= 0 && size_t(embedded) < images.size()) {
+            map.image = input.images.Get(images[size_t(embedded)], gamma, channels);
+        } else {
+            if (filename.empty()) throw Error("imagemap without \"string filename\"");
+            map.image = input.images.Get(ResolvePath(input.description, filename), gamma, channels);
+        }
     } catch (const Error& error) {
         const std::string what =
             fmt::format("texture \"{}\": {}", entity.textureName, error.what());
@@ -62,7 +84,7 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
         return ConstantTexture<T>(grey);
     }
 
-    if (map.image->uniform && map.wrap != Wrap::Black)
+    if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
         return TextureHandle<T>{FromRgb<T>(map.scale * *map.image->uniform)};
     return map;
 }

@@ -12,13 +12,16 @@ struct ImageMap {
     Mapping2D mapping;
     std::shared_ptr<const TextureImage> image;  // never null; grey where T is float
     float scale;
-    Wrap wrap;
+    Wrap wrap, wrapT;  // across and up the image
 };
 
 template <typename T>
 T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c) {
     const TextureImage& image = *map.image;
-    const Footprint f = BilinearFootprint(Map(map.mapping, c), image.width, image.height, map.wrap);
+    const Vec2f st = Map(map.mapping, c);
+    const Footprint f = map.wrap == map.wrapT
+                            ? BilinearFootprint(st, image.width, image.height, map.wrap)
+                            : BilinearFootprint(st, image.width, image.height, map.wrap, map.wrapT);
     const auto blend = [&](const auto& texels) -> T {
         using Stored = typename std::decay_t<decltype(texels.values)>::value_type;
         constexpr int channels = std::decay_t<decltype(texels)>::kChannels;
@@ -43,10 +46,12 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
     return Needs(map.mapping);
 }
 
-// Reads "filename", "gamma" (the file is sRGB-encoded; without it: as its extension suggests),
-// "scale" (after linearisation), "wrap" and the mapping. "trilinear" and "maxanisotropy" have no
-// effect: there are no coarser levels. Throws Error with file and line if the image cannot be
-// read; with `substitute` that becomes pbrt-v3's grey.
+// Reads "filename" or "embeddedimage" (into Description::images), "gamma" (the file is
+// sRGB-encoded; without it: as its extension suggests), "scale" (after linearisation), "channel"
+// (of a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap"
+// ("repeat", "black", "clamp", "mirrored"; "wrapt" of its own for the second axis) and the mapping.
+// "trilinear" and "maxanisotropy" have no effect: there are no coarser levels. Throws Error with
+// file and line if the image cannot be read; with `substitute` that becomes pbrt-v3's grey.
 template <typename T>
 Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input);
 

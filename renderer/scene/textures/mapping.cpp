@@ -9,6 +9,7 @@ namespace {
 constexpr float kInv2Pi = kInvPi / 2;
 
 Vec2f MapPosition(const UvMapping&, const Vec3f&) { return Vec2f::Zero(); }
+Vec2f MapPosition(const AffineUvMapping&, const Vec3f&) { return Vec2f::Zero(); }
 
 Vec2f MapPosition(const SphericalMapping& m, const Vec3f& p) {
     const Vec3f d = TransformPoint(m.textureFromWorld, p).normalized();
@@ -44,6 +45,11 @@ Mapping2D MakeMapping2D(const TextureInput& input) {
     if (name == "uv")
         return UvMapping{{parameters.GetFloat("uscale", 1), parameters.GetFloat("vscale", 1)},
                          offset()};
+    if (name == "uvaffine") {
+        const auto m = parameters.GetFloats(ParameterType::Float, "uvtransform");
+        if (m.size() != 6) throw Error(input.entity.loc, "\"uvtransform\" needs six numbers");
+        return AffineUvMapping{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
+    }
     if (name == "spherical") return SphericalMapping{textureFromWorld()};
     if (name == "cylindrical") return CylindricalMapping{textureFromWorld()};
     if (name == "planar")

@@ -11,6 +11,16 @@ struct UvMapping {
     Vec2f scale{1, 1}, offset{0, 0};
 };
 
+// Scales, turns and shears as well (KHR_texture_transform).
+struct AffineUvMapping {
+    // Rows, as plain numbers: the variant must not be aligned to more than its kinds were.
+    std::array<float, 3> s, t;
+
+    Vec2f operator()(const Vec2f& uv) const {
+        return {s[0] * uv.x() + s[1] * uv.y() + s[2], t[0] * uv.x() + t[1] * uv.y() + t[2]};
+    }
+};
+
 // Gives (theta / pi, phi / 2 pi) of the direction from the texture's origin.
 struct SphericalMapping {
     Eigen::Matrix4f textureFromWorld;
@@ -27,21 +37,26 @@ struct PlanarMapping {
     Vec2f offset;
 };
 
-using Mapping2D = std::variant<UvMapping, SphericalMapping, CylindricalMapping, PlanarMapping>;
+using Mapping2D =
+    std::variant<UvMapping, SphericalMapping, CylindricalMapping, PlanarMapping, AffineUvMapping>;
 
-// Reads "mapping" and its parameters; pbrt-v3's defaults. Throws Error for an unknown mapping;
+// Reads "mapping" and its parameters; pbrt-v3's defaults. "uvaffine" has the six numbers of
+// "uvtransform", two rows of three. Throws Error for an unknown mapping;
 // with `substitute` that becomes the plain uv mapping.
 Mapping2D MakeMapping2D(const TextureInput& input);
 
 inline SurfaceNeeds Needs(const Mapping2D& mapping) {
-    return std::holds_alternative<UvMapping>(mapping) ? kNeedsUv : kNeedsNothing;
+    const bool isByUv = std::holds_alternative<UvMapping>(mapping) ||
+                        std::holds_alternative<AffineUvMapping>(mapping);
+    return isByUv ? kNeedsUv : kNeedsNothing;
 }
 
-Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p);  // all mappings but uv
+Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p);  // all mappings not by uv
 
 inline Vec2f Map(const Mapping2D& mapping, const TextureContext& c) {
     if (const auto* uv = std::get_if<UvMapping>(&mapping))
         return uv->scale.cwiseProduct(c.uv) + uv->offset;
+    if (const auto* affine = std::get_if<AffineUvMapping>(&mapping)) return (*affine)(c.uv);
     return MapByPosition(mapping, c.p);
 }
 

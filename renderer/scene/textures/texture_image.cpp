@@ -51,6 +51,32 @@ std::optional<Rgb> FindUniform(const Texels<T, Count>& texels,
     return Rgb(value(0), value(Count > 1 ? 1 : 0), value(Count > 1 ? 2 : 0));
 }
 
+// Returns a grey image of one channel, white where there is none such.
+Image ExtractChannel(const Image& image, TextureChannels wanted) {
+    const bool hasColor = image.channels >= 3, hasAlpha = image.channels % 2 == 0;
+    const int channel = wanted == TextureChannels::Alpha   ? image.channels - 1
+                        : !hasColor                        ? 0
+                        : wanted == TextureChannels::Red   ? 0
+                        : wanted == TextureChannels::Green ? 1
+                                                           : 2;
+    Image grey{image.width, image.height, 1, {}};
+    if (wanted == TextureChannels::Alpha && !hasAlpha) {
+        grey.texels =
+            std::vector<uint8_t>(size_t(image.width) * size_t(image.height), uint8_t(255));
+        return grey;
+    }
+    std::visit(
+        [&](const auto& texels) {
+            std::decay_t<decltype(texels)> one;
+            one.reserve(texels.size() / size_t(image.channels));
+            for (size_t i = size_t(channel); i < texels.size(); i += size_t(image.channels))
+                one.push_back(texels[i]);
+            grey.texels = std::move(one);
+        },
+        image.texels);
+    return grey;
+}
+
 }  // namespace
 
 size_t TextureImage::Bytes() const {
@@ -61,7 +87,13 @@ bool TextureImage::IsGrey() const {
     return std::visit([](const auto& t) { return t.kChannels == 1; }, texels);
 }
 
-TextureImage MakeTextureImage(const Image& image, bool gamma, bool luminance) {
+TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels wanted) {
+    if (wanted > TextureChannels::Luminance) {
+        const bool isAlpha = wanted == TextureChannels::Alpha;
+        return MakeTextureImage(ExtractChannel(image, wanted), gamma && !isAlpha,
+                                TextureChannels::Luminance);
+    }
+    const bool luminance = wanted == TextureChannels::Luminance;
     const auto linear = [gamma](float v) { return gamma ? LinearFromSrgb(v) : v; };
     TextureImage result;
     result.width = image.width;
@@ -97,16 +129,33 @@ TextureImage MakeTextureImage(const Image& image, bool gamma, bool luminance) {
     return result;
 }
 
-std::shared_ptr<const TextureImage> TextureImages::Get(const std::string& path, bool gamma,
-                                                       bool luminance) {
-    const auto found = images.find({path, gamma, luminance});
+template <typename Read>
+std::shared_ptr<const TextureImage> TextureImages::Find(const std::string& name, bool gamma,
+                                                        TextureChannels channels,
+                                                        const Read& read) {
+    const auto found = images.find({name, gamma, channels});
     if (found != images.end()) return found->second;
-    auto image =
-        std::make_shared<const TextureImage>(MakeTextureImage(ReadImage(path), gamma, luminance));
-    images[{path, gamma, luminance}] = image;
+    if (lastName != name) {
+        last = read();
+        lastName = name;
+    }
+    auto image = std::make_shared<const TextureImage>(MakeTextureImage(last, gamma, channels));
+    images[{name, gamma, channels}] = image;
     // A grey file serves float and spectrum textures alike.
-    if (!luminance && image->IsGrey()) images[{path, gamma, true}] = image;
+    if (channels == TextureChannels::Rgb && image->IsGrey())
+        images[{name, gamma, TextureChannels::Luminance}] = image;
     return image;
+}
+
+std::shared_ptr<const TextureImage> TextureImages::Get(const std::string& path, bool gamma,
+                                                       TextureChannels channels) {
+    return Find(path, gamma, channels, [&] { return ReadImage(path); });
+}
+
+std::shared_ptr<const TextureImage> TextureImages::Get(const EmbeddedImage& image, bool gamma,
+                                                       TextureChannels channels) {
+    return Find(image.name, gamma, channels,
+                [&] { return ReadImage(image.name, image.type, image.bytes); });
 }
 
 size_t TextureImages::Bytes() const {

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/input/description.h"
 #include "renderer/output/image.h"
 
 namespace lull {
@@ -35,21 +36,36 @@ struct TextureImage {
     bool IsGrey() const;
 };
 
+// Says what to keep of an image. Luminance asks for one channel: grey images as they are, others by
+// their luminance; as in pbrt-v3 that is the luminance of the *encoded* colours, linearised
+// afterwards. A single channel of a grey image is its grey; Alpha is 1 where there is none, and is
+// never linearised.
+enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha };
+
 // Makes a TextureImage of an image as read. `gamma` says that texels are sRGB-encoded.
-// `luminance` asks for one channel: grey images as they are, others by their luminance. As in
-// pbrt-v3 that is the luminance of the *encoded* colours, linearised afterwards.
-TextureImage MakeTextureImage(const Image& image, bool gamma, bool luminance);
+TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels channels);
 
 // Shares images between textures.
 class TextureImages {
   public:
-    // Reads `path` unless it is here already. Throws Error as ReadImage does.
-    std::shared_ptr<const TextureImage> Get(const std::string& path, bool gamma, bool luminance);
+    // Read the image unless it is here already. Throw Error as ReadImage does.
+    std::shared_ptr<const TextureImage> Get(const std::string& path, bool gamma,
+                                            TextureChannels channels);
+    std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, bool gamma,
+                                            TextureChannels channels);
 
     size_t Bytes() const;
 
   private:
-    std::map<std::tuple<std::string, bool, bool>, std::shared_ptr<const TextureImage>> images;
+    template <typename Read>
+    std::shared_ptr<const TextureImage> Find(const std::string& name, bool gamma,
+                                             TextureChannels channels, const Read& read);
+
+    std::map<std::tuple<std::string, bool, TextureChannels>, std::shared_ptr<const TextureImage>>
+        images;
+    // The last one read, as other channels of it are often asked for next.
+    std::string lastName;
+    Image last;
 };
 
 }  // namespace lull

@@ -215,13 +215,41 @@ TEST(ImageMap, AcceptsFilteringParameters) {
 
 TEST(MakeTextureImage, ReducesToOneChannel) {
     const Image grey{2, 1, 3, std::vector<float>{1, 1, 1, 2, 2, 2}};
-    EXPECT_TRUE(MakeTextureImage(grey, false, false).IsGrey());
+    EXPECT_TRUE(MakeTextureImage(grey, false, TextureChannels::Rgb).IsGrey());
     const Image greyAlpha{2, 1, 2, std::vector<uint8_t>{51, 9, 102, 8}};
-    const TextureImage stripped = MakeTextureImage(greyAlpha, false, false);
+    const TextureImage stripped = MakeTextureImage(greyAlpha, false, TextureChannels::Rgb);
     EXPECT_EQ(std::get<0>(stripped.texels).values, (std::vector<uint8_t>{51, 102}));
     const Image rgba{1, 1, 4, std::vector<uint8_t>{1, 2, 3, 0}};
-    EXPECT_EQ(MakeTextureImage(rgba, true, false).Bytes(), 3u);
-    EXPECT_EQ(MakeTextureImage(rgba, true, true).Bytes(), 4u);
+    EXPECT_EQ(MakeTextureImage(rgba, true, TextureChannels::Rgb).Bytes(), 3u);
+    EXPECT_EQ(MakeTextureImage(rgba, true, TextureChannels::Luminance).Bytes(), 4u);
+}
+
+TEST(MakeTextureImage, TakesOneChannelAsItIs) {
+    const Image rgba{1, 1, 4, std::vector<uint8_t>{10, 20, 30, 40}};
+    const Image grey{1, 1, 1, std::vector<float>{0.25f}};
+    const auto value = [](const Image& image, TextureChannels channel, bool gamma = false) {
+        return MakeTextureImage(image, gamma, channel).uniform->x();
+    };
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Red), 10 / 255.f);
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Green), 20 / 255.f);
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Blue), 30 / 255.f);
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Alpha, true), 40 / 255.f);
+    EXPECT_FLOAT_EQ(value(grey, TextureChannels::Green), 0.25f);
+    EXPECT_FLOAT_EQ(value(grey, TextureChannels::Alpha), 1);
+}
+
+TEST(BilinearFootprint, MirrorsEveryOtherCopy) {
+    // Two texels, 0 and 1: from 0.25 to 0.75 the value grows, and falls again from 1.25 to 1.75.
+    const auto value = [](float s, Wrap wrapS, Wrap wrapT) {
+        const Footprint f = BilinearFootprint({0.5f, s}, 1, 2, wrapT, wrapS);
+        return f.w01 * float(f.y1) + f.w00 * float(f.y0);
+    };
+    for (const float s : {0.1f, 0.3f, 0.5f, 0.9f, 1.f}) {
+        const float expected = std::clamp(2 * s - 0.5f, 0.f, 1.f);
+        for (const float moved : {s, 2 - s, -s, s + 2, s - 4})
+            EXPECT_NEAR(value(moved, Wrap::Mirror, Wrap::Clamp), expected, 1e-6f) << moved;
+    }
+    EXPECT_NEAR(value(1.f, Wrap::Repeat, Wrap::Mirror), 0.5f, 1e-6f);
 }
 
 TEST(BilinearRgb, DoesNotFlipAndRepeats) {
