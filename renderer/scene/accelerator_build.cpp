@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "renderer/scene/accelerator_internal.h"
+#include "renderer/scene/coverage.h"
 
 namespace lull {
 namespace {
@@ -14,6 +15,35 @@ void ReportEmbreeError(void*, RTCError, const char* message) {
 
 Ray RayOf(const RTCRay& r) {
     return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
+}
+
+// Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
+// random from one ray or one primitive to another (mixing by Stafford 2011, variant 13).
+float NumberOf(const RTCRay& ray, const RTCHit& hit) {
+    uint64_t state = 0;
+    const auto mix = [&](uint64_t bits) {
+        state = (state ^ bits) + 0x9e3779b97f4a7c15ull;
+        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
+        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
+        state ^= state >> 31;
+    };
+    const auto pair = [](float a, float b) {
+        return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
+    };
+    mix(pair(ray.org_x, ray.org_y));
+    mix(pair(ray.org_z, ray.dir_x));
+    mix(pair(ray.dir_y, ray.dir_z));
+    mix(uint64_t(hit.geomID) << 32 | hit.primID);
+    mix(hit.instID[0]);
+    return float(state >> 40) * 0x1p-24f;
+}
+
+bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
+    const Shape& shape = user.shapes->shapes[user.shape];
+    const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
+                  ray.org_z + ray.tfar * ray.dir_z);
+    const float share = CoverageAt(shape, *user.textures, p, hit.primID, hit.u, hit.v);
+    return share <= 0 || (share < 1 && NumberOf(ray, hit) >= share);
 }
 
 bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool isShadow) {
@@ -84,6 +114,13 @@ void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args) {
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, true); }
 
+void FilterByCoverage(const RTCFilterFunctionNArguments* args) {
+    if (IsUncovered(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                    *reinterpret_cast<const RTCRay*>(args->ray),
+                    *reinterpret_cast<const RTCHit*>(args->hit)))
+        args->valid[0] = 0;
+}
+
 EmbreeScene Accelerator::Implementation::NewScene() {
     EmbreeScene scene(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -115,6 +152,10 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
     if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
     if (mesh && (shape.alpha || shape.shadowAlpha))
         rtcSetGeometryOccludedFilterFunction(geometry, FilterOcclusionByAlpha);
+    if (mesh && shape.coverage) {
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterByCoverage);
+        rtcSetGeometryOccludedFilterFunction(geometry, FilterByCoverage);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, unsigned(index));
     rtcReleaseGeometry(geometry);

@@ -37,6 +37,7 @@ void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
 void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args);
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
+void FilterByCoverage(const RTCFilterFunctionNArguments* args);
 
 struct Accelerator::Implementation {
     Device device;

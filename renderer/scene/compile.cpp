@@ -74,7 +74,8 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     });
     scene->shapeSeconds = Timed([&] {
         scene->shapes = ShapeTable(description, scene->textures, options.substitute, warnings);
-        scene->lights = LightTable(description, scene->shapes, options.lightsAsPbrtV3, warnings);
+        scene->lights = LightTable(description, scene->shapes, scene->textures,
+                                   options.lightsAsPbrtV3, warnings);
     });
     scene->acceleratorSeconds = Timed(
         [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });

@@ -14,6 +14,8 @@ enum SurfaceNeeds : uint8_t {
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
     kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise
     kIsInterface = 16,            // nothing at all: paths go straight on, as no surface scatters
+    kNeedsSecondUv = 32,          // uv1
+    kNeedsColor = 64,             // color
 };
 
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
@@ -27,6 +29,8 @@ struct SurfaceInteraction {
     Vec3f ns;      // shading, unit; sides as pbrt-v3's, so that it also tells inside from outside
     Vec3f wo;      // towards where the ray came from, unit
     Vec2f uv;
+    Vec2f uv1;         // the second set of texture coordinates
+    Rgb color;         // of the vertices, interpolated
     Vec3f dpdu, dpdv;  // of the shading geometry
     Vec3f dndu, dndv;
     // Where a camera ray hits and the material needs it: the derivatives of the surface itself,

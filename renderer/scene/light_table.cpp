@@ -26,7 +26,7 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
     entity.parameters.GetInt("nsamples", 1);
     if (entity.name == "point") return PointLight::Make(entity);
-    if (entity.name == "spot") return SpotLight::Make(entity);
+    if (entity.name == "spot" || entity.name == "spot-squared") return SpotLight::Make(entity);
     if (entity.name == "distant") return DistantLight::Make(entity, worldRadius);
     if (entity.name == "infinite" || entity.name == "exinfinite")
         return InfiniteLight::Make(description, entity, worldRadius, !asPbrtV3, warnings);
@@ -75,10 +75,22 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
+// Reads what a mesh's emission varies by: "emission", multiplying L, looked up with the second
+// texture coordinates where "emissionuv" is 1, and what cuts holes into the mesh. Returns null
+// where neither is.
+std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
+                                                   const TextureTable& textures) {
+    const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());
+    const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
+    const bool isPlain = emission.IsConstant() && (emission.constant == 1).all();
+    if (!std::holds_alternative<Mesh>(shape.geometry) || (isPlain && !shape.coverage)) return {};
+    return std::make_unique<const EmissionMap>(EmissionMap{&textures, &shape, emission, secondUv});
+}
+
 }  // namespace
 
-LightTable::LightTable(const Description& description, ShapeTable& shapes, bool asPbrtV3,
-                       Warnings& warnings) {
+LightTable::LightTable(const Description& description, ShapeTable& shapes,
+                       const TextureTable& textures, bool asPbrtV3, Warnings& warnings) {
     const WorldSphere world = BoundingSphere(shapes.bounds);
     lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
@@ -90,7 +102,10 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, bool 
         const auto& entity = description.shapes[i].areaLight;
         if (!entity) continue;
         Shape& shape = shapes.shapes[i];
+        std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
         AreaLight light = MakeAreaLight(*entity, shape, warnings);
+        light.map = map.get();
+        if (map) emissionMaps.push_back(std::move(map));
         if (shape.PrimitiveCount() == 0) {
             warnings.Add(description.shapes[i].loc, "area light without area", "it gives no light");
             continue;
@@ -105,6 +120,10 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes, bool 
                 light.surface = disk;
             else
                 light.surface = &std::get<Revolved>(shape.geometry);
+            if (light.map) {
+                light.triangle = k;
+                light.meanFactor = light.map->Mean(k);
+            }
             lights.push_back(light);
         }
     }

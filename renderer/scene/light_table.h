@@ -22,11 +22,13 @@ class LightTable {
   public:
     LightTable() = default;
     // Makes the lights of the description and one for each primitive of an emitting shape, which
-    // it tells (Shape::firstLight); `shapes` must outlive the table and stay where it is. Lights
+    // it tells (Shape::firstLight); `shapes` and `textures` must outlive the table and stay where
+    // they are. Lights
     // are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power", "spatial" (by
     // tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or, which pbrt-v3
     // does not know, "bvh" (by a hierarchy). Throws Error with file and line for unknown kinds.
-    LightTable(const Description&, ShapeTable& shapes, bool asPbrtV3, Warnings&);
+    LightTable(const Description&, ShapeTable& shapes, const TextureTable& textures, bool asPbrtV3,
+               Warnings&);
 
     int Count() const { return int(lights.size()); }
     const Light& operator[](int i) const { return lights[i]; }
@@ -65,6 +67,7 @@ class LightTable {
 
   private:
     std::vector<Light> lights;
+    std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
     std::vector<int> infinite;
     bool anyVisible = false;
     std::unique_ptr<LightDistribution> distribution;

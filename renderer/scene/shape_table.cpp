@@ -116,6 +116,10 @@ void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
         else
             lull::Interact(std::get<Revolved>(shape.geometry), local, hit.t, needs, interaction);
     }
+    if ((needs & (kNeedsSecondUv | kNeedsColor)) && !std::holds_alternative<Mesh>(shape.geometry)) {
+        interaction->uv1 = interaction->uv;
+        interaction->color = Rgb::Ones();
+    }
     if (hit.instance >= 0) Place(instances[hit.instance], interaction);
     interaction->wo = -ray.d;
     interaction->material = shape.material;

@@ -12,11 +12,22 @@
 
 namespace lull {
 
+// Says which share of a surface is there (glTF's alpha modes). With a cutoff a point is there or
+// not; without, rays meet it at random, by a number made from the ray itself, so that as many pass
+// as light would.
+struct Coverage {
+    FloatTexture alpha;
+    float factor = 1;
+    float cutoff = -1;  // negative: none
+    bool secondUv = false, vertexAlpha = false;
+};
+
 struct Shape {
     std::variant<Mesh, Sphere, Disk, Revolved> geometry;
     int material = -1;
     int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
     std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)
+    std::optional<Coverage> coverage;                // of meshes
 
     bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }
     uint32_t PrimitiveCount() const;

@@ -28,9 +28,9 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
 }
 
 // Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
-// scene.
+// scene, else `found` is the same hit as the accelerator told of it.
 inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
-                    const SurfaceInteraction* hit) {
+                    const SurfaceInteraction* hit, const Hit& found) {
     if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
     Rgb sum = Rgb::Zero();
     if (!hit) {
@@ -41,7 +41,7 @@ inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
         }
     } else if (hit->areaLight >= 0) {
         const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
-        const Rgb L = light.Le(hit->n, hit->wo);
+        const Rgb L = light.Le(hit->n, hit->wo, found);
         if (IsBlack(L)) return sum;
         const float pdf = path.seesLights ? 0 : light.Pdf(path.origin, hit->p, hit->n);
         sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);

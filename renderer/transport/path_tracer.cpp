@@ -68,7 +68,7 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
             return Rgb::Zero();
         SurfaceInteraction at;
         scene.shapes.Interact(ray, lightHit, kNeedsNothing, &at);
-        L = area->Le(at.n, -sample->wi);
+        L = area->Le(at.n, -sample->wi, lightHit);
         lightPdf = area->Pdf(hit.p, at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
@@ -112,7 +112,7 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         // Find the next vertex and add what it emits.
         Hit found;
         if (!scene.accelerator.Intersect(path.ray, &found)) {
-            L += path.beta * Emission(scene, estimator, path, nullptr);
+            L += path.beta * Emission(scene, estimator, path, nullptr, found);
             break;
         }
         const Shape& shape = scene.shapes.shapes[found.shape];
@@ -123,7 +123,7 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         scene.lights.Prefetch(hit.p);
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
-        if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
+        if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
         if (isLast) break;
         if (needs & kIsInterface) {
             GoThrough(hit, &path);

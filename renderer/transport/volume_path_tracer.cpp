@@ -45,7 +45,6 @@ class Beam {
 
     // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
-        Hit found;
         const bool isHit = scene.accelerator.Intersect(ray, &found);
         if (medium != kVacuum) {
             Ray segment = ray;
@@ -66,6 +65,7 @@ class Beam {
     // Of the surface where the beam is now:
     bool isInterface = false;
     int light = -1;
+    Hit found;
     SurfaceInteraction hit;
 
   private:
@@ -149,7 +149,7 @@ Rgb SampleDirectionForLight(const Scene& scene, Sampler& sampler, const Vertex& 
     } else {
         if (!isHit || beam.light != index) return Rgb::Zero();
         lightPdf = area->Pdf(v.p, beam.hit.p, beam.hit.n);
-        L = area->Le(beam.hit.n, -wi);
+        L = area->Le(beam.hit.n, -wi, beam.found);
     }
     if (lightPdf == 0) return Rgb::Zero();
     return f * L * beam.transmittance * (PowerHeuristic(pdf, lightPdf) / pmf);
@@ -215,7 +215,7 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             ScatterInMedium(v, sampler, &path);
         } else {
             if (!isHit) {
-                L += path.beta * Emission(scene, estimator, path, nullptr);
+                L += path.beta * Emission(scene, estimator, path, nullptr, found);
                 break;
             }
             SurfaceInteraction hit;
@@ -224,7 +224,7 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             scene.shapes.Interact(path.ray, found, needs, &hit);
             if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
                 ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
-            if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit);
+            if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
             if (needs & kIsInterface) {
                 // What lies behind still belongs to the last vertex, whose shadow rays see it; rays
                 // that count in full end here, as with pbrt-v3.

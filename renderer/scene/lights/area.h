@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/scene/lights/emission_map.h"
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
 #include "renderer/scene/shape_table.h"
@@ -13,17 +14,30 @@ struct AreaLight {
     bool isHidden = false;  // its shape has alpha 0
     // The emitting surface; all but triangles belong to the shape table.
     std::variant<TriangleSampler, const Sphere*, const Disk*, const Revolved*> surface;
+    // Where what a mesh emits varies: by what L is multiplied, which triangle this is, and the mean
+    // factor over it, about.
+    const EmissionMap* map = nullptr;
+    uint32_t triangle = 0;
+    Rgb meanFactor = Rgb::Ones();
 
-    // Returns the radiance that leaves a point with normal n towards w.
+    // Returns the radiance that leaves a point with normal n towards w, without the map.
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
         return twoSided || n.dot(w) > 0 ? L : Rgb(Rgb::Zero());
+    }
+    // Returns it with the map; the point is that of a hit.
+    Rgb Le(const Vec3f& n, const Vec3f& w, const Hit& hit) const {
+        return map ? Le(n, w) * map->At(triangle, hit.b1, hit.b2) : Le(n, w);
     }
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const {
         const auto s = SampleSurface(from, u);
         if (!s) return {};
         const Vec3f wi = (s->p - from).normalized();
-        const Rgb emitted = Le(s->n, -wi);
+        Rgb emitted = Le(s->n, -wi);
+        if (map) {
+            const Vec2f b = SampleUniformTriangle(u);  // as TriangleSampler does
+            emitted *= map->Covered(triangle, b.y(), 1 - b.x() - b.y());
+        }
         if (IsBlack(emitted)) return {};
         return LightSample{.L = emitted,
                            .wi = wi,
@@ -54,7 +68,7 @@ struct AreaLight {
         return std::get<const Revolved*>(surface)->Area();
     }
     LightBounds Bounds() const;
-    Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L; }
+    Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
 
   private:
     std::optional<ShapeSample> SampleSurface(const Vec3f& from, const Vec2f& u) const {

@@ -12,8 +12,12 @@ SpotLight SpotLight::Make(const LightEntity& entity) {
     const Vec3f axis = TransformVector(entity.worldFromLight, (to - from).normalized());
     if (!(axis.norm() > 0))
         throw Error(entity.loc, "the spot light's \"from\" and \"to\" coincide");
-    return {TransformPoint(entity.worldFromLight, from), axis.normalized(), I,
-            std::cos(cone * kPi / 180), std::cos((cone - delta) * kPi / 180)};
+    return {TransformPoint(entity.worldFromLight, from),
+            axis.normalized(),
+            I,
+            std::cos(cone * kPi / 180),
+            std::cos((cone - delta) * kPi / 180),
+            entity.name == "spot-squared"};
 }
 
 std::optional<LightSample> SpotLight::Sample(const Vec3f& from) const {
@@ -26,7 +30,7 @@ std::optional<LightSample> SpotLight::Sample(const Vec3f& from) const {
     const float x = cosTheta >= cosFalloffStart
                         ? 1.f
                         : (cosTheta - cosTotalWidth) / (cosFalloffStart - cosTotalWidth);
-    const Rgb L = I * (Sqr(Sqr(x)) / distance2);
+    const Rgb L = I * ((isSquared ? Sqr(x) : Sqr(Sqr(x))) / distance2);
     if (!IsFinite(L)) return {};
     return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
 }

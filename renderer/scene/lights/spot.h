@@ -6,11 +6,14 @@
 
 namespace lull {
 
-// Emits I, W/sr, from one point into a cone, falling off smoothly towards its edge.
+// Emits I, W/sr, from one point into a cone, falling off smoothly towards its edge: by the fourth
+// power of how far the cosine is from the edge's ("spot"), or by its square, as
+// KHR_lights_punctual proposes ("spot-squared").
 struct SpotLight {
     Vec3f p, axis;
     Rgb I;
     float cosTotalWidth, cosFalloffStart;
+    bool isSquared = false;
 
     static SpotLight Make(const LightEntity&);
     std::optional<LightSample> Sample(const Vec3f& from) const;

@@ -11,6 +11,25 @@ std::array<Vec2f, 3> Uvs(const Mesh& mesh, const std::array<uint32_t, 3>& v) {
     return {mesh.uv[v[0]], mesh.uv[v[1]], mesh.uv[v[2]]};
 }
 
+template <typename T, size_t N>
+std::array<T, N> Interpolate(const std::vector<std::array<T, N>>& values,
+                             const std::array<uint32_t, 3>& v, float b1, float b2) {
+    std::array<T, N> sum;
+    for (size_t i = 0; i < N; ++i)
+        sum[i] = (1 - b1 - b2) * values[v[0]][i] + b1 * values[v[1]][i] + b2 * values[v[2]][i];
+    return sum;
+}
+
+// Replaces the shading tangents by those of the vertices, at right angles to the normal.
+void UseVertexTangents(const std::array<float, 4>& tangent, SurfaceInteraction* hit) {
+    const Vec3f t(tangent[0], tangent[1], tangent[2]);
+    const Vec3f s = t - hit->ns * hit->ns.dot(t);
+    const float length = s.norm();
+    if (!(length > 1e-6f * t.norm())) return;
+    hit->dpdu = s / length;
+    hit->dpdv = std::copysign(1.f, tangent[3]) * hit->ns.cross(hit->dpdu);
+}
+
 // Computes tangents and, where asked for, derivatives of the normal as pbrt-v3's triangles have
 // them (its signs included: bump maps show them).
 void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, SurfaceNeeds needs,
@@ -94,8 +113,15 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
         const auto uvs = Uvs(*this, v);
         hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
     }
-    if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))
+    if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint)) {
         ComputeTangents(*this, v, needs, hit);
+        if (!tangents.empty()) UseVertexTangents(Interpolate(tangents, v, b1, b2), hit);
+    }
+    if (needs & (kNeedsSecondUv | kNeedsColor)) {
+        hit->uv1 = Uv1(triangle, b1, b2);
+        const auto c = Color(triangle, b1, b2);
+        hit->color = Rgb(c[0], c[1], c[2]);
+    }
     if (!n.empty()) {
         if (reverseOrientation) hit->ns = -hit->ns;
         hit->n = FaceForward(hit->n, hit->ns);
@@ -105,6 +131,17 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
 Vec2f Mesh::Uv(uint32_t triangle, float b1, float b2) const {
     const auto uvs = Uvs(*this, triangles[triangle]);
     return (1 - b1 - b2) * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+}
+
+Vec2f Mesh::Uv1(uint32_t triangle, float b1, float b2) const {
+    if (uv1.empty()) return Uv(triangle, b1, b2);
+    const auto& v = triangles[triangle];
+    return (1 - b1 - b2) * uv1[v[0]] + b1 * uv1[v[1]] + b2 * uv1[v[2]];
+}
+
+std::array<float, 4> Mesh::Color(uint32_t triangle, float b1, float b2) const {
+    if (colors.empty()) return {1, 1, 1, 1};
+    return Interpolate(colors, triangles[triangle], b1, b2);
 }
 
 float Mesh::Area(uint32_t triangle) const {

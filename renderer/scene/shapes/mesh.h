@@ -22,6 +22,11 @@ struct Mesh {
     std::vector<Vec3f> p;
     std::vector<Vec3f> n;   // empty or one a vertex; need not be unit
     std::vector<Vec2f> uv;  // empty or one a vertex
+    // What only some materials read, each empty or one a vertex: the second texture coordinates,
+    // colours with alpha, and tangents along u, whose fourth number is the side of the other
+    // tangent: (n x tangent) times it.
+    std::vector<Vec2f> uv1;
+    std::vector<std::array<float, 4>> colors, tangents;
     std::vector<std::array<uint32_t, 3>> triangles;
     bool reverseOrientation = false;
     bool flipNormals = false;  // reverseOrientation xor the transform mirrors
@@ -32,6 +37,8 @@ struct Mesh {
                   SurfaceInteraction* hit) const;
 
     Vec2f Uv(uint32_t triangle, float b1, float b2) const;
+    Vec2f Uv1(uint32_t triangle, float b1, float b2) const;  // as Uv where there is no second set
+    std::array<float, 4> Color(uint32_t triangle, float b1, float b2) const;  // 1 without colours
     float Area(uint32_t triangle) const;
     // The side that emits is pbrt-v3's: vertex normals decide, without regard to
     // ReverseOrientation; those of a light are taken together.

@@ -71,6 +71,16 @@ MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
     return data;
 }
 
+// Gathers values four by four, one a vertex; none where their number is wrong.
+std::vector<std::array<float, 4>> FoursOf(const ShapeEntity& entity, const char* name,
+                                          size_t vertexCount) {
+    const auto values = entity.parameters.GetFloats(ParameterType::Float, name);
+    if (values.size() != 4 * vertexCount) return {};
+    std::vector<std::array<float, 4>> fours(vertexCount);
+    for (size_t i = 0; i < values.size(); ++i) fours[i / 4][i % 4] = values[i];
+    return fours;
+}
+
 MeshData SubdividedMesh(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     const int levels = params.GetInt("levels", params.GetInt("nlevels", 3));
@@ -80,6 +90,20 @@ MeshData SubdividedMesh(const ShapeEntity& entity) {
 }
 
 bool Mirrors(const Mat4d& m) { return m.topLeftCorner<3, 3>().determinant() < 0; }
+
+// Reads what only glTF's meshes have, four numbers a vertex and two of the second texture
+// coordinates: "color", "tangent", "uv1".
+void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* mesh) {
+    mesh->colors = FoursOf(entity, "color", vertexCount);
+    mesh->tangents = FoursOf(entity, "tangent", vertexCount);
+    const auto uv1 = entity.parameters.GetFloats(ParameterType::Float, "uv1");
+    if (uv1.size() == 2 * vertexCount) mesh->uv1 = VectorsOf<Vec2f>(uv1);
+    for (auto& t : mesh->tangents) {
+        const Vec3f along = TransformVector(entity.worldFromObject, Vec3f(t[0], t[1], t[2]));
+        // A mirror turns the cross product of normal and tangent round, not the other tangent.
+        t = {along.x(), along.y(), along.z(), Mirrors(entity.worldFromObject) ? -t[3] : t[3]};
+    }
+}
 
 // Carries the mesh to its place and drops triangles without area, which no ray can hit and no
 // light can shine from.
@@ -94,6 +118,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
         if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
     }
     for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
+    ReadExtraAttributes(entity, data.positions.size(), &mesh);
     mesh.p = std::move(data.positions);
     mesh.n = std::move(data.normals);
     mesh.uv = std::move(data.uvs);
@@ -209,6 +234,20 @@ std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeE
     return alpha;
 }
 
+// Reads "coverage", the share of the mesh that is there, times "coveragefactor" and, with
+// "coveragecolors", the alpha of the vertices' colours; "alphacutoff" makes it all or nothing.
+// Nothing is returned where all of it is there.
+std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    Coverage coverage{textures.GetFloat(entity, "coverage", 1),
+                      params.GetFloat("coveragefactor", 1), params.GetFloat("alphacutoff", -1),
+                      params.GetInt("coverageuv", 0) == 1, params.GetBool("coveragecolors", false)};
+    const bool isConstant = coverage.alpha.IsConstant() && !coverage.vertexAlpha;
+    const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1;
+    if (isConstant && coverage.factor * coverage.alpha.constant >= enough) return {};
+    return coverage;
+}
+
 }  // namespace
 
 Shape MakeShape(const Description& description, const ShapeEntity& entity,
@@ -219,6 +258,7 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     const auto mesh = [&](MeshData data) {
         shape.alpha = ReadAlpha(textures, entity, "alpha");
         shape.shadowAlpha = ReadAlpha(textures, entity, "shadowalpha");
+        shape.coverage = ReadCoverage(textures, entity);
         shape.geometry = PlaceMesh(std::move(data), entity, warnings);
     };
     if (entity.name == "plymesh") {

@@ -1,0 +1,43 @@
+// Lets what a mesh emits vary over it.
+#pragma once
+
+#include "renderer/scene/coverage.h"
+
+namespace lull {
+
+// Holds what all triangles of one emitting mesh share. The shape and textures are a scene's.
+struct EmissionMap {
+    const TextureTable* textures;
+    const Shape* shape;
+    SpectrumTexture emission;  // multiplies the light's L
+    bool secondUv = false;
+
+    // Returns the factor of the radiance at a point of a triangle.
+    Rgb At(uint32_t triangle, float b1, float b2) const {
+        const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
+        const Vec2f uv = secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);
+        return textures->Evaluate(emission, TextureContext{Vec3f::Zero(), uv}).max(0.f);
+    }
+
+    // Returns the same for light sampling, which meets the surface as often as rays do.
+    Rgb Covered(uint32_t triangle, float b1, float b2) const {
+        const Rgb e = At(triangle, b1, b2);
+        if (!shape->coverage) return e;
+        return e * CoverageAt(*shape, *textures, Vec3f::Zero(), triangle, b1, b2);
+    }
+
+    // Returns the mean over a triangle, from a few points: for the choice of lights only.
+    Rgb Mean(uint32_t triangle) const {
+        constexpr int n = 4;
+        Rgb sum = Rgb::Zero();
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Vec2f b = SampleUniformTriangle(
+                    {(float(i) + 0.5f) / float(n), (float(j) + 0.5f) / float(n)});
+                sum += Covered(triangle, b.y(), 1 - b.x() - b.y());
+            }
+        return sum / float(n * n);
+    }
+};
+
+}  // namespace lull
