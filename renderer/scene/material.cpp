@@ -8,8 +8,10 @@
 #include "renderer/scene/materials/interface.h"
 #include "renderer/scene/materials/matte.h"
 #include "renderer/scene/materials/metal.h"
+#include "renderer/scene/materials/metallic_roughness.h"
 #include "renderer/scene/materials/mirror.h"
 #include "renderer/scene/materials/mix.h"
+#include "renderer/scene/materials/normal_map.h"
 #include "renderer/scene/materials/plastic.h"
 #include "renderer/scene/materials/substrate.h"
 #include "renderer/scene/materials/translucent.h"
@@ -19,8 +21,9 @@ namespace lull {
 namespace {
 
 // Lists every kind; what a kind has to provide is in materials/material_inputs.h.
-using MaterialKind = std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate,
-                                  Translucent, Mix, Interface, Disney, Hair, Fourier>;
+using MaterialKind =
+    std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
+                 Disney, Hair, Fourier, MetallicRoughness>;
 
 }  // namespace
 
@@ -29,6 +32,8 @@ struct Material {
 
     MaterialKind kind;
     std::optional<FloatTexture> bump;
+    std::optional<NormalMap> normalMap;
+    bool tilts = false;                      // has one of both
     SurfaceNeeds lobeNeeds = kNeedsNothing;  // of the lobes alone
     SurfaceNeeds needs = kNeedsNothing;      // with the bump map
     int maxLobes = 0;
@@ -80,6 +85,11 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
                 m->lobeNeeds = m->lobeNeeds | kNeedsUv;
                 m->isConstant = false;
             }
+            if constexpr (requires { kind.ExtraNeeds(); }) {
+                const SurfaceNeeds extra = kind.ExtraNeeds();
+                m->lobeNeeds = m->lobeNeeds | extra;
+                if (extra != kNeedsNothing) m->isConstant = false;
+            }
             if constexpr (std::is_same_v<Kind, Mix>) {
                 for (int operand : kind.operands) {
                     const Material& o = made[operand];
@@ -89,6 +99,7 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
                 }
                 // pbrt-v3 shades a mix in the frame of the first material, so its bump map counts.
                 m->bump = made[kind.operands[0]].bump;
+                m->normalMap = made[kind.operands[0]].normalMap;
             } else {
                 m->maxLobes = kind.MaxLobes();
             }
@@ -103,6 +114,21 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
         m->needs = m->needs | kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint |
                    textures.Needs(*m->bump);
     }
+    if (m->normalMap) {
+        m->needs = m->needs | kNeedsTangents | textures.Needs(m->normalMap->texture);
+        if (m->normalMap->secondUv) m->needs = m->needs | kNeedsSecondUv;
+    }
+    m->tilts = m->bump || m->normalMap;
+}
+
+// Reads "normalmap" with "normalscale" and "normaluv" (1: the second texture coordinates), which
+// only glTF's materials have.
+std::optional<NormalMap> ReadNormalMap(const MaterialReader& in) {
+    const SpectrumTexture texture = in.Spectrum("normalmap", -1);
+    if (texture.IsConstant() && texture.constant.x() < 0) return {};
+    const Parameters& parameters = in.entity.parameters;
+    return NormalMap{texture, parameters.GetFloat("normalscale", 1),
+                     parameters.GetInt("normaluv", 0) == 1};
 }
 
 // Throws what is wrong, or warns of it where a matte material may stand in.
@@ -121,6 +147,7 @@ Material MakeMaterial(const Description& description, const MaterialEntity& enti
         Material m(kind);
         if (!std::holds_alternative<Mix>(kind)) m.bump = in.FloatOrNone("bumpmap");
         if (m.bump && m.bump->IsConstant() && m.bump->constant == 0) m.bump.reset();
+        if (std::holds_alternative<MetallicRoughness>(kind)) m.normalMap = ReadNormalMap(in);
         Analyse(textures, made, &m);
         return m;
     };
@@ -208,7 +235,10 @@ SurfaceNeeds MaterialTable::Needs(int material) const { return materials[materia
 
 Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
     const Material& material = materials[hit->material];
-    if (material.bump) ApplyBumpMap(*material.bump, textures, hit);
+    if (material.tilts) {
+        if (material.bump) ApplyBumpMap(*material.bump, textures, hit);
+        if (material.normalMap) ApplyNormalMap(*material.normalMap, textures, hit);
+    }
     Frame frame;
     if (material.lobeNeeds & kNeedsTangents) {
         frame = TangentFrame(*hit);
@@ -217,7 +247,8 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
     Bsdf bsdf(frame, hit->n);
-    AddLobes(material, MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials},
+    AddLobes(material,
+             MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials, hit},
              &bsdf);
     return bsdf;
 }

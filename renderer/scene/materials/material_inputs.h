@@ -8,6 +8,8 @@
 //     void VisitTextures(f) const                        calls f with every texture it evaluates;
 //     int MaxLobes() const                               how many lobes AddLobes can add,
 // and, where they apply,
+//     SurfaceNeeds ExtraNeeds() const                    what it reads of a hit besides its
+//     textures;
 //     std::string Problem(const MaterialReader&) const   what is wrong or not modelled, "" if
 //     nothing; bool NeedsTangents() const, bool NeedsUv() const   whether the lobes depend on
 //     these.
@@ -48,10 +50,12 @@ struct MaterialReader {
 };
 
 // Holds what lobes are made from at a hit point. `materials` is the whole table, for mixtures.
+// `hit` is null where a material without ExtraNeeds is made into lobes once and for all.
 struct MaterialInputs {
     const TextureTable& textures;
     TextureContext context;
     std::span<const Material> materials;
+    const SurfaceInteraction* hit = nullptr;
 
     float operator()(const FloatTexture& t) const { return textures.Evaluate(t, context); }
     // Colours may be anything from textures; scattering takes them as nonnegative.

@@ -1,0 +1,136 @@
+#include "renderer/scene/materials/metallic_roughness.h"
+
+namespace lull {
+namespace {
+
+// Below this a microfacet distribution is as narrow as float resolves: a mirror does better.
+constexpr float kSmoothAlpha = 1e-3f;
+
+UvSlot<FloatTexture> FloatSlot(const MaterialReader& in, const std::string& name) {
+    return {in.Float(name, 1), in.entity.parameters.GetInt(name + "uv", 0) == 1};
+}
+
+UvSlot<SpectrumTexture> SpectrumSlot(const MaterialReader& in, const std::string& name) {
+    return {in.Spectrum(name, 1), in.entity.parameters.GetInt(name + "uv", 0) == 1};
+}
+
+float Factor(const MaterialReader& in, const std::string& name, float otherwise) {
+    return std::max(0.f, in.entity.parameters.GetFloat(name + "factor", otherwise));
+}
+
+Rgb ColorFactor(const MaterialReader& in, const std::string& name) {
+    return in.entity.parameters.GetSpectrum(name + "factor", Rgb::Ones()).max(0.f);
+}
+
+template <typename Texture>
+auto Look(const UvSlot<Texture>& slot, const MaterialInputs& in) {
+    if (!slot.secondUv || slot.texture.IsConstant())
+        return in.textures.Evaluate(slot.texture, in.context);
+    TextureContext context = in.context;
+    context.uv = in.hit->uv1;
+    return in.textures.Evaluate(slot.texture, context);
+}
+
+float Weight(const UvSlot<FloatTexture>& slot, float factor, const MaterialInputs& in) {
+    return factor == 0 ? 0 : std::clamp(factor * Look(slot, in), 0.f, 1.f);
+}
+
+float AlphaOf(float roughness) { return Sqr(std::clamp(roughness, 0.f, 1.f)); }
+
+}  // namespace
+
+MetallicRoughness::MetallicRoughness(const MaterialReader& in)
+    : baseColor(SpectrumSlot(in, "basecolor")),
+      metallicRoughness(SpectrumSlot(in, "metallicroughness")),
+      specularColor(SpectrumSlot(in, "specularcolor")),
+      specular(FloatSlot(in, "specular")),
+      transmission(FloatSlot(in, "transmission")),
+      clearcoat(FloatSlot(in, "clearcoat")),
+      clearcoatRoughness(FloatSlot(in, "clearcoatroughness")),
+      baseColorFactor(ColorFactor(in, "basecolor")),
+      specularColorFactor(ColorFactor(in, "specularcolor")),
+      metallicFactor(Factor(in, "metallic", 1)),
+      roughnessFactor(Factor(in, "roughness", 1)),
+      specularFactor(Factor(in, "specular", 1)),
+      transmissionFactor(Factor(in, "transmission", 0)),
+      clearcoatFactor(Factor(in, "clearcoat", 0)),
+      clearcoatRoughnessFactor(Factor(in, "clearcoatroughness", 0)),
+      ior(in.entity.parameters.GetFloat("ior", 1.5f)),
+      solid(in.entity.parameters.GetBool("solid", false)),
+      vertexColors(in.entity.parameters.GetBool("vertexcolors", false)) {
+    // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
+    if (ior != 0 && !(ior >= 1 && ior < 100))
+        throw Error(in.entity.loc, "\"ior\" has to be 0 or from 1 to 100");
+}
+
+SurfaceNeeds MetallicRoughness::ExtraNeeds() const {
+    SurfaceNeeds needs = vertexColors ? kNeedsColor : kNeedsNothing;
+    const auto add = [&](const auto& slot) {
+        if (slot.secondUv && !slot.texture.IsConstant()) needs = needs | kNeedsSecondUv;
+    };
+    for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor}) add(*slot);
+    for (const auto* slot : {&specular, &transmission, &clearcoat, &clearcoatRoughness}) add(*slot);
+    return needs;
+}
+
+void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
+    Rgb color = (Look(baseColor, in) * baseColorFactor).max(0.f).min(1.f);
+    if (vertexColors) color = (color * in.hit->color).max(0.f).min(1.f);
+    const Rgb packed = Look(metallicRoughness, in);
+    const float metallic = std::clamp(metallicFactor * packed.z(), 0.f, 1.f);
+    const float alpha = AlphaOf(roughnessFactor * packed.y());
+
+    // The dielectric's interface (KHR_materials_specular), and how the material is divided into
+    // metal, dielectric over a diffuse base and dielectric that transmits.
+    const float strength = Weight(specular, specularFactor, in);
+    const Rgb tint = Look(specularColor, in) * specularColorFactor;
+    const Rgb f0 = strength * (Sqr((ior - 1) / (ior + 1)) * tint).max(0.f).min(1.f);
+    const InterfaceAbove above{f0.maxCoeff(), strength};
+    const float dielectric = 1 - metallic;
+    const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
+    const float coat = Weight(clearcoat, clearcoatFactor, in);
+    const bool isSmooth = alpha < kSmoothAlpha;
+    const Rgb base = (dielectric - transmitting) * color;
+
+    // A thin rough sheet and a base below reflect by the same interface, in one lobe.
+    const bool together = !solid && !isSmooth;
+    const float reflecting = together ? dielectric : dielectric - transmitting;
+    const Rgb r0 = reflecting * f0 + metallic * color;
+    const float r90 = reflecting * strength + metallic;
+    if (r90 > 0 || (coat > 0 && !IsBlack(base)))
+        bsdf->Add(LayeredReflection(base, r0, r90, alpha, above, coat));
+    else if (!IsBlack(base))
+        bsdf->Add(LambertianReflection{base});
+
+    const Rgb through = transmitting * color;
+    if (transmitting > 0 && solid) {
+        const float index = ior == 0 ? 100 : ior;
+        const Rgb reflected = (transmitting * strength * tint).max(0.f).min(1.f);
+        bsdf->SetEta(index);
+        if (isSmooth) {
+            bsdf->Add(FresnelSpecular{reflected, through, index});
+        } else {
+            const TrowbridgeReitz distribution(alpha, alpha);
+            if (!IsBlack(reflected))
+                bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
+                                                                    DielectricInterface{index}});
+            if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, index});
+        }
+    } else if (transmitting > 0 && isSmooth) {
+        bsdf->Add(
+            ThinSpecular{Rgb(transmitting * f0), transmitting * strength, through, above, coat});
+    } else if (!IsBlack(through)) {
+        bsdf->Add(ThinTransmission{through, alpha, above, coat});
+    }
+
+    if (coat > 0) {
+        const float coatAlpha =
+            AlphaOf(clearcoatRoughnessFactor *
+                    (clearcoatRoughnessFactor > 0 ? Look(clearcoatRoughness, in) : 0));
+        bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
+                                                         TrowbridgeReitz(coatAlpha, coatAlpha),
+                                                         SchlickInterface{0.04f}});
+    }
+}
+
+}  // namespace lull

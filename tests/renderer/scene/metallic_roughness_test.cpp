@@ -1,0 +1,89 @@
+// Checks what glTF's material is made of; its values are checked in bsdf/, its look in transport/.
+#include <gtest/gtest.h>
+
+#include "tests/renderer/scene/material_scene.h"
+
+namespace lull::test {
+namespace {
+
+// Holds one material, of these factors.
+struct SceneWith : MaterialScene {
+    SceneWith(const std::map<std::string, float>& factors, bool solid = false) {
+        MaterialEntity& m = AddMaterial("metallicroughness");
+        AddRgb(&m, "basecolorfactor", Rgb(0.5f, 0.25f, 0));
+        for (const auto& [name, value] : factors) AddFloat(&m, name, value);
+        if (solid) AddBool(&m, "solid", true);
+    }
+};
+
+TEST(MetallicRoughness, IsMetalByDefault) {
+    SceneWith b({});
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+    const auto& lobe = LobeAt<LayeredReflection>(bsdf, 0);
+    EXPECT_TRUE(IsBlack(lobe.diffuse));
+    EXPECT_FLOAT_EQ(lobe.f0.r, 0.5f);
+    EXPECT_FLOAT_EQ(lobe.f90, 1);
+    EXPECT_FLOAT_EQ(lobe.alpha, 1);
+    EXPECT_TRUE(b.messages.empty());
+}
+
+TEST(MetallicRoughness, SquaresRoughness) {
+    EXPECT_FLOAT_EQ(
+        LobeAt<LayeredReflection>(SceneWith({{"roughnessfactor", 0.3f}}).MakeBsdf(0), 0).alpha,
+        0.09f);
+}
+
+TEST(MetallicRoughness, WithoutHighlightsIsLambertian) {
+    const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"specularfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+    EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r, 0.5f);
+}
+
+TEST(MetallicRoughness, TakesItsInterfaceFromTheIndex) {
+    const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"ior", 2}}).MakeBsdf(0);
+    EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 1 / 9., 1e-6);
+    const Bsdf half =
+        SceneWith({{"metallicfactor", 0}, {"ior", 2}, {"specularfactor", 0.5f}}).MakeBsdf(0);
+    EXPECT_NEAR(LobeAt<LayeredReflection>(half, 0).f0.r, 0.5 / 9., 1e-6);
+    EXPECT_FLOAT_EQ(LobeAt<LayeredReflection>(half, 0).f90, 0.5f);
+    SceneWith bad({{"ior", 0.5f}});
+    EXPECT_THROW(bad.Make(), Error);
+}
+
+TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
+    const std::map<std::string, float> smooth = {
+        {"metallicfactor", 0}, {"transmissionfactor", 1}, {"roughnessfactor", 0}};
+    std::map<std::string, float> rough = smooth;
+    rough["roughnessfactor"] = 0.5f;
+    const auto lastOf = [](const Bsdf& bsdf) { return bsdf.At(bsdf.LobeCount(LobeSet::All) - 1); };
+    EXPECT_TRUE(std::holds_alternative<ThinSpecular>(lastOf(SceneWith(smooth).MakeBsdf(0))));
+    EXPECT_TRUE(std::holds_alternative<ThinTransmission>(lastOf(SceneWith(rough).MakeBsdf(0))));
+    const Bsdf glass = SceneWith(smooth, true).MakeBsdf(0);
+    ASSERT_EQ(glass.LobeCount(LobeSet::All), 1);
+    EXPECT_FLOAT_EQ(LobeAt<FresnelSpecular>(glass, 0).eta, 1.5f);
+    EXPECT_FLOAT_EQ(glass.Eta(), 1.5f);
+    EXPECT_TRUE(
+        std::holds_alternative<MicrofacetTransmission>(lastOf(SceneWith(rough, true).MakeBsdf(0))));
+}
+
+TEST(MetallicRoughness, MultipliesVertexColours) {
+    SceneWith b({});
+    AddBool(&b.description.materials[0], "vertexcolors", true);
+    const MaterialTable table = b.Make();
+    EXPECT_EQ(table.Needs(0), kNeedsColor);
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    hit.color = Rgb(0.5f, 1, 1);
+    EXPECT_FLOAT_EQ(LobeAt<LayeredReflection>(table.MakeBsdf(b.textures, &hit), 0).f0.r, 0.25f);
+}
+
+TEST(NormalMap, IsAskedForByMaterialsThatHaveOneAlone) {
+    SceneWith b({});
+    EXPECT_EQ(b.Make().Needs(0), kNeedsNothing);
+    b.AddChecks(true, 2);
+    AddTexture(&b.description.materials[0], "normalmap", 0, true);
+    EXPECT_EQ(b.Make().Needs(0), kNeedsTangents | kNeedsUv);
+}
+
+}  // namespace
+}  // namespace lull::test
