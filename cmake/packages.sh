@@ -1,7 +1,8 @@
 # Names the Debian packages that lull needs and installs those that are missing; to be sourced.
 
-build_packages="g++ cmake ninja-build libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev
-    libimath-dev libopenimageio-dev libtbb-dev nlohmann-json3-dev zlib1g-dev"
+build_packages="g++ cmake ninja-build libcli11-dev libdraco-dev libeigen3-dev libembree-dev libfmt-dev
+    libhdf5-dev libimath-dev libmeshoptimizer-dev libopenimageio-dev libtbb-dev libtinygltf-dev
+    nlohmann-json3-dev zlib1g-dev"
 test_packages="clang-format libbenchmark-dev libgtest-dev libopenmpi-dev openmpi-bin"
 
 # install_packages NAME...: does nothing, not even a call of apt-get, where all are there.

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/materials/fourier_file.h"
@@ -30,6 +31,15 @@ void FuzzPbrt(std::span<const char> bytes) {
             ParsePbrt(path, {.substitute = substitute}, warnings);
         } catch (const Error&) {
         }
+}
+
+void FuzzGltf(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    Warnings warnings;
+    try {
+        ParseGltf(path, {}, warnings);
+    } catch (const Error&) {
+    }
 }
 
 void FuzzPly(std::span<const char> bytes) {
@@ -121,6 +131,7 @@ void FuzzGrid(std::span<const char> bytes) {
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
     return {{"pbrt", FuzzPbrt},
+            {"gltf", FuzzGltf},
             {"ply", FuzzPly},
             {"bsdf", FuzzBsdf},
             {"model", FuzzModel},

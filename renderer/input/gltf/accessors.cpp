@@ -1,0 +1,161 @@
+#include "renderer/input/gltf/accessors.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "renderer/base/memory.h"
+
+namespace lull {
+namespace {
+
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
+
+// Holds where the elements of an array lie; `bytes` is null where they are all zero.
+struct Elements {
+    const unsigned char* bytes = nullptr;
+    size_t stride = 0;
+};
+
+// Finds `count` elements of `size` bytes from `offset` on in a view, all of them inside it.
+Elements Find(const GltfDocument& document, const FileLoc& loc, int view, size_t offset,
+              size_t size, size_t count, bool mayBeStrided) {
+    const tinygltf::BufferView& v = document.model.bufferViews[size_t(view)];
+    const std::vector<unsigned char>& data = document.model.buffers[size_t(v.buffer)].data;
+    const size_t stride = mayBeStrided && v.byteStride > 0 ? v.byteStride : size;
+    // All of these have been bounded far below what overflows, but for the count.
+    const size_t room = v.byteLength >= offset + size ? v.byteLength - offset - size : 0;
+    if (v.byteLength < offset + size || (count - 1) > room / stride)
+        throw Error(loc, fmt::format("its {} elements go beyond the {} bytes of /bufferViews/{}",
+                                     count, v.byteLength, view));
+    if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
+        throw Error(loc, fmt::format("/bufferViews/{} goes beyond its buffer of {} bytes", view,
+                                     data.size()));
+    return {data.data() + v.byteOffset + offset, stride};
+}
+
+template <typename T>
+T Load(const unsigned char* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+// Returns one component; normalised ones as the specification says (3.11).
+float Component(const unsigned char* bytes, int type, bool normalized) {
+    switch (type) {
+        case kByte: {
+            const auto v = float(Load<int8_t>(bytes));
+            return normalized ? std::max(v / 127, -1.f) : v;
+        }
+        case kUnsignedByte: {
+            const auto v = float(Load<uint8_t>(bytes));
+            return normalized ? v / 255 : v;
+        }
+        case kShort: {
+            const auto v = float(Load<int16_t>(bytes));
+            return normalized ? std::max(v / 32767, -1.f) : v;
+        }
+        case kUnsignedShort: {
+            const auto v = float(Load<uint16_t>(bytes));
+            return normalized ? v / 65535 : v;
+        }
+        case kUnsignedInt:
+            return float(Load<uint32_t>(bytes));
+        default:
+            return Load<float>(bytes);
+    }
+}
+
+uint32_t Index(const unsigned char* bytes, int type) {
+    if (type == kUnsignedByte) return Load<uint8_t>(bytes);
+    if (type == kUnsignedShort) return Load<uint16_t>(bytes);
+    return Load<uint32_t>(bytes);
+}
+
+size_t SizeOf(int type) { return size_t(tinygltf::GetComponentSizeInBytes(uint32_t(type))); }
+
+// Puts the sparse values of an accessor into their places.
+void ReadSparse(const GltfDocument& document, const FileLoc& loc,
+                const tinygltf::Accessor& accessor, GltfArray* array) {
+    const auto& sparse = accessor.sparse;
+    const auto count = size_t(sparse.count);
+    if (count > array->Count())
+        throw Error(loc,
+                    fmt::format("has {} sparse values for {} elements", count, array->Count()));
+    const size_t size = SizeOf(accessor.componentType);
+    const auto components = size_t(array->components);
+    const Elements indices =
+        Find(document, loc, sparse.indices.bufferView, size_t(sparse.indices.byteOffset),
+             SizeOf(sparse.indices.componentType), count, false);
+    const Elements values = Find(document, loc, sparse.values.bufferView,
+                                 size_t(sparse.values.byteOffset), size * components, count, false);
+    for (size_t i = 0; i < count; ++i) {
+        const size_t at = Index(indices.bytes + i * indices.stride, sparse.indices.componentType);
+        if (at >= array->Count())
+            throw Error(loc, fmt::format("sparse index {} is out of range: there are {} elements",
+                                         at, array->Count()));
+        for (size_t c = 0; c < components; ++c)
+            array->values[at * components + c] =
+                Component(values.bytes + i * values.stride + c * size, accessor.componentType,
+                          accessor.normalized);
+    }
+}
+
+}  // namespace
+
+GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most) {
+    const tinygltf::Accessor& accessor = document.model.accessors[size_t(index)];
+    const FileLoc loc = document.At(fmt::format("/accessors/{}", index));
+    GltfArray array;
+    array.components = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
+    if (array.components < least || array.components > most || accessor.type == TINYGLTF_TYPE_MAT2)
+        throw Error(loc, least == most ? fmt::format("has to have {} components for its use", least)
+                                       : fmt::format("has to have {} to {} components for its use",
+                                                     least, most));
+    const size_t size = SizeOf(accessor.componentType);
+    const auto components = size_t(array.components);
+    Elements elements;
+    if (accessor.bufferView >= 0)
+        elements = Find(document, loc, accessor.bufferView, accessor.byteOffset, size * components,
+                        accessor.count, true);
+    const size_t bytes = accessor.count * components * sizeof(float);
+    CheckMemory(int64_t(bytes), loc.Prefix() + fmt::format("{} elements", accessor.count),
+                "use a smaller mesh");
+    array.values.resize(accessor.count * components);
+    for (size_t i = 0; elements.bytes && i < accessor.count; ++i)
+        for (size_t c = 0; c < components; ++c)
+            array.values[i * components + c] =
+                Component(elements.bytes + i * elements.stride + c * size, accessor.componentType,
+                          accessor.normalized);
+    if (accessor.sparse.isSparse) ReadSparse(document, loc, accessor, &array);
+    for (size_t i = 0; i < array.values.size(); ++i)
+        if (!std::isfinite(array.values[i]))
+            throw Error(loc, fmt::format("element {} is not finite", i / components));
+    return array;
+}
+
+std::vector<uint32_t> ReadIndices(const GltfDocument& document, int index, size_t bound) {
+    const tinygltf::Accessor& accessor = document.model.accessors[size_t(index)];
+    const FileLoc loc = document.At(fmt::format("/accessors/{}", index));
+    const int type = accessor.componentType;
+    if (accessor.type != TINYGLTF_TYPE_SCALAR ||
+        (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt))
+        throw Error(loc, "has to hold unsigned integers, as indices do");
+    if (accessor.bufferView < 0 || accessor.sparse.isSparse)
+        throw Error(loc, "holds indices without a bufferView, or sparse ones: not modelled");
+    const Elements elements = Find(document, loc, accessor.bufferView, accessor.byteOffset,
+                                   SizeOf(type), accessor.count, false);
+    std::vector<uint32_t> indices(accessor.count);
+    for (size_t i = 0; i < indices.size(); ++i) {
+        indices[i] = Index(elements.bytes + i * elements.stride, type);
+        if (indices[i] >= bound)
+            throw Error(loc, fmt::format("index {} is out of range: there are {} vertices",
+                                         indices[i], bound));
+    }
+    return indices;
+}
+
+}  // namespace lull

@@ -1,0 +1,28 @@
+// Reads arrays out of a glTF file's buffers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderer/input/gltf/document.h"
+
+namespace lull {
+
+// Holds values of an accessor, `components` numbers each.
+struct GltfArray {
+    int components = 0;
+    std::vector<float> values;
+
+    size_t Count() const { return components > 0 ? values.size() / size_t(components) : 0; }
+};
+
+// Reads an accessor of any type of component, with its sparse values in place; normalised integers
+// become 0 to 1 or -1 to 1. Throws Error where it has fewer than `least` or more than `most`
+// components, reaches beyond its buffer, or holds a number that is not finite.
+GltfArray ReadFloats(const GltfDocument&, int accessor, int least, int most);
+
+// Reads an accessor of indices. Throws Error unless they are unsigned integers below `bound`.
+std::vector<uint32_t> ReadIndices(const GltfDocument&, int accessor, size_t bound);
+
+}  // namespace lull

@@ -1,0 +1,139 @@
+#include "renderer/input/gltf/cameras.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "renderer/input/file_contents.h"
+#include "renderer/input/gltf/parameters.h"
+
+namespace lull {
+namespace {
+
+constexpr int kHeight = 800;
+constexpr double kDefaultAspect = 1.5;
+constexpr double kDefaultFov = 40;  // degrees, vertical, of the framing
+constexpr double kDefaultAzimuth = 30, kDefaultElevation = 15;
+
+// Camera space has +z ahead, glTF's -z.
+Mat4d CameraFromNode() { return Eigen::Vector4d(1, 1, -1, 1).asDiagonal(); }
+
+struct View {
+    const tinygltf::Camera* camera;
+    GltfNode node;
+};
+
+std::vector<View> ListViews(const GltfDocument& document, const std::vector<GltfNode>& nodes) {
+    std::vector<View> views;
+    for (const GltfNode& node : nodes)
+        if (const int camera = document.model.nodes[size_t(node.index)].camera; camera >= 0)
+            views.push_back({&document.model.cameras[size_t(camera)], node});
+    return views;
+}
+
+std::string NameOf(const GltfDocument& document, const View& view) {
+    const std::string& name = document.model.nodes[size_t(view.node.index)].name;
+    return name.empty() ? view.camera->name : name;
+}
+
+const View& Choose(const GltfDocument& document, const std::vector<View>& views,
+                   const std::string& wanted) {
+    for (const View& view : views)
+        if (wanted == view.camera->name ||
+            wanted == document.model.nodes[size_t(view.node.index)].name)
+            return view;
+    size_t number = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto [at, error] = std::from_chars(wanted.data(), end, number);
+    if (error == std::errc() && at == end && number < views.size()) return views[number];
+    std::string names;
+    for (size_t i = 0; i < views.size(); ++i)
+        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i,
+                             Printable(NameOf(document, views[i])));
+    throw Error(fmt::format("{}: has no camera \"{}\"; it has {}", document.file, wanted,
+                            names.empty() ? "none" : names));
+}
+
+void SetFilm(double aspect, const FileLoc& loc, Description* description) {
+    const ParameterWriter film(&description->film.parameters, loc);
+    film.Int("xresolution", int(std::clamp(std::round(kHeight * aspect), 1.0, 16.0 * kHeight)));
+    film.Int("yresolution", kHeight);
+}
+
+// Sets the field of view, given vertically in radians, by the shorter side of the image.
+void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* description) {
+    const double tangent = std::tan(fov / 2) * std::min(aspect, 1.0);
+    description->camera = {"perspective", {}, loc};
+    ParameterWriter(&description->camera.parameters, loc)
+        .Float("fov", 2 * std::atan(tangent) * 180 / std::numbers::pi);
+    SetFilm(aspect, loc, description);
+}
+
+void LookThrough(const GltfDocument& document, const View& view, Description* description) {
+    const auto index = size_t(view.camera - document.model.cameras.data());
+    const FileLoc loc = document.At(fmt::format("/cameras/{}", index));
+    // Scales of the nodes do not count.
+    Mat4d m = view.node.worldFromNode;
+    for (int i = 0; i < 3; ++i) {
+        const double length = m.col(i).head<3>().norm();
+        if (!(length > 0)) throw Error(loc, "the camera's node has no extent");
+        m.col(i) /= length;
+    }
+    description->cameraFromWorld = CameraFromNode() * m.inverse();
+    if (!description->cameraFromWorld.allFinite())
+        throw Error(loc, "the transform of the camera's node cannot be inverted");
+    if (view.camera->type == "perspective") {
+        const auto& p = view.camera->perspective;
+        if (!(p.yfov > 0 && p.yfov < std::numbers::pi))
+            throw Error(loc, fmt::format("yfov is {}; it has to lie between 0 and pi", p.yfov));
+        if (!(p.aspectRatio >= 0)) throw Error(loc, "aspectRatio has to be positive");
+        SetPerspective(p.yfov, p.aspectRatio > 0 ? p.aspectRatio : kDefaultAspect, loc,
+                       description);
+        return;
+    }
+    const double x = std::abs(view.camera->orthographic.xmag);
+    const double y = std::abs(view.camera->orthographic.ymag);
+    if (!(x > 0 && y > 0)) throw Error(loc, "xmag and ymag have to be other than 0");
+    description->camera = {"orthographic", {}, loc};
+    ParameterWriter(&description->camera.parameters, loc)
+        .Floats(ParameterType::Float, "screenwindow", {float(-x), float(x), float(-y), float(y)});
+    SetFilm(x / y, loc, description);
+}
+
+// Looks at all of the bounds' sphere.
+void ShowAll(const Bounds3f& bounds, const std::array<double, 2>& orbit, const FileLoc& loc,
+             Description* description) {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    double radius = 1;
+    if (!bounds.IsEmpty()) {
+        center = 0.5 * (bounds.lower.cast<double>() + bounds.upper.cast<double>());
+        radius = std::max(0.5 * bounds.Diagonal().cast<double>().norm(), 1e-6);
+    }
+    constexpr double kDegree = std::numbers::pi / 180;
+    const double a = orbit[0] * kDegree, e = orbit[1] * kDegree, fov = kDefaultFov * kDegree;
+    // The directions back, right and up: the camera's axes in glTF's convention.
+    const Eigen::Vector3d back(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));
+    const Eigen::Vector3d right(std::cos(a), 0, -std::sin(a));
+    Mat4d m = Mat4d::Identity();
+    m.col(0).head<3>() = right;
+    m.col(1).head<3>() = back.cross(right);
+    m.col(2).head<3>() = back;
+    m.col(3).head<3>() = center + back * (radius / std::sin(fov / 2));
+    description->cameraFromWorld = CameraFromNode() * m.inverse();
+    SetPerspective(fov, kDefaultAspect, loc, description);
+}
+
+}  // namespace
+
+void SetView(const GltfDocument& document, const std::vector<GltfNode>& nodes,
+             const Bounds3f& bounds, const GltfOptions& options, Description* description) {
+    const std::vector<View> views = ListViews(document, nodes);
+    if (!options.camera.empty())
+        return LookThrough(document, Choose(document, views, options.camera), description);
+    if (!views.empty() && !options.orbit) return LookThrough(document, views[0], description);
+    std::array<double, 2> orbit = {kDefaultAzimuth, kDefaultElevation};
+    if (options.orbit) orbit = {(*options.orbit)[0], (*options.orbit)[1]};
+    ShowAll(bounds, orbit, document.At("/cameras"), description);
+}
+
+}  // namespace lull

@@ -1,0 +1,168 @@
+#include "renderer/input/gltf/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "renderer/input/file_contents.h"
+#include "renderer/input/gltf/decompression.h"
+#include "renderer/input/gltf/validation.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kModelled[] = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",     "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_specular",  "KHR_materials_transmission",
+    "KHR_materials_unlit",     "KHR_materials_volume",    "KHR_mesh_quantization",
+    "KHR_texture_transform"};
+
+bool IsModelled(const std::string& extension) {
+    return std::any_of(std::begin(kModelled), std::end(kModelled),
+                       [&](const char* name) { return extension == name; });
+}
+
+constexpr size_t kGlbHeader = 12, kChunkHeader = 8;
+
+uint32_t LittleEndian(const char* bytes) {
+    const auto* b = reinterpret_cast<const unsigned char*>(bytes);
+    return uint32_t(b[0]) | uint32_t(b[1]) << 8 | uint32_t(b[2]) << 16 | uint32_t(b[3]) << 24;
+}
+
+bool IsBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
+
+// Returns the JSON of a file; of a .glb that is its first chunk.
+std::string_view JsonOf(const std::string& file, std::string_view bytes) {
+    if (!IsBinary(bytes)) return bytes;
+    if (bytes.size() < kGlbHeader + kChunkHeader)
+        throw Error(fmt::format("{}: is truncated: it has {} bytes", file, bytes.size()));
+    const uint32_t version = LittleEndian(bytes.data() + 4), size = LittleEndian(bytes.data() + 8);
+    if (version != 2)
+        throw Error(fmt::format("{}: is of GLB version {}; 2 is modelled", file, version));
+    if (size > bytes.size())
+        throw Error(
+            fmt::format("{}: is truncated: it has {} of its {} bytes", file, bytes.size(), size));
+    const size_t length = LittleEndian(bytes.data() + 12);
+    if (std::memcmp(bytes.data() + 16, "JSON", 4) != 0)
+        throw Error(file + ": its first chunk is not JSON");
+    if (length > bytes.size() - kGlbHeader - kChunkHeader)
+        throw Error(fmt::format("{}: its JSON of {} bytes goes beyond its end", file, length));
+    return bytes.substr(kGlbHeader + kChunkHeader, length);
+}
+
+// Returns the file with other JSON in it; that of a .glb is padded with spaces to its alignment.
+std::string WithJson(std::string_view bytes, std::string json) {
+    if (!IsBinary(bytes)) return json;
+    const auto number = [](size_t n) {
+        std::string b;
+        for (int i = 0; i < 4; ++i) b += char(n >> (8 * i) & 255);
+        return b;
+    };
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const size_t start = kGlbHeader + kChunkHeader;
+    const std::string_view rest = bytes.substr(start + LittleEndian(bytes.data() + 12));
+    return "glTF" + number(2) + number(start + json.size() + rest.size()) + number(json.size()) +
+           "JSON" + json + std::string(rest);
+}
+
+void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnings& warnings) {
+    const auto place = [&](const char* list, size_t i) {
+        return FileLoc{
+            std::make_shared<const std::string>(fmt::format("{}: /{}/{}", file, list, i)), 0};
+    };
+    std::vector<std::string> required;
+    if (root.contains("extensionsRequired"))
+        required = root.at("extensionsRequired").get<std::vector<std::string>>();
+    for (size_t i = 0; i < required.size(); ++i)
+        if (!IsModelled(required[i]))
+            throw Error(place("extensionsRequired", i), "extension \"" + Printable(required[i]) +
+                                                            "\" is required, but not modelled");
+    if (!root.contains("extensionsUsed")) return;
+    const auto used = root.at("extensionsUsed").get<std::vector<std::string>>();
+    for (size_t i = 0; i < used.size(); ++i)
+        if (!IsModelled(used[i]))
+            warnings.Add(place("extensionsUsed", i),
+                         "extension \"" + Printable(used[i]) + "\" is not modelled and left out");
+}
+
+// Reads the files that buffers lie in.
+bool FileExists(const std::string& path, void*) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+}
+
+bool ReadWhole(std::vector<unsigned char>* out, std::string* error, const std::string& path,
+               void*) try {
+    const FileContents contents = ReadFile(path);
+    out->assign(contents.bytes.get(), contents.bytes.get() + contents.size);
+    return true;
+} catch (const Error& e) {
+    *error += e.what();
+    return false;
+}
+
+// Keeps images as they are encoded.
+bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+               const unsigned char* bytes, int size, void*) {
+    image->image.assign(bytes, bytes + size);
+    image->as_is = true;
+    return true;
+}
+
+}  // namespace
+
+FileLoc GltfDocument::At(const std::string& path) const {
+    return {std::make_shared<const std::string>(file + ": " + path), 0};
+}
+
+bool GltfDocument::Requires(const std::string& extension) const {
+    const auto& required = model.extensionsRequired;
+    return std::find(required.begin(), required.end(), extension) != required.end();
+}
+
+GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
+    const FileContents contents = ReadFile(file);
+    std::string_view bytes = contents.View();
+    std::string rewritten;
+    if (bytes.size() > std::numeric_limits<uint32_t>::max())
+        throw Error(file + ": is larger than 4 GB, which glTF files cannot be");
+    {
+        nlohmann::json root = ParseGltfJson(file, JsonOf(file, bytes));
+        CheckGltfJson(file, root);
+        CheckExtensions(file, root, warnings);
+        if (HideCompressed(&root)) {
+            rewritten = WithJson(bytes, root.dump());
+            bytes = rewritten;
+        }
+    }
+
+    GltfDocument document{file, {}};
+    tinygltf::TinyGLTF reader;
+    reader.SetFsCallbacks({FileExists, [](const std::string& path, void*) { return path; },
+                           ReadWhole, nullptr, nullptr});
+    reader.SetImageLoader(KeepImage, nullptr);
+    const std::string folder = std::filesystem::path(file).parent_path().string();
+    std::string error, warning;
+    bool isRead = false;
+    try {
+        const auto size = unsigned(bytes.size());
+        isRead = IsBinary(bytes)
+                     ? reader.LoadBinaryFromMemory(
+                           &document.model, &error, &warning,
+                           reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+                     : reader.LoadASCIIFromString(&document.model, &error, &warning, bytes.data(),
+                                                  size, folder);
+    } catch (const std::exception& e) {
+        error = e.what();
+    }
+    if (!isRead) throw Error(file + ": " + Printable(error.substr(0, error.find('\n'))));
+    DecodeMeshopt(&document);
+    DecodeDraco(&document);
+    return document;
+}
+
+}  // namespace lull

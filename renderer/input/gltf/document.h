@@ -1,0 +1,29 @@
+// Reads glTF files (.gltf, .glb) and checks their structure.
+#pragma once
+
+#include <string>
+
+#include "renderer/base/error.h"
+#include "renderer/input/gltf/library.h"
+
+namespace lull {
+
+// Holds a glTF file whose JSON has been checked: all indices between its top-level arrays are in
+// range, all its numbers fit into a float. What lies in its buffers is still to be checked.
+struct GltfDocument {
+    std::string file;
+    tinygltf::Model model;
+
+    // Names a place in the file by its JSON pointer, such as "/meshes/0/primitives/1".
+    FileLoc At(const std::string& path) const;
+
+    // Says whether the file cannot be shown without an extension.
+    bool Requires(const std::string& extension) const;
+};
+
+// Reads a file and the buffers it names; images stay encoded, those in files of their own unread.
+// Extensions that are not modelled are warned of, or refused where the file requires them. Throws
+// Error with the file and, where it has one, the JSON pointer of what is wrong.
+GltfDocument ReadGltf(const std::string& file, Warnings& warnings);
+
+}  // namespace lull

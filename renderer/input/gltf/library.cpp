@@ -1,0 +1,7 @@
+// Compiles the library.
+#include "renderer/input/gltf/library.h"
+
+#include <fstream>
+
+#define TINYGLTF_IMPLEMENTATION
+#include <tiny_gltf.h>

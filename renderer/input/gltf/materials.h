@@ -1,0 +1,43 @@
+// Turns glTF's materials into those of a Description.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "renderer/input/gltf/parameters.h"
+#include "renderer/input/gltf/textures.h"
+
+namespace lull {
+
+// Holds what a material is to a shape.
+struct GltfMaterial {
+    int index = -1;                  // into Description::materials
+    std::optional<Entity> emission;  // an area light
+    Parameters coverage;             // of the shape: its alpha mode
+    int tangentUvSet = -1;  // which texture coordinates its normal map uses; -1: it has none
+};
+
+// Adds materials to a description, each once.
+class GltfMaterials {
+  public:
+    GltfMaterials(const GltfDocument& document, Description* description)
+        : document(document), description(description), textures(document, description) {}
+
+    // Returns the material of that index of the file, -1 for the default one, for primitives with
+    // or without vertex colours. Throws Error.
+    const GltfMaterial& Get(int material, bool hasColors, Warnings& warnings);
+
+  private:
+    GltfMaterial Make(int material, bool hasColors, Warnings& warnings);
+    void AddExtensions(const tinygltf::Material& material, const std::string& path,
+                       const ParameterWriter& write, Warnings& warnings);
+    void AddTexture(const ParameterWriter& write, const std::string& name,
+                    const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
+
+    const GltfDocument& document;
+    Description* description;
+    GltfTextures textures;
+    std::map<std::pair<int, bool>, GltfMaterial> made;
+};
+
+}  // namespace lull

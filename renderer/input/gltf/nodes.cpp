@@ -1,0 +1,117 @@
+#include "renderer/input/gltf/nodes.h"
+
+#include <fmt/format.h>
+
+#include "renderer/input/gltf/accessors.h"
+
+namespace lull {
+namespace {
+
+std::string PathOf(int node) { return fmt::format("/nodes/{}", node); }
+
+Mat4d LocalMatrix(const GltfDocument& document, int index) {
+    const tinygltf::Node& node = document.model.nodes[size_t(index)];
+    Mat4d m;
+    if (node.matrix.size() == 16) {
+        m = Eigen::Map<const Mat4d>(node.matrix.data());  // columns first, both
+        if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+            throw Error(document.At(PathOf(index) + "/matrix"), "is not affine");
+    } else {
+        const auto three = [](const std::vector<double>& v, double otherwise) {
+            return v.size() == 3 ? Eigen::Vector3d(v[0], v[1], v[2])
+                                 : Eigen::Vector3d(otherwise, otherwise, otherwise);
+        };
+        const Eigen::Vector4d rotation = node.rotation.size() == 4
+                                             ? Eigen::Vector4d(node.rotation[0], node.rotation[1],
+                                                               node.rotation[2], node.rotation[3])
+                                             : Eigen::Vector4d(0, 0, 0, 1);
+        m = MatrixOf(three(node.translation, 0), rotation, three(node.scale, 1));
+    }
+    return m;
+}
+
+// Returns the nodes that no other has as a child.
+std::vector<int> Roots(const tinygltf::Model& model) {
+    if (!model.scenes.empty()) {
+        const int scene = std::max(model.defaultScene, 0);
+        return model.scenes[size_t(scene)].nodes;
+    }
+    std::vector<bool> isChild(model.nodes.size());
+    for (const tinygltf::Node& node : model.nodes)
+        for (const int child : node.children) isChild[size_t(child)] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < isChild.size(); ++i)
+        if (!isChild[i]) roots.push_back(int(i));
+    return roots;
+}
+
+}  // namespace
+
+Mat4d MatrixOf(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotation,
+               const Eigen::Vector3d& scale) {
+    Mat4d m = Mat4d::Identity();
+    const double length = rotation.norm();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    if (length > 0) {
+        const Eigen::Vector4d q = rotation / length;
+        turn = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+    }
+    m.topLeftCorner<3, 3>() = turn * scale.asDiagonal();
+    m.topRightCorner<3, 1>() = translation;
+    return m;
+}
+
+std::vector<GltfNode> ListNodes(const GltfDocument& document) {
+    std::vector<GltfNode> nodes;
+    std::vector<bool> isListed(document.model.nodes.size());
+    const auto add = [&](int index, const Mat4d& parent) {
+        if (isListed[size_t(index)])
+            throw Error(document.At(PathOf(index)), "has two parents, or is its own ancestor");
+        isListed[size_t(index)] = true;
+        nodes.push_back({index, parent * LocalMatrix(document, index)});
+        if (!(nodes.back().worldFromNode.cwiseAbs().maxCoeff() < 1e30))
+            throw Error(document.At(PathOf(index)), "its transform is too large");
+    };
+    for (const int root : Roots(document.model)) add(root, Mat4d::Identity());
+    // The list grows as it is walked; what is in it already does not move, as copies are taken.
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        const GltfNode node = nodes[i];
+        for (const int child : document.model.nodes[size_t(node.index)].children)
+            add(child, node.worldFromNode);
+    }
+    return nodes;
+}
+
+std::vector<Mat4d> ReadCopies(const GltfDocument& document, int index) {
+    const tinygltf::Node& node = document.model.nodes[size_t(index)];
+    const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+    if (extension == node.extensions.end()) return {Mat4d::Identity()};
+    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    const FileLoc loc = document.At(PathOf(index) + "/extensions/EXT_mesh_gpu_instancing");
+    size_t count = 0;
+    const auto read = [&](const char* name, int components) {
+        GltfArray array;
+        if (!attributes.Has(name)) return array;
+        array = ReadFloats(document, attributes.Get(name).GetNumberAsInt(), components, components);
+        if (count > 0 && array.Count() != count)
+            throw Error(loc, "its attributes have different counts");
+        count = array.Count();
+        return array;
+    };
+    const GltfArray translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                    scales = read("SCALE", 3);
+    std::vector<Mat4d> copies;
+    for (size_t i = 0; i < count; ++i) {
+        const auto three = [&](const GltfArray& a, double otherwise) -> Eigen::Vector3d {
+            if (a.values.empty()) return Eigen::Vector3d::Constant(otherwise);
+            return Eigen::Map<const Vec3f>(&a.values[3 * i]).cast<double>();
+        };
+        Eigen::Vector4d rotation(0, 0, 0, 1);
+        if (!rotations.values.empty())
+            for (size_t c = 0; c < 4; ++c) rotation[long(c)] = rotations.values[4 * i + c];
+        copies.push_back(MatrixOf(three(translations, 0), rotation, three(scales, 1)));
+    }
+    return copies;
+}
+
+}  // namespace lull

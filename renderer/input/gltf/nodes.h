@@ -1,0 +1,29 @@
+// Walks the node hierarchy of a glTF file.
+#pragma once
+
+#include <vector>
+
+#include "renderer/base/math.h"
+#include "renderer/input/gltf/document.h"
+
+namespace lull {
+
+struct GltfNode {
+    int index = -1;  // into the file's nodes
+    Mat4d worldFromNode = Mat4d::Identity();
+};
+
+// Lists the nodes of the file's scene (of its first one where it names none; all roots where it has
+// none), parents before their children. Throws Error where a node has two parents, which cycles are
+// a case of, or its transform is not finite.
+std::vector<GltfNode> ListNodes(const GltfDocument&);
+
+// Returns the transforms of the copies of a node's mesh that EXT_mesh_gpu_instancing asks for, in
+// the space of the node; a single identity without it. Throws Error.
+std::vector<Mat4d> ReadCopies(const GltfDocument&, int node);
+
+// Makes a matrix of a translation, a rotation (a quaternion x, y, z, w of any length) and a scale.
+Mat4d MatrixOf(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotation,
+               const Eigen::Vector3d& scale);
+
+}  // namespace lull

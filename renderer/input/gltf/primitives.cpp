@@ -1,0 +1,116 @@
+#include "renderer/input/gltf/primitives.h"
+
+#include <fmt/format.h>
+
+#include "renderer/input/gltf/accessors.h"
+#include "renderer/input/gltf/parameters.h"
+
+namespace lull {
+namespace {
+
+// Reads an attribute of `least` to `most` components, one a vertex; nothing where it is absent.
+GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
+                        const tinygltf::Primitive& primitive, const std::string& name, int least,
+                        int most, size_t vertexCount) {
+    const auto found = primitive.attributes.find(name);
+    if (found == primitive.attributes.end()) return {};
+    GltfArray array = ReadFloats(document, found->second, least, most);
+    if (array.Count() != vertexCount)
+        throw Error(loc,
+                    fmt::format("has {} {} for {} vertices", array.Count(), name, vertexCount));
+    return array;
+}
+
+// Gives colours an alpha.
+std::vector<float> WithAlpha(GltfArray colors) {
+    if (colors.components == 4) return std::move(colors.values);
+    std::vector<float> values;
+    values.reserve(colors.Count() * 4);
+    for (size_t i = 0; i < colors.Count(); ++i) {
+        values.insert(values.end(), &colors.values[3 * i], &colors.values[3 * i] + 3);
+        values.push_back(1);
+    }
+    return values;
+}
+
+// Turns strips and fans into triangles (3.7.2.1); the order of their corners tells the front side.
+std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
+    if (mode == TINYGLTF_MODE_TRIANGLES || v.size() < 3) {
+        v.resize(v.size() / 3 * 3);
+        return v;
+    }
+    std::vector<uint32_t> triangles;
+    triangles.reserve((v.size() - 2) * 3);
+    for (size_t i = 0; i + 2 < v.size(); ++i) {
+        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+            triangles.insert(triangles.end(), {v[i + 1], v[i + 2], v[0]});
+        else
+            triangles.insert(triangles.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
+    }
+    return triangles;
+}
+
+}  // namespace
+
+GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index, Warnings& warnings) {
+    const tinygltf::Primitive& primitive =
+        document.model.meshes[size_t(mesh)].primitives[size_t(index)];
+    const FileLoc loc = document.At(fmt::format("/meshes/{}/primitives/{}", mesh, index));
+    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
+        warnings.Add(loc, "points and lines are left out");
+        return {};
+    }
+    if (!primitive.targets.empty()) warnings.Add(loc, "morph targets are left out");
+    const auto positions = primitive.attributes.find("POSITION");
+    if (positions == primitive.attributes.end()) {
+        warnings.Add(loc, "primitive without POSITION is left out");
+        return {};
+    }
+
+    GltfTriangles t;
+    t.positions = ReadFloats(document, positions->second, 3, 3).values;
+    const size_t count = t.VertexCount();
+    const auto read = [&](const char* name, int least, int most) {
+        return ReadAttribute(document, loc, primitive, name, least, most, count);
+    };
+    t.normals = read("NORMAL", 3, 3).values;
+    if (!t.normals.empty()) t.tangents = read("TANGENT", 4, 4).values;
+    t.uvs[0] = read("TEXCOORD_0", 2, 2).values;
+    t.uvs[1] = read("TEXCOORD_1", 2, 2).values;
+    for (std::vector<float>& uvs : t.uvs)
+        for (size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1 - uvs[i];
+    t.colors = WithAlpha(read("COLOR_0", 3, 4));
+
+    if (primitive.indices >= 0) {
+        t.indices = ReadIndices(document, primitive.indices, count);
+    } else {
+        t.indices.resize(count);
+        for (size_t i = 0; i < count; ++i) t.indices[i] = uint32_t(i);
+    }
+    t.indices = Triangles(std::move(t.indices), mode);
+    if (t.indices.empty()) warnings.Add(loc, "primitive without triangles is left out");
+    if (t.indices.size() > size_t(std::numeric_limits<int>::max()))
+        throw Error(loc, "has more triangles than can be modelled");
+    return t;
+}
+
+ShapeEntity MakeShapeEntity(GltfTriangles t, const FileLoc& loc) {
+    ShapeEntity shape;
+    shape.name = "trianglemesh";
+    shape.loc = loc;
+    const ParameterWriter write(&shape.parameters, loc);
+    write.Ints("indices", {t.indices.begin(), t.indices.end()});
+    write.Floats(ParameterType::Point3, "P", std::move(t.positions));
+    const auto optional = [&](ParameterType type, const char* name, std::vector<float>& values) {
+        if (!values.empty()) write.Floats(type, name, std::move(values));
+    };
+    optional(ParameterType::Normal, "N", t.normals);
+    optional(ParameterType::Float, "uv", t.uvs[0]);
+    optional(ParameterType::Float, "uv1", t.uvs[1]);
+    optional(ParameterType::Float, "tangent", t.tangents);
+    optional(ParameterType::Float, "color", t.colors);
+    return shape;
+}
+
+}  // namespace lull

@@ -1,0 +1,156 @@
+#include "renderer/input/gltf/textures.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "renderer/input/file_contents.h"
+#include "renderer/input/gltf/parameters.h"
+
+namespace lull {
+namespace {
+
+std::array<double, 2> Pair(const tinygltf::Value& owner, const char* name, double otherwise) {
+    const tinygltf::Value& pair = owner.Get(name);
+    if (pair.ArrayLen() != 2) return {otherwise, otherwise};
+    return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
+}
+
+// Reads KHR_texture_transform: translation * rotation * scale, where v grows downwards. Both v, the
+// one that goes in and the one that comes out, are turned round.
+void ReadTransform(const tinygltf::Value& e, GltfTextureUse* use) {
+    if (!e.IsObject()) return;
+    if (e.Has("texCoord")) use->uvSet = e.Get("texCoord").GetNumberAsInt();
+    const auto [x, y] = Pair(e, "offset", 0);
+    const auto [sx, sy] = Pair(e, "scale", 1);
+    const double angle = e.Get("rotation").GetNumberAsDouble();
+    const double c = std::cos(angle), s = std::sin(angle);
+    use->transform = {float(c * sx), float(-s * sy), float(s * sy + x),
+                      float(s * sx), float(c * sy),  float(1 - c * sy - y)};
+}
+
+template <typename Info>
+GltfTextureUse UseOf(const Info& info, const std::string& path) {
+    GltfTextureUse use{info.index, info.texCoord, {}, path};
+    const auto found = info.extensions.find("KHR_texture_transform");
+    if (found != info.extensions.end()) ReadTransform(found->second, &use);
+    return use;
+}
+
+// Returns the extension of a file of that kind of image, by the bytes it begins with or by what the
+// file says.
+std::string TypeOf(const tinygltf::Image& image) {
+    const auto startsWith = [&](std::string_view bytes) {
+        return std::string_view(reinterpret_cast<const char*>(image.image.data()),
+                                image.image.size())
+            .starts_with(bytes);
+    };
+    if (startsWith("\x89PNG")) return "png";
+    if (startsWith("\xff\xd8")) return "jpg";
+    return image.mimeType == "image/jpeg" ? "jpg" : "png";
+}
+
+// Undoes the percent-encoding of a URI.
+std::string DecodeUri(const std::string& uri) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9' ? c - '0'
+                                    : std::tolower(static_cast<unsigned char>(c)) - 'a' + 10;
+    };
+    std::string decoded;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        const bool isCode = uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(uri[i + 1]) &&
+                            std::isxdigit(uri[i + 2]);
+        decoded += isCode ? char(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+        if (isCode) i += 2;
+    }
+    return decoded;
+}
+
+const char* WrapName(int wrap) {
+    if (wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return "clamp";
+    return wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? "mirrored" : "repeat";
+}
+
+}  // namespace
+
+GltfTextureUse ReadTextureUse(const tinygltf::TextureInfo& info, const std::string& path) {
+    return UseOf(info, path);
+}
+
+GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo& info, const std::string& path) {
+    return UseOf(info, path);
+}
+
+GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
+                              const std::string& path) {
+    GltfTextureUse use;
+    use.path = path + "/" + name;
+    if (!owner.Has(name)) return use;
+    const tinygltf::Value& info = owner.Get(name);
+    use.index = info.Get("index").GetNumberAsInt();
+    use.uvSet = info.Has("texCoord") ? info.Get("texCoord").GetNumberAsInt() : 0;
+    if (info.Has("extensions"))
+        ReadTransform(info.Get("extensions").Get("KHR_texture_transform"), &use);
+    return use;
+}
+
+int GltfTextures::Embed(int index, const FileLoc& loc) {
+    const auto [found, isNew] = embedded.try_emplace(index, int(description->images.size()));
+    if (!isNew) return found->second;
+    const tinygltf::Image& image = document.model.images[size_t(index)];
+    if (image.image.empty()) throw Error(loc, fmt::format("/images/{} is empty", index));
+    const auto* bytes = reinterpret_cast<const std::byte*>(image.image.data());
+    description->images.push_back({fmt::format("{}: /images/{}", document.file, index),
+                                   TypeOf(image),
+                                   {bytes, bytes + image.image.size()}});
+    return found->second;
+}
+
+std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexels texels,
+                                            Warnings& warnings) {
+    if (use.index < 0) return {};
+    const FileLoc loc = document.At(use.path);
+    if (use.uvSet > 1)
+        throw Error(loc, fmt::format("uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet));
+    const tinygltf::Texture& texture = document.model.textures[size_t(use.index)];
+    if (texture.source < 0) {
+        warnings.Add(loc, "texture without an image that is modelled is left out");
+        return {};
+    }
+    const auto [found, isNew] = made.try_emplace({use.index, texels, use.transform}, TextureRef());
+    if (!isNew) return found->second;
+
+    TextureEntity entity;
+    entity.name = "imagemap";
+    entity.loc = loc;
+    entity.textureName = fmt::format("/textures/{}", use.index);
+    entity.isSpectrum = texels == GltfTexels::EncodedColor || texels == GltfTexels::LinearColor;
+    const ParameterWriter write(&entity.parameters, loc);
+    const tinygltf::Image& image = document.model.images[size_t(texture.source)];
+    if (image.uri.empty() || image.uri.starts_with("data:"))
+        write.Int("embeddedimage", Embed(texture.source, loc));
+    else
+        write.String("filename", DecodeUri(image.uri));
+    write.Bool("gamma", texels == GltfTexels::EncodedColor);
+    if (!entity.isSpectrum)
+        write.String("channel", texels == GltfTexels::Red     ? "red"
+                                : texels == GltfTexels::Green ? "green"
+                                                              : "alpha");
+    if (texture.sampler >= 0) {
+        const tinygltf::Sampler& sampler = document.model.samplers[size_t(texture.sampler)];
+        write.String("wrap", WrapName(sampler.wrapS));
+        write.String("wrapt", WrapName(sampler.wrapT));
+    }
+    if (use.transform) {
+        write.String("mapping", "uvaffine");
+        write.Floats(ParameterType::Float, "uvtransform",
+                     {use.transform->begin(), use.transform->end()});
+    }
+    TextureRef& ref = found->second;
+    ref.name = entity.textureName;
+    (entity.isSpectrum ? ref.spectrumIndex : ref.floatIndex) = int(description->textures.size());
+    description->textures.push_back(std::move(entity));
+    return ref;
+}
+
+}  // namespace lull

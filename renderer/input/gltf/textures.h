@@ -1,0 +1,52 @@
+// Turns glTF's textures into those of a Description.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "renderer/input/description.h"
+#include "renderer/input/gltf/document.h"
+
+namespace lull {
+
+// Names a texture as a material uses it.
+struct GltfTextureUse {
+    int index = -1;  // into the file's textures; -1: none
+    int uvSet = 0;
+    // KHR_texture_transform, in texture coordinates whose v grows upwards: two rows of three.
+    std::optional<std::array<float, 6>> transform;
+    std::string path;  // the JSON pointer of the use
+};
+
+// Read a use, from the core specification's texture slots or from an extension's: `owner` is the
+// object that may have a member `name`.
+GltfTextureUse ReadTextureUse(const tinygltf::TextureInfo&, const std::string& path);
+GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::string& path);
+GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
+                              const std::string& path);
+
+// Says what of an image a texture gives: its colours, sRGB-encoded or not, or one channel as it is.
+enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
+
+// Adds textures and embedded images to a description, each once.
+class GltfTextures {
+  public:
+    GltfTextures(const GltfDocument& document, Description* description)
+        : document(document), description(description) {}
+
+    // Returns the texture; nothing for a use of none, or of one without an image, with a counted
+    // warning.
+    std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
+
+  private:
+    int Embed(int image, const FileLoc& loc);
+
+    const GltfDocument& document;
+    Description* description;
+    std::map<int, int> embedded;  // image of the file to Description::images
+    std::map<std::tuple<int, GltfTexels, std::optional<std::array<float, 6>>>, TextureRef> made;
+};
+
+}  // namespace lull

@@ -1,0 +1,19 @@
+// Checks the structure of glTF's JSON before anything is made of it.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace lull {
+
+// Parses JSON. Throws Error with `file` for what is not JSON, not an object, or nested so deeply
+// that reading it could exhaust the stack.
+nlohmann::json ParseGltfJson(const std::string& file, std::string_view text);
+
+// Throws Error with `file` and the JSON pointer of the first thing that is not as the specification
+// has it: types, indices between the top-level arrays, enumerations, numbers that fit no float,
+// data URIs that are not base64.
+void CheckGltfJson(const std::string& file, const nlohmann::json& root);
+
+}  // namespace lull

@@ -1,0 +1,29 @@
+// Reads glTF 2.0 files, .gltf and .glb.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "renderer/base/error.h"
+#include "renderer/input/description.h"
+
+namespace lull {
+
+struct GltfOptions {
+    // Which camera to look through: the name of a camera or of the node that holds it, or its
+    // number among the cameras in the scene, from 0. Empty: the first one.
+    std::string camera = {};
+    // Look at the whole scene instead, from this azimuth (degrees around the vertical, 0 from +z,
+    // 90 from +x) and elevation (degrees above the horizon, -90 to 90).
+    std::optional<std::array<float, 2>> orbit = {};
+};
+
+// Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, at
+// whatever is wrong, or required and not modelled; what is not modelled but optional is warned of.
+Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings);
+
+// Says whether a file is a glTF file, by its extension.
+bool IsGltf(const std::string& file);
+
+}  // namespace lull

@@ -1,0 +1,64 @@
+#include "renderer/input/scene_edits.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+namespace lull {
+namespace {
+
+// Returns the transform of light space, whose +z is the top of an environment map, to the world.
+Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, double degrees) {
+    const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
+    int axis;
+    m.row(1).cwiseAbs().maxCoeff(&axis);
+    const double side = m(1, axis) < 0 ? -1 : 1;
+    const Eigen::Vector3d up = side * Eigen::Vector3d::Unit(axis);
+    // Camera space is left-handed, as pbrt's light space is. A world of the other hand sees the
+    // image mirrored unless light space is mirrored as well; it is turned to where Blender has it.
+    const bool isRightHanded = m.determinant() < 0;
+    const Eigen::Vector3d x = (isRightHanded ? -1. : 1.) * Eigen::Vector3d::Unit(axis == 0 ? 1 : 0);
+    const Eigen::Vector3d y = (isRightHanded ? -1. : 1.) * up.cross(x);
+    const double angle = degrees * std::numbers::pi / 180;
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, up).toRotationMatrix();
+    Mat4d result = Mat4d::Identity();
+    result.col(0).head<3>() = turn * x;
+    result.col(1).head<3>() = turn * y;
+    result.col(2).head<3>() = up;
+    return result;
+}
+
+bool IsEnvironment(const LightEntity& light) {
+    return light.name == "infinite" || light.name == "exinfinite";
+}
+
+}  // namespace
+
+void SetExposure(double stops, Description* description) {
+    description->film.parameters.Add({ParameterType::Float, "exposure", description->film.loc,
+                                      std::vector<float>{float(stops)}});
+}
+
+void SetEnvironment(const std::string& file, double rotation, Description* description) {
+    std::erase_if(description->lights, IsEnvironment);
+    LightEntity light;
+    light.name = "infinite";
+    light.parameters.Add({ParameterType::String, "mapname", light.loc,
+                          std::vector<std::string>{std::filesystem::absolute(file).string()}});
+    light.worldFromLight = WorldFromEnvironment(description->cameraFromWorld, rotation);
+    description->lights.push_back(std::move(light));
+}
+
+void LightIfDark(Description* description, Warnings& warnings) {
+    const auto emits = [](const ShapeEntity& shape) { return shape.areaLight.has_value(); };
+    if (!description->lights.empty() ||
+        std::any_of(description->shapes.begin(), description->shapes.end(), emits))
+        return;
+    warnings.Add({}, "the scene has no lights: a white sky lights it, --environment gives another");
+    LightEntity light;
+    light.name = "infinite";
+    description->lights.push_back(std::move(light));
+}
+
+}  // namespace lull

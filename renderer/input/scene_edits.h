@@ -1,0 +1,22 @@
+// Changes descriptions as the command line asks, whatever kind of file they come from.
+#pragma once
+
+#include <string>
+
+#include "renderer/input/description.h"
+
+namespace lull {
+
+// Brightens all that the film records by 2 to the power of `stops`.
+void SetExposure(double stops, Description* description);
+
+// Surrounds the scene by an image of the radiance from all directions, in latitude-longitude form,
+// instead of what surrounded it. The image's top is turned to the axis of the scene that is nearest
+// to the camera's up; `rotation` turns it around that axis, in degrees, counterclockwise as seen
+// from the top. `file` is relative to the current directory.
+void SetEnvironment(const std::string& file, double rotation, Description* description);
+
+// Lights a scene that has no light at all by a white sky of radiance 1, with a warning.
+void LightIfDark(Description* description, Warnings& warnings);
+
+}  // namespace lull

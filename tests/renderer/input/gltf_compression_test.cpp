@@ -1,0 +1,108 @@
+// Checks meshes that were compressed by the libraries that glTF's extensions are made for.
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <meshoptimizer.h>
+
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull {
+namespace {
+
+// Returns a file whose mesh of one triangle is compressed by Draco.
+GltfFile DracoFile() {
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(1);
+    const int position =
+        builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const float corners[3][3] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
+    builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), corners[0], corners[1],
+                                      corners[2]);
+    const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+
+    GltfFile file;
+    const int view = file.View(std::string(buffer.data(), buffer.size()));
+    file.root["accessors"] = {{{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+                              {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}}};
+    const uint32_t id = mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION)->unique_id();
+    file.Node(
+        {{"mesh", file.Mesh({{"POSITION", 0}},
+                            {{"indices", 1},
+                             {"extensions",
+                              {{"KHR_draco_mesh_compression",
+                                {{"bufferView", view}, {"attributes", {{"POSITION", id}}}}}}}})}});
+    file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    return file;
+}
+
+TEST(GltfCompression, DecodesDraco) {
+    const GltfFolder folder;
+    Warnings warnings;
+    for (const Description& d :
+         {folder.Parse(DracoFile()),
+          ParseGltf(folder.Write("s.glb", DracoFile().Binary()), {}, warnings)}) {
+        ASSERT_EQ(d.shapes.size(), 1u);
+        std::vector<float> p = FloatsOf(d.shapes[0], ParameterType::Point3, "P");
+        ASSERT_EQ(p.size(), 9u);
+        const auto indices = d.shapes[0].parameters.GetInts("indices");
+        ASSERT_EQ(indices.size(), 3u);
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        for (size_t i = 0; i < 9; i += 3) sum += Eigen::Map<Eigen::Vector3f>(&p[i]);
+        EXPECT_TRUE(sum.isApprox(Eigen::Vector3f(2, 3, 0), 1e-3f));
+    }
+    GltfFile broken = DracoFile();
+    broken.bytes[9] = char(0xff);
+    broken.bytes[5] = 7;
+    EXPECT_NE(folder.ErrorOf(broken), "");
+}
+
+TEST(GltfCompression, DecodesMeshopt) {
+    const std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 5};
+    const std::vector<uint32_t> indices = {0, 1, 2, 2, 1, 3};
+    std::string vertices(meshopt_encodeVertexBufferBound(4, 12), '\0'),
+        triangles(meshopt_encodeIndexBufferBound(6, 4), '\0');
+    const auto bytes = [](std::string* s) { return reinterpret_cast<unsigned char*>(s->data()); };
+    vertices.resize(
+        meshopt_encodeVertexBuffer(bytes(&vertices), vertices.size(), positions.data(), 4, 12));
+    triangles.resize(
+        meshopt_encodeIndexBuffer(bytes(&triangles), triangles.size(), indices.data(), 6));
+
+    GltfFile file;
+    const auto compressed = [&](const std::string& data, const char* mode, int count, int stride) {
+        const int view = file.View(data);
+        json& v = file.root["bufferViews"][size_t(view)];
+        v["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                      {"byteOffset", v["byteOffset"]},
+                                                      {"byteLength", data.size()},
+                                                      {"byteStride", stride},
+                                                      {"count", count},
+                                                      {"mode", mode}};
+        v["buffer"] = 1;
+        v["byteOffset"] = 0;
+        v["byteLength"] = count * stride;
+        return view;
+    };
+    const int p = file.Accessor(compressed(vertices, "ATTRIBUTES", 4, 12), 5126, 4, "VEC3");
+    const int i = file.Accessor(compressed(triangles, "TRIANGLES", 6, 2), 5123, 6, "SCALAR");
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"indices", i}})}});
+    // The second buffer only stands for what is compressed in the first.
+    json whole = json::parse(file.Text());
+    whole["buffers"].push_back(
+        {{"byteLength", 1000},
+         {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+    const GltfFolder folder;
+    Warnings warnings;
+    const Description d = ParseGltf(folder.Write("scene.gltf", whole.dump()), {}, warnings);
+    ASSERT_EQ(d.shapes.size(), 1u);
+    EXPECT_EQ(FloatsOf(d.shapes[0], ParameterType::Point3, "P"), positions);
+    EXPECT_EQ(d.shapes[0].parameters.GetInts("indices").size(), 6u);
+
+    whole["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = 3;
+    EXPECT_EQ(folder.ErrorOf(whole.dump()),
+              "scene.gltf: /bufferViews/0/extensions/EXT_meshopt_compression: its data are broken");
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,181 @@
+// Checks that broken and hostile glTF files give one clear error, with the place.
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull {
+namespace {
+
+// Returns a file with a mesh, a texture and a camera that has nothing wrong with it.
+GltfFile GoodFile() {
+    GltfFile file;
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int uv = file.Floats({0, 0, 1, 0, 0, 1}, "VEC2");
+    file.root["images"] = {{{"uri", "colors.png"}}};
+    file.root["samplers"] = {{{"wrapS", 33071}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}, {"TEXCOORD_0", uv}},
+                                  {{"indices", file.Indices({0, 1, 2})}, {"material", 0}})}});
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.Node({{"camera", 0}});
+    return file;
+}
+
+struct Case {
+    const char* pointer;
+    json value;
+    const char* message;
+};
+
+TEST(GltfErrors, NameTheirPlace) {
+    const GltfFolder folder;
+    ASSERT_EQ(folder.ErrorOf(GoodFile()), "");
+    const Case cases[] = {
+        {"/asset/version", "1.0", "/: is of glTF version 1.0; 2.0 is modelled"},
+        {"/scene", 1, "/scene: is 1, but there are only 1 scenes"},
+        {"/scenes/0/nodes/0", 7, "/scenes/0/nodes/0: is 7, but there are only 2 nodes"},
+        {"/nodes/0/mesh", -1, "/nodes/0/mesh: has to be an index, a whole number"},
+        {"/nodes/0/mesh", 1.5, "/nodes/0/mesh: has to be an index, a whole number"},
+        {"/nodes/0/children", {1, 1}, "/nodes/1: has two parents, or is its own ancestor"},
+        {"/nodes/0/children", json::array({0}),
+         "/nodes/0: has two parents, or is its own ancestor"},
+        {"/nodes/0/matrix", {1, 2}, "/nodes/0/matrix: has to be an array of 16 numbers"},
+        {"/nodes/0/scale", {1e300, 1, 1}, "/nodes/0/scale/0: is too large a number"},
+        {"/nodes/0/scale", {"x", 1, 1}, "/nodes/0/scale: has to be an array of 3 numbers"},
+        {"/meshes/0/primitives/0/attributes/POSITION", 9,
+         "/meshes/0/primitives/0/attributes/POSITION: is 9, but there are only 3 accessors"},
+        {"/meshes/0/primitives/0/attributes/POSITION", 1,
+         "/accessors/1: has to have 3 components for its use"},
+        {"/meshes/0/primitives/0/mode", 7,
+         "/meshes/0/primitives/0/mode: is 7, but has to lie between 0 and 6"},
+        {"/meshes/0/primitives/0/material", 4,
+         "/meshes/0/primitives/0/material: is 4, but there are only 1 materials"},
+        {"/accessors/0/count", 4,
+         "/accessors/0: its 4 elements go beyond the 36 bytes of "
+         "/bufferViews/0"},
+        {"/accessors/0/count", 4294967295u,
+         "/accessors/0: its 4294967295 elements go beyond the 36 "
+         "bytes of /bufferViews/0"},
+        {"/accessors/0/count", 0,
+         "/accessors/0/count: is 0, but has to lie between 1 and "
+         "281474976710656"},
+        {"/accessors/0/componentType", 5124,
+         "/accessors/0/componentType: is 5124, which is not "
+         "defined"},
+        {"/accessors/0/type", "VEC5", "/accessors/0/type: is \"VEC5\", which is not defined"},
+        {"/accessors/0/byteOffset", 30,
+         "/accessors/0: its 3 elements go beyond the 36 bytes of "
+         "/bufferViews/0"},
+        {"/accessors/2/componentType", 5126,
+         "/accessors/2: has to hold unsigned integers, as indices do"},
+        {"/accessors/1/count", 2, "/meshes/0/primitives/0: has 2 TEXCOORD_0 for 3 vertices"},
+        {"/bufferViews/0/byteLength", 4000, "/bufferViews/0: ends at byte 4000 of a buffer of 66"},
+        {"/bufferViews/0/byteStride", 6, "/bufferViews/0/byteStride: has to be a multiple of 4"},
+        {"/bufferViews/0/buffer", 1, "/bufferViews/0/buffer: is 1, but there are only 1 buffers"},
+        {"/materials/0/alphaMode", "MAYBE",
+         "/materials/0/alphaMode: is \"MAYBE\", which is not "
+         "defined"},
+        {"/materials/0/pbrMetallicRoughness/baseColorTexture/index", 3,
+         "/materials/0/pbrMetallicRoughness/baseColorTexture/index: is 3, but there are only 1 "
+         "textures"},
+        {"/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord", 5,
+         "/materials/0/pbrMetallicRoughness/baseColorTexture: uses TEXCOORD_5; only 0 and 1 are "
+         "modelled"},
+        {"/textures/0/source", 2, "/textures/0/source: is 2, but there are only 1 images"},
+        {"/samplers/0/wrapT", 3, "/samplers/0/wrapT: is 3, which is not defined"},
+        {"/images/0/bufferView", 0, "/images/0: needs either a \"uri\" or a \"bufferView\""},
+        {"/cameras/0/perspective/yfov", 4, "/cameras/0: yfov is 4; it has to lie between 0 and pi"},
+        {"/cameras/0/type", "fisheye", "/cameras/0/type: is \"fisheye\", which is not defined"},
+        {"/extensionsRequired",
+         {"EXT_no_such_thing"},
+         "/extensionsRequired/0: extension \"EXT_no_such_thing\" is required, but not modelled"},
+    };
+    for (const Case& c : cases) {
+        GltfFile file = GoodFile();
+        file.root[json::json_pointer(c.pointer)] = c.value;
+        if (std::string(c.pointer).starts_with("/bufferViews/0/byteLength")) file.bytes.resize(66);
+        EXPECT_EQ(folder.ErrorOf(file), std::string("scene.gltf: ") + c.message) << c.pointer;
+    }
+}
+
+TEST(GltfErrors, FindWhatIsInTheBuffers) {
+    const GltfFolder folder;
+    GltfFile file = GoodFile();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(&file.bytes[12], &nan, 4);
+    EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: /accessors/0: element 1 is not finite");
+    file = GoodFile();
+    file.bytes[60] = 9;
+    EXPECT_EQ(folder.ErrorOf(file),
+              "scene.gltf: /accessors/2: index 9 is out of range: there are 3 vertices");
+}
+
+TEST(GltfErrors, RefuseBadUris) {
+    const GltfFolder folder;
+    const auto errorOf = [&](const char* uri, int length) {
+        GltfFile file = GoodFile();
+        json whole = json::parse(file.Text());
+        whole["buffers"][0]["uri"] = uri;
+        whole["buffers"][0]["byteLength"] = length;
+        return folder.ErrorOf(whole.dump());
+    };
+    EXPECT_EQ(errorOf("data:application/octet-stream;base64,AA*A", 66),
+              "scene.gltf: /buffers/0/uri: is a data URI whose character 39 is not base64");
+    EXPECT_EQ(errorOf("data:application/octet-stream,AAAA", 66),
+              "scene.gltf: /buffers/0/uri: is a data URI that is not base64");
+    EXPECT_NE(errorOf("data:application/octet-stream;base64,AAAA", 66), "");
+    EXPECT_NE(errorOf("no-such-file.bin", 66), "");
+    EXPECT_NE(errorOf("/etc", 66), "");
+}
+
+TEST(GltfErrors, RefuseWhatIsNoGltf) {
+    const GltfFolder folder;
+    EXPECT_NE(folder.ErrorOf("{"), "");
+    EXPECT_EQ(folder.ErrorOf("[1]"), "scene.gltf: is no JSON object");
+    EXPECT_EQ(folder.ErrorOf("{}"),
+              "scene.gltf: /: lacks \"asset\" with a \"version\": it is no glTF file");
+    EXPECT_EQ(folder.ErrorOf(std::string(500, '[')),
+              "scene.gltf: is nested more than 100 levels deep");
+    EXPECT_NE(folder.ErrorOf(""), "");
+}
+
+TEST(GltfErrors, RefuseBrokenBinaries) {
+    const GltfFolder folder;
+    const std::string good = GoodFile().Binary();
+    EXPECT_EQ(folder.ErrorOf(good, "scene.glb"), "");
+    // Cut off anywhere, a file is an error and never a crash.
+    for (size_t size = 0; size < good.size(); size += 7)
+        EXPECT_NE(folder.ErrorOf(good.substr(0, size), "scene.glb"), "") << size;
+    std::string bad = good;
+    bad[4] = 1;
+    EXPECT_EQ(folder.ErrorOf(bad, "scene.glb"), "scene.glb: is of GLB version 1; 2 is modelled");
+    bad = good;
+    bad[15] = '\x7f';
+    EXPECT_NE(folder.ErrorOf(bad, "scene.glb").find("goes beyond its end"), std::string::npos);
+}
+
+// Whatever bytes change, there is a scene or an Error.
+TEST(GltfErrors, WithstandChangedBytes) {
+    const GltfFolder folder;
+    uint32_t state = 1;
+    const auto below = [&](size_t n) {
+        state = state * 1664525u + 1013904223u;
+        return size_t(state >> 8) % n;
+    };
+    int errors = 0;
+    for (const std::string& good : {GoodFile().Text(), GoodFile().Binary()})
+        for (int i = 0; i < 1500; ++i) {
+            std::string bad = good;
+            for (size_t k = 1 + below(3); k > 0; --k) bad[below(bad.size())] = char(below(256));
+            // Digits for digits, where the structure is to stay.
+            if (i % 2)
+                for (size_t k = 0; k < 3; ++k)
+                    if (char& c = bad[below(bad.size())]; c >= '0' && c <= '9')
+                        c = char('0' + below(10));
+            errors += !folder.ErrorOf(bad).empty();
+        }
+    EXPECT_GT(errors, 1000);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,158 @@
+// Checks what becomes of the arrays of glTF files.
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull {
+namespace {
+
+std::vector<float> Positions(const Description& d, size_t shape = 0) {
+    return FloatsOf(d.shapes.at(shape), ParameterType::Point3, "P");
+}
+
+std::vector<int> Indices(const Description& d) {
+    const auto values = d.shapes.at(0).parameters.GetInts("indices");
+    return {values.begin(), values.end()};
+}
+
+TEST(GltfMeshes, ComeFromTextAndBinaryAlike) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    const GltfFolder folder;
+    const Description text = folder.Parse(file);
+    Warnings warnings;
+    const Description binary = ParseGltf(folder.Write("scene.glb", file.Binary()), {}, warnings);
+    ExpectNear(Positions(text), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
+    EXPECT_EQ(Positions(text), Positions(binary));
+    ExpectNear(Indices(binary), {0, 1, 2}, 0);
+    EXPECT_EQ(text.shapes[0].name, "trianglemesh");
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
+TEST(GltfMeshes, ReadStridesAndOffsets) {
+    // Positions and normals side by side, after four bytes of something else.
+    std::vector<float> values = {7};
+    for (int i = 0; i < 3; ++i)
+        for (const float v : {float(i), float(i * i), 2.f, 0.f, 0.f, 1.f}) values.push_back(v);
+    GltfFile file;
+    const int view = file.View(values, 24);
+    const int position = file.Accessor(view, 5126, 3, "VEC3", {{"byteOffset", 4}});
+    const int normal = file.Accessor(view, 5126, 3, "VEC3", {{"byteOffset", 16}});
+    file.Node({{"mesh", file.Mesh({{"POSITION", position}, {"NORMAL", normal}})}});
+    const Description d = GltfFolder().Parse(file);
+    ExpectNear(Positions(d), {0, 0, 2, 1, 1, 2, 2, 4, 2}, 0);
+    ExpectNear(FloatsOf(d.shapes[0], ParameterType::Normal, "N"), {0, 0, 1, 0, 0, 1, 0, 0, 1}, 0);
+}
+
+TEST(GltfMeshes, ReadQuantizedAndNormalizedNumbers) {
+    GltfFile file;
+    const int position = file.Accessor(
+        file.View(std::vector<int16_t>{0, 0, 0, 0, 32767, -32768, 0, 0, 0, 16384, 0, 0}, 8), 5122,
+        3, "VEC3", {{"normalized", true}});
+    const int uv =
+        file.Accessor(file.View(std::vector<uint8_t>{0, 255, 0, 0, 51, 0, 0, 0, 255, 102}, 4), 5121,
+                      3, "VEC2", {{"normalized", true}});
+    const int color = file.Accessor(
+        file.View(std::vector<uint16_t>{65535, 0, 13107, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 8), 5123, 3,
+        "VEC3", {{"normalized", true}});
+    file.Node(
+        {{"mesh", file.Mesh({{"POSITION", position}, {"TEXCOORD_0", uv}, {"COLOR_0", color}})}});
+    const Description d = GltfFolder().Parse(file);
+    ExpectNear(Positions(d), {0.f, 0.f, 0.f, 1.f, -1.f, 0.f, 0.f, 16384 / 32767.f, 0.f});
+    // v grows upwards once read.
+    ExpectNear(FloatsOf(d.shapes[0], ParameterType::Float, "uv"), {0.f, 0.f, 0.2f, 1.f, 1.f, 0.6f});
+    const std::vector<float> colors = FloatsOf(d.shapes[0], ParameterType::Float, "color");
+    ExpectNear(std::vector<float>(colors.begin(), colors.begin() + 4), {1.f, 0.f, 0.2f, 1.f});
+}
+
+TEST(GltfMeshes, ReplaceSparseValues) {
+    GltfFile file;
+    const int indices = file.View(std::vector<uint8_t>{1, 2});
+    const int values = file.View(std::vector<float>{5, 6, 7, 8, 9, 10});
+    const json sparse = {{"count", 2},
+                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                         {"values", {{"bufferView", values}}}};
+    const int full =
+        file.Accessor(file.View(std::vector<float>(9, 3)), 5126, 3, "VEC3", {{"sparse", sparse}});
+    file.root["accessors"].push_back(
+        {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}, {"sparse", sparse}});
+    file.Node({{"mesh", file.Mesh({{"POSITION", full}})}});
+    file.Node({{"mesh", file.Mesh({{"POSITION", full + 1}})}});
+    const Description d = GltfFolder().Parse(file);
+    ExpectNear(Positions(d, 0), {3, 3, 3, 5, 6, 7, 8, 9, 10}, 0);
+    ExpectNear(Positions(d, 1), {0, 0, 0, 5, 6, 7, 8, 9, 10}, 0);
+}
+
+TEST(GltfMeshes, UnrollStripsAndFans) {
+    const auto indices = [](int mode) {
+        GltfFile file;
+        const int p = file.Floats(std::vector<float>(15, 1), "VEC3");
+        file.Node(
+            {{"mesh", file.Mesh({{"POSITION", p}},
+                                {{"mode", mode}, {"indices", file.Indices({0, 1, 2, 3, 4})}})}});
+        return Indices(GltfFolder().Parse(file));
+    };
+    ExpectNear(indices(4), {0, 1, 2}, 0);
+    ExpectNear(indices(5), {0, 1, 2, 1, 3, 2, 2, 3, 4}, 0);
+    ExpectNear(indices(6), {1, 2, 0, 2, 3, 0, 3, 4, 0}, 0);
+}
+
+TEST(GltfMeshes, LeaveOutPointsAndLines) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"mode", 1}})}});
+    Warnings warnings;
+    EXPECT_TRUE(GltfFolder().Parse(file, {}, &warnings).shapes.empty());
+    EXPECT_EQ(warnings.Counts().count("points and lines are left out"), 1u);
+}
+
+// Adds a quad in the plane z = 0 whose material has a normal map; u runs along x, or against it.
+Description MappedQuad(bool isMirrored) {
+    GltfFile file;
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+    const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    const float a = isMirrored ? 1 : 0;
+    const int uv = file.Floats({a, 1, 1 - a, 1, 1 - a, 0, a, 0}, "VEC2");
+    file.root["images"] = {{{"uri", "normals.png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    file.Node(
+        {{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}},
+                            {{"indices", file.Indices({0, 1, 2, 0, 2, 3})}, {"material", 0}})}});
+    return GltfFolder().Parse(file);
+}
+
+TEST(GltfMeshes, MakeTangentsAlongTheTexture) {
+    for (const bool isMirrored : {false, true}) {
+        const Description d = MappedQuad(isMirrored);
+        const std::vector<float> t = FloatsOf(d.shapes[0], ParameterType::Float, "tangent");
+        ASSERT_EQ(t.size(), 16u);
+        const float side = isMirrored ? -1.f : 1.f;
+        for (size_t i = 0; i < 16; i += 4)
+            ExpectNear(std::vector<float>(t.begin() + long(i), t.begin() + long(i) + 4),
+                       {side, 0.f, 0.f, side});
+    }
+}
+
+// Two triangles share an edge; the texture of one is the mirror image of the other's.
+TEST(GltfMeshes, SplitVerticesWhereTheTextureIsMirrored) {
+    GltfFile file;
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0}, "VEC3");
+    const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    const int uv = file.Floats({0, 1, 1, 1, 0, 0, 1, 1}, "VEC2");
+    file.root["images"] = {{{"uri", "normals.png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    file.Node(
+        {{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}},
+                            {{"indices", file.Indices({0, 1, 2, 0, 2, 3})}, {"material", 0}})}});
+    const Description d = GltfFolder().Parse(file);
+    EXPECT_EQ(Positions(d).size(), 6u * 3);
+    ExpectNear(Indices(d), {0, 1, 2, 4, 5, 3}, 0);
+    const std::vector<float> t = FloatsOf(d.shapes[0], ParameterType::Float, "tangent");
+    ASSERT_EQ(t.size(), 24u);
+    EXPECT_NEAR(t[0], 1, 1e-6);
+    EXPECT_EQ(t[3], 1);
+    EXPECT_NEAR(t[4 * 4], -1, 1e-6);
+    EXPECT_EQ(t[4 * 4 + 3], -1);
+}
+
+}  // namespace
+}  // namespace lull

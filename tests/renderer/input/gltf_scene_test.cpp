@@ -1,0 +1,239 @@
+// Checks nodes, cameras, lights and materials of glTF files.
+#include "renderer/input/scene_edits.h"
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull {
+namespace {
+
+const GltfFolder kFolder;
+
+Vec3f Transformed(const Mat4d& m, const Vec3f& p) { return TransformPoint(m, p); }
+
+TEST(GltfNodes, MultiplyAlongTheHierarchy) {
+    GltfFile file;
+    const float half = std::sqrt(0.5f);
+    file.Node({{"translation", {1, 2, 3}},
+               {"rotation", {0, 0, half, half}},  // a quarter turn about z
+               {"scale", {2, 2, 2}},
+               {"children", {1}}});
+    file.root["nodes"].push_back(
+        {{"mesh", file.Triangle()}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.shapes.size(), 1u);
+    // (1, 0, 0) to (6, 0, 0) to (12, 0, 0) to (0, 12, 0) to (1, 14, 3).
+    EXPECT_TRUE(
+        Transformed(d.shapes[0].worldFromObject, {1, 0, 0}).isApprox(Vec3f(1, 14, 3), 1e-5f));
+}
+
+TEST(GltfNodes, ShareMeshesAsInstances) {
+    GltfFile file;
+    const int mesh = file.Triangle();
+    file.Node({{"mesh", mesh}});
+    file.Node({{"mesh", mesh}, {"translation", {0, 0, 4}}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_TRUE(d.shapes.empty());
+    ASSERT_EQ(d.objects.size(), 1u);
+    ASSERT_EQ(d.instances.size(), 2u);
+    EXPECT_EQ(d.instances[1].worldFromInstance(2, 3), 4);
+}
+
+TEST(GltfNodes, CopyWhatEmitsInsteadOfInstancing) {
+    GltfFile file;
+    file.root["materials"] = {{{"emissiveFactor", {1, 0.5, 0}}}};
+    const int mesh = file.Triangle({{"material", 0}});
+    file.Node({{"mesh", mesh}});
+    file.Node({{"mesh", mesh}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_EQ(d.shapes.size(), 2u);
+    EXPECT_TRUE(d.instances.empty());
+    ASSERT_TRUE(d.shapes[1].areaLight);
+    EXPECT_TRUE(
+        (d.shapes[1].areaLight->parameters.GetSpectrum("L", Rgb::Zero()) == Rgb(1, 0.5f, 0)).all());
+}
+
+TEST(GltfNodes, PlaceCopiesByTheExtension) {
+    GltfFile file;
+    const int translation = file.Floats({0, 0, 0, 0, 1, 0, 0, 2, 0}, "VEC3");
+    const int scale = file.Floats({1, 1, 1, 2, 2, 2, 3, 3, 3}, "VEC3");
+    file.Node({{"mesh", file.Triangle()},
+               {"extensions",
+                {{"EXT_mesh_gpu_instancing",
+                  {{"attributes", {{"TRANSLATION", translation}, {"SCALE", scale}}}}}}}});
+    file.root["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.instances.size(), 3u);
+    EXPECT_TRUE(Transformed(d.instances[2].worldFromInstance, {1, 0, 0}).isApprox(Vec3f(3, 2, 0)));
+}
+
+TEST(GltfNodes, LeaveOutWhatIsScaledToNothing) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}, {"scale", {1, 0, 1}}});
+    Warnings warnings;
+    EXPECT_TRUE(kFolder.Parse(file, {}, &warnings).shapes.empty());
+    EXPECT_EQ(warnings.Total(), 1);
+}
+
+GltfFile WithCameras() {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["cameras"] = {
+        {{"type", "perspective"},
+         {"perspective", {{"yfov", 0.8}, {"aspectRatio", 2}, {"znear", 0.1}}}},
+        {{"type", "orthographic"},
+         {"name", "plan"},
+         {"orthographic", {{"xmag", 3}, {"ymag", 4}, {"znear", 0}, {"zfar", 10}}}}};
+    file.Node({{"camera", 0}, {"translation", {0, 0, 5}}, {"scale", {2, 2, 2}}});
+    file.Node({{"camera", 1}, {"name", "above"}});
+    return file;
+}
+
+TEST(GltfCameras, LookAlongTheirNodes) {
+    const Description d = kFolder.Parse(WithCameras());
+    EXPECT_EQ(d.camera.name, "perspective");
+    EXPECT_NEAR(d.camera.parameters.GetFloat("fov", 0), 0.8 * 180 / kPi, 1e-4);
+    EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 1600);
+    EXPECT_EQ(d.film.parameters.GetInt("yresolution", 0), 800);
+    // The origin lies 5 ahead; x is to the right and y upwards.
+    EXPECT_TRUE(Transformed(d.cameraFromWorld, {1, 2, 0}).isApprox(Vec3f(1, 2, 5)));
+}
+
+TEST(GltfCameras, AreChosenByNameOrNumber) {
+    for (const char* name : {"1", "plan", "above"}) {
+        const Description d = kFolder.Parse(WithCameras(), {.camera = name});
+        EXPECT_EQ(d.camera.name, "orthographic") << name;
+        ExpectNear(FloatsOf(d.camera, ParameterType::Float, "screenwindow"), {-3, 3, -4, 4}, 0);
+        EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 600);
+    }
+    const std::string error = ErrorOf([&] { kFolder.Parse(WithCameras(), {.camera = "2"}); });
+    EXPECT_NE(error.find("has no camera \"2\"; it has 0 \"\", 1 \"above\""), std::string::npos)
+        << error;
+}
+
+TEST(GltfCameras, FrameTheWholeScene) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    for (const float azimuth : {0.f, 90.f}) {
+        const Description d = kFolder.Parse(file, {.orbit = std::array{azimuth, 0.f}});
+        // Seen from +z, or from +x; the middle of the bounds lies straight ahead.
+        const Vec3f center = Transformed(d.cameraFromWorld, {0.5f, 0.5f, 0});
+        EXPECT_NEAR(center.x(), 0, 1e-5);
+        EXPECT_NEAR(center.y(), 0, 1e-5);
+        EXPECT_NEAR(center.z(), std::sqrt(0.5) / std::sin(20 * kPi / 180), 1e-4);
+        const Vec3f right = TransformVector(d.cameraFromWorld, Vec3f::UnitX());
+        EXPECT_NEAR(azimuth == 0 ? right.x() : -right.z(), 1, 1e-5);
+    }
+}
+
+TEST(GltfLights, AreTakenFromPhotometricUnits) {
+    GltfFile file;
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"intensity", 683}, {"color", {1, 0.5, 0}}},
+            {{"type", "directional"}, {"intensity", 1366}},
+            {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}}}}}}};
+    for (int i = 0; i < 3; ++i)
+        file.Node(
+            {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}, {"scale", {3, 3, 3}}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.lights.size(), 3u);
+    EXPECT_TRUE(d.lights[0].parameters.GetSpectrum("I", Rgb::Zero()).isApprox(Rgb(1, 0.5f, 0)));
+    EXPECT_EQ(d.lights[1].name, "distant");
+    EXPECT_TRUE(d.lights[1].parameters.GetSpectrum("L", Rgb::Zero()).isApprox(Rgb(2, 2, 2)));
+    EXPECT_EQ(d.lights[2].name, "spot-squared");
+    EXPECT_NEAR(d.lights[2].parameters.GetFloat("coneangle", 0), 0.5 * 180 / kPi, 1e-4);
+    EXPECT_NEAR(d.lights[2].parameters.GetFloat("conedeltaangle", 0), 0.3 * 180 / kPi, 1e-4);
+}
+
+TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
+    GltfFile file;
+    file.root["images"] = {{{"uri", "a%20b.png"}}};
+    file.root["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.root["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
+           {"baseColorTexture",
+            {{"index", 0},
+             {"texCoord", 1},
+             {"extensions", {{"KHR_texture_transform", {{"offset", {0.25, 0.5}}}}}}}},
+           {"metallicFactor", 0}}},
+         {"alphaMode", "MASK"},
+         {"alphaCutoff", 0.25},
+         {"extensions",
+          {{"KHR_materials_ior", {{"ior", 1.3}}},
+           {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}}}}};
+    file.root["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_sheen"};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    Warnings warnings;
+    const Description d = kFolder.Parse(file, {}, &warnings);
+    EXPECT_EQ(warnings.Total(), 1);  // of sheen
+    ASSERT_EQ(d.materials.size(), 1u);
+    const Parameters& m = d.materials[0].parameters;
+    EXPECT_EQ(d.materials[0].name, "metallicroughness");
+    EXPECT_TRUE(m.GetSpectrum("basecolorfactor", Rgb::Zero()).isApprox(Rgb(0.1f, 0.2f, 0.3f)));
+    EXPECT_EQ(m.GetInt("basecoloruv", 0), 1);
+    EXPECT_EQ(m.GetFloat("metallicfactor", 1), 0);
+    EXPECT_NEAR(m.GetFloat("ior", 0), 1.3, 1e-6);
+    EXPECT_NEAR(m.GetFloat("transmissionfactor", 0), 0.75, 1e-6);
+    ASSERT_EQ(d.textures.size(), 2u);  // its colours and its alpha
+    const TextureEntity& texture = d.textures[0];
+    EXPECT_EQ(texture.parameters.GetString("filename", ""), "a b.png");
+    EXPECT_EQ(texture.parameters.GetString("wrap", ""), "mirrored");
+    EXPECT_EQ(texture.parameters.GetString("wrapt", ""), "clamp");
+    // v turned round twice: a shift downwards by a half.
+    ExpectNear(FloatsOf(texture, ParameterType::Float, "uvtransform"), {1, 0, 0.25f, 0, 1, -0.5f},
+               0);
+    EXPECT_NEAR(d.shapes[0].parameters.GetFloat("coveragefactor", 0), 0.4, 1e-6);
+    EXPECT_NEAR(d.shapes[0].parameters.GetFloat("alphacutoff", 0), 0.25, 1e-6);
+    EXPECT_EQ(d.textures[1].parameters.GetString("channel", ""), "alpha");
+}
+
+TEST(GltfMaterials, KeepEmbeddedImagesEncoded) {
+    GltfFile file;
+    const std::string png = "\x89PNG and so on";
+    const int view = file.View(png);
+    file.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}},
+                           {{"uri", "data:image/jpeg;base64," + Base64("\xff\xd8jpeg")}}};
+    file.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}},
+                               {"emissiveTexture", {{"index", 1}}},
+                               {"normalTexture", {{"index", 0}}}}};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.images.size(), 2u);
+    EXPECT_EQ(d.images[0].type, "png");
+    EXPECT_EQ(d.images[0].bytes.size(), png.size());
+    EXPECT_EQ(d.images[1].type, "jpg");
+    EXPECT_NE(d.images[0].name, d.images[1].name);
+}
+
+TEST(SceneEdits, LightOnlyWhatIsDark) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    Description d = kFolder.Parse(file);
+    Warnings warnings;
+    LightIfDark(&d, warnings);
+    ASSERT_EQ(d.lights.size(), 1u);
+    EXPECT_EQ(d.lights[0].name, "infinite");
+    LightIfDark(&d, warnings);
+    EXPECT_EQ(d.lights.size(), 1u);
+    EXPECT_EQ(warnings.Total(), 1);
+}
+
+TEST(SceneEdits, TurnEnvironmentsUpright) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    Description d = kFolder.Parse(file, {.orbit = std::array{10.f, 20.f}});
+    SetEnvironment("sky.exr", 0, &d);
+    SetEnvironment("sky.exr", 90, &d);  // replaces the first
+    ASSERT_EQ(d.lights.size(), 1u);
+    const Mat4d& m = d.lights[0].worldFromLight;
+    EXPECT_TRUE(TransformVector(m, Vec3f::UnitZ()).isApprox(Vec3f::UnitY()));
+    EXPECT_LT(m.determinant(), 0);  // the world is right-handed
+    // A quarter turn, counterclockwise as seen from above, from where Blender has the image's edge.
+    EXPECT_TRUE(TransformVector(m, Vec3f::UnitX()).isApprox(Vec3f::UnitZ()));
+}
+
+}  // namespace
+}  // namespace lull
