@@ -47,6 +47,7 @@ ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<
                       {"seconds", float(seconds)},
                       {"worldToCamera", WorldToCamera(scene.camera)}};
     if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
+    if (scene.film.exposure != 0) exr.attributes["exposure"] = scene.film.exposure;
     if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
     return exr;
 }

@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <filesystem>
 
 #include "renderer/base/memory.h"
 #include "renderer/input/pbrt_parser.h"
+#include "renderer/input/scene_edits.h"
 
 namespace lull {
 
@@ -42,6 +42,13 @@ bool ParseCrop(const std::string& text, std::optional<std::array<float, 4>>* cro
     return valid;
 }
 
+bool ParseOrbit(const std::string& text, std::optional<std::array<float, 2>>* orbit) {
+    std::array<float, 2> o;
+    const bool valid = ParseNumbers(text, ',', &o) && std::abs(o[0]) <= 360 && std::abs(o[1]) <= 90;
+    if (valid) *orbit = o;
+    return valid;
+}
+
 // Turns "a bad value" into the error message of an option.
 template <typename T>
 auto Checked(bool (*parse)(const std::string&, T*), T* value, const std::string& wanted) {
@@ -59,12 +66,14 @@ FilmSettings SilentFilmSettings(const Description& description, const SceneOptio
 }  // namespace
 
 void AddSceneOptions(CLI::App& app, SceneOptions* options) {
-    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file")->required();
+    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file, or glTF 2.0 (.gltf, .glb)")
+        ->required();
     app.add_option_function<std::string>(
            "--resolution",
            Checked(ParseResolution, &options->compile.film.resolution,
                    "a size in pixels such as 800x600"),
-           "Size of the whole image in pixels, WxH, instead of the scene's")
+           "Size of the whole image in pixels, WxH, instead of the scene's; glTF: 800 high, as\n"
+           "wide as its camera sees")
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--crop",
@@ -83,6 +92,32 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     app.add_flag("--substitute", options->compile.substitute,
                  "Replace materials, textures and shapes that are not modelled, with a warning,\n"
                  "instead of refusing the scene");
+    app.add_option("--exposure", options->exposure,
+                   "Brighten the image by so many stops: all values, those of the EXR as well,\n"
+                   "are multiplied by 2 to that power, which its header tells")
+        ->check(CLI::Range(-100., 100.))
+        ->type_name("EV");
+    auto* environment =
+        app.add_option(
+               "--environment", options->environment,
+               "Surround the scene by this latitude-longitude image of radiance instead of\n"
+               "what surrounded it; its top is where the camera's up nearly is")
+            ->type_name("FILE.exr|.hdr");
+    app.add_option("--environment-rotation", options->environmentRotation,
+                   "Turn it by so many degrees, counterclockwise as seen from the top")
+        ->needs(environment)
+        ->check(CLI::Range(-360., 360.))
+        ->type_name("DEG");
+    auto* camera = app.add_option("--camera", options->view.camera,
+                                  "glTF: look through the camera of this name or number, from 0")
+                       ->type_name("NAME|N");
+    app.add_option_function<std::string>(
+           "--orbit",
+           Checked(ParseOrbit, &options->view.orbit,
+                   "azimuth,elevation in degrees, the elevation from -90 to 90"),
+           "glTF: show the whole scene, seen from this direction [without a camera: 30,15]")
+        ->excludes(camera)
+        ->type_name("azimuth,elevation");
 }
 
 Warnings MakePrintedWarnings() {
@@ -90,10 +125,19 @@ Warnings MakePrintedWarnings() {
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
-    const std::string extension = std::filesystem::path(options.file).extension().string();
-    if (extension == ".gltf" || extension == ".glb")
-        throw Error(options.file + ": is a glTF file; only pbrt-v3 scenes can be read");
-    return ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
+    const bool isGltf = IsGltf(options.file);
+    if (!isGltf && (!options.view.camera.empty() || options.view.orbit))
+        throw Error(options.file +
+                    ": is no glTF file; --camera and --orbit are for these, as a "
+                    "pbrt-v3 scene has one camera");
+    Description description =
+        isGltf ? ParseGltf(options.file, options.view, warnings)
+               : ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
+    if (options.exposure != 0) SetExposure(options.exposure, &description);
+    if (!options.environment.empty())
+        SetEnvironment(options.environment, options.environmentRotation, &description);
+    if (isGltf) LightIfDark(&description, warnings);
+    return description;
 }
 
 SceneInput::SceneInput(const SceneOptions& options)

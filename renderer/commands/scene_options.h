@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/input/gltf_loader.h"
 #include "renderer/output/film.h"
 #include "renderer/scene/compile.h"
 
@@ -12,9 +13,14 @@ namespace lull {
 struct SceneOptions {
     std::string file;
     CompileOptions compile;
+    GltfOptions view;
+    std::string environment;  // empty: the scene's own
+    double environmentRotation = 0, exposure = 0;
 };
 
-// Adds SCENE, --resolution, --crop, --max-depth, --threads and --substitute.
+// Adds SCENE, --resolution, --crop, --max-depth, --threads, --substitute, --exposure,
+// --environment,
+// --environment-rotation, --camera and --orbit.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.

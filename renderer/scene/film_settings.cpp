@@ -38,7 +38,8 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
     if (film.Size().minCoeff() < 1) throw Error(entity.loc, "the crop window holds no pixel");
 
     film.filename = params.GetString("filename", film.filename);
-    film.scale = params.GetFloat("scale", 1);
+    film.exposure = params.GetFloat("exposure", 0);
+    film.scale = params.GetFloat("scale", 1) * std::exp2(film.exposure);
     film.maxSampleLuminance = params.GetFloat("maxsampleluminance", kInfinity);
     if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0))
         throw Error(entity.loc, "\"scale\" and \"maxsampleluminance\" have to be positive");
