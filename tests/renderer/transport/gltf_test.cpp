@@ -1,0 +1,350 @@
+// Renders glTF files whose radiance is known, or that exist as pbrt files as well.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/base/color.h"
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/output/image_io.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/input/gltf_files.h"
+#include "tests/renderer/transport/pixel_statistics.h"
+
+// Its names would be in the way of those of the other tests.
+namespace lull::gltf_test {
+namespace {
+
+constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
+
+std::unique_ptr<const Scene> Compiled(const Description& description, int size) {
+    CompileOptions options;
+    options.threads = 1;
+    options.film.resolution = Vec2i(size, size);
+    Warnings warnings;
+    auto scene = Compile(description, options, warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return scene;
+}
+
+// Compiles a file with its first camera, or with one 3 above the origin that sees from -1 to 1.
+std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
+    if (!file.root.contains("cameras")) {
+        file.root["cameras"] = {
+            {{"type", "orthographic"},
+             {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
+        file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+    }
+    const GltfFolder folder;
+    Warnings warnings;
+    const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return Compiled(d, size);
+}
+
+struct Total {
+    Rgb mean;
+    float error;  // standard, of the green channel
+};
+
+Total Measure(const Scene& scene, Estimator estimator = Estimator::Combined, int samples = 256) {
+    const PixelStatistics pixels = MeasurePixels(scene, estimator, SamplerKind::Random, samples, 3);
+    EXPECT_EQ(pixels.rejected, 0);
+    Eigen::Array3d mean = Eigen::Array3d::Zero();
+    double variance = 0;
+    const double n = double(pixels.mean.size());
+    for (size_t i = 0; i < pixels.mean.size(); ++i) {
+        mean += pixels.mean[i] / n;
+        variance += pixels.variance[i].y();
+    }
+    return {mean.cast<float>(), float(std::sqrt(variance / samples) / n)};
+}
+
+// Adds the square from -1 to 1 in the plane z = 0, its front towards +z and its image upright.
+int Square(GltfFile* file, const json& material, bool withTexture = false) {
+    json attributes = {
+        {"POSITION", file->Floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3")}};
+    if (withTexture) {
+        attributes["NORMAL"] = file->Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+        attributes["TEXCOORD_0"] = file->Floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2");
+    }
+    file->root["materials"].push_back(material);
+    return file->Mesh(attributes, {{"indices", file->Indices({0, 1, 2, 0, 2, 3})},
+                                   {"material", file->root["materials"].size() - 1}});
+}
+
+// Adds an image of bytes, RGB a pixel, and returns its texture.
+int Texture(GltfFile* file, const std::vector<std::array<int, 3>>& pixels, int width) {
+    std::vector<Rgb> linear;
+    for (const auto& p : pixels) {
+        Rgb c;
+        for (int i = 0; i < 3; ++i) c[i] = LinearFromSrgb(float(p[size_t(i)]) / 255);
+        linear.push_back(c);
+    }
+    const std::vector<std::byte> png = EncodePng(linear, width, int(pixels.size()) / width);
+    const int view = file->View(png);
+    file->root["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    file->root["textures"].push_back({{"source", file->root["images"].size() - 1}});
+    return int(file->root["textures"].size()) - 1;
+}
+
+json Matte(double r, double g, double b) {
+    return {{"pbrMetallicRoughness",
+             {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+            {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+}
+
+int AddLight(GltfFile* file, const json& light) {
+    file->root["extensions"]["KHR_lights_punctual"]["lights"].push_back(light);
+    return int(file->root["extensions"]["KHR_lights_punctual"]["lights"].size()) - 1;
+}
+
+// Adds a directional light from direction `d` that gives an irradiance of 1 at right angles.
+void Sun(GltfFile* file, const Vec3f& d) {
+    const int light = AddLight(file, {{"type", "directional"}, {"intensity", 683}});
+    const auto q = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), d);
+    file->Node({{"rotation", {q.x(), q.y(), q.z(), q.w()}},
+                {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+}
+
+TEST(GltfScenes, AgreeWithPbrt) {
+    // A coloured corner, lit by a lamp above and a point of light at the side; nothing in it is
+    // symmetric.
+    GltfFile file;
+    file.Node({{"mesh", Square(&file, Matte(0.7, 0.6, 0.5))}, {"scale", {2, 2, 1}}});
+    file.Node({{"mesh", Square(&file, Matte(0.2, 0.5, 0.8))},
+               {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}},
+               {"translation", {-1, 0, 1}}});
+    json lamp = Matte(0, 0, 0);
+    lamp["emissiveFactor"] = {1, 0.8, 0.6};
+    lamp["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 5}};
+    file.Node({{"mesh", Square(&file, lamp)},
+               {"rotation", {1, 0, 0, 0}},
+               {"translation", {0.5, 0.25, 2}},
+               {"scale", {0.25, 0.5, 1}}});
+    const int point = AddLight(&file, {{"type", "point"}, {"intensity", 683}});
+    file.Node({{"translation", {0.5, -1, 0.5}},
+               {"extensions", {{"KHR_lights_punctual", {{"light", point}}}}}});
+    file.root["cameras"] = {{{"type", "perspective"},
+                             {"perspective", {{"yfov", 1}, {"aspectRatio", 1}, {"znear", 1}}}}};
+    file.Node({{"camera", 0}, {"translation", {0.25, 0.5, 4}}});
+
+    const std::string square =
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
+        "\"point P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\n";
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    const Description pbrt = ParsePbrt(
+        directory.Write(
+            "scene.pbrt",
+            fmt::format("Scale -1 1 1\nLookAt 0.25 0.5 4  0.25 0.5 0  0 1 0\n"
+                        "Camera \"perspective\" \"float fov\" [{}]\n"
+                        "Integrator \"path\" \"integer maxdepth\" [12]\nWorldBegin\n"
+                        "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0.5 -1 0.5]\n"
+                        "AttributeBegin Material \"matte\" \"rgb Kd\" [.7 .6 .5] Scale 2 2 1\n{}"
+                        "AttributeEnd\n"
+                        "AttributeBegin Material \"matte\" \"rgb Kd\" [.2 .5 .8]\n"
+                        "Translate -1 0 1 Rotate 90 0 1 0\n{}AttributeEnd\n"
+                        "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
+                        "AreaLightSource \"diffuse\" \"rgb L\" [5 4 3]\n"
+                        "Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1\n{}"
+                        "AttributeEnd\nWorldEnd\n",
+                        180 / kPi, square, square, square)),
+        {}, warnings);
+    constexpr int kSamples = 1000;
+    const auto pixelsOf = [](const Scene& scene, uint64_t seed) {
+        return MeasurePixels(scene, Estimator::Combined, SamplerKind::Random, kSamples, seed);
+    };
+    const PixelStatistics a = pixelsOf(*Compiled(file, 8), 1), b = pixelsOf(*Compiled(pbrt, 8), 2);
+    for (size_t i = 0; i < a.mean.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::sqrt((a.variance[i][c] + b.variance[i][c]) / kSamples);
+            EXPECT_LT(std::abs(a.mean[i][c] - b.mean[i][c]), 5 * error + 1e-4) << i << " " << c;
+        }
+}
+
+// In an even environment a white material cannot be seen, whatever it is made of; a metal or a
+// rough surface may lose some light, never more than what is scattered twice on a few facets.
+TEST(GltfMaterial, NeverAddsEnergy) {
+    struct Case {
+        const char* parameters;
+        double least;
+    };
+    const Case cases[] = {
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1]", 0.98},
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [.3]", 0.98},
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [0]", 0.98},
+        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [.2]", 0.98},
+        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [1]", 0.3},
+        {"\"float metallicfactor\" [.5] \"float roughnessfactor\" [.5]", 0.85},
+        {"\"float metallicfactor\" [0] \"float specularfactor\" [0]", 0.999},
+        {"\"float metallicfactor\" [0] \"float ior\" [2.5] \"float roughnessfactor\" [.4]", 0.97},
+        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" [1]",
+         0.85},
+        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
+         "[0]",
+         0.999},
+        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
+         "[.3]",
+         0.95},
+        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [.5] \"float roughnessfactor\" "
+         "[.3] \"float clearcoatfactor\" [.5]",
+         0.8},
+        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
+         "[0] \"bool solid\" \"true\"",
+         0.999},
+        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [.5] \"float roughnessfactor\" "
+         "[.2] \"bool solid\" \"true\"",
+         0.85},
+    };
+    const TemporaryDirectory directory;
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.parameters);
+        Warnings warnings;
+        const Description d = ParsePbrt(
+            directory.Write("scene.pbrt",
+                            fmt::format("LookAt 0 0 -2.5  0 0 0  0 1 0\n"
+                                        "Camera \"perspective\" \"float fov\" [40]\n"
+                                        "Integrator \"path\" \"integer maxdepth\" [200]\n"
+                                        "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+                                        "Material \"metallicroughness\" {}\n"
+                                        "Shape \"sphere\" \"float radius\" [2]\nWorldEnd\n",
+                                        c.parameters)),
+            {}, warnings);
+        const auto scene = Compiled(d, 6);
+        Total totals[2];
+        for (int i = 0; i < 2; ++i) {
+            totals[i] = Measure(*scene, kEstimators[i]);
+            // The base's table of albedos is right to a hundredth.
+            EXPECT_LT(totals[i].mean.y(), 1.01f + 4.5f * totals[i].error);
+            EXPECT_GT(totals[i].mean.y(), c.least - 4.5f * totals[i].error);
+        }
+        EXPECT_LT(std::abs(totals[0].mean.y() - totals[1].mean.y()),
+                  4.5f * std::hypot(totals[0].error, totals[1].error) + 1e-4f);
+    }
+}
+
+// The normal map turns the square towards or away from the sun: red to the right, green upwards.
+TEST(GltfMaterial, FollowsItsNormalMap) {
+    const Vec3f right(0.6f, 0, 0.8f), up(0, 0.6f, 0.8f), left(-0.6f, 0, 0.8f);
+    const auto radiance = [](const std::array<int, 3>& texel, const Vec3f& sun, const json& turn) {
+        GltfFile file;
+        json material = Matte(1, 1, 1);
+        material["normalTexture"] = {{"index", Texture(&file, {texel}, 1)}};
+        json node = {{"mesh", Square(&file, material, true)}};
+        node.update(turn);
+        file.Node(node);
+        Sun(&file, sun);
+        return Measure(*Compiled(file), Estimator::Combined, 4).mean.y() * kPi;
+    };
+    const std::array<int, 3> toRight = {204, 128, 230}, toUp = {128, 204, 230};
+    EXPECT_NEAR(radiance(toRight, right, json::object()), 1, 0.01);
+    EXPECT_NEAR(radiance(toRight, left, json::object()), 0.28, 0.01);
+    EXPECT_NEAR(radiance(toUp, up, json::object()), 1, 0.01);
+    EXPECT_NEAR(radiance(toUp, right, json::object()), 0.64, 0.01);
+    // Mirrored, right becomes left; turned by a quarter, right becomes up.
+    EXPECT_NEAR(radiance(toRight, left, {{"scale", {-1, 1, 1}}}), 1, 0.01);
+    EXPECT_NEAR(radiance(toRight, up, {{"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}), 1,
+                0.01);
+}
+
+TEST(GltfMaterial, ShowsItsTextureUpright) {
+    GltfFile file;
+    json material = Matte(1, 1, 1);
+    // Red above green, left of blue and black.
+    const int texture = Texture(&file, {{255, 0, 0}, {0, 0, 255}, {0, 255, 0}, {0, 0, 0}}, 2);
+    file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+    file.root["textures"][0]["sampler"] = 0;
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+    file.Node({{"mesh", Square(&file, material, true)}});
+    Sun(&file, Vec3f::UnitZ());
+    const auto pixels =
+        MeasurePixels(*Compiled(file, 4), Estimator::Combined, SamplerKind::Random, 64, 1);
+    const auto at = [&](int x, int y) -> Rgb {
+        return (pixels.mean[size_t(4 * y + x)] * kPi).cast<float>();
+    };
+    EXPECT_LT((at(0, 0) - Rgb(1, 0, 0)).abs().maxCoeff(), 0.05f);
+    EXPECT_LT((at(3, 0) - Rgb(0, 0, 1)).abs().maxCoeff(), 0.05f);
+    EXPECT_LT((at(0, 3) - Rgb(0, 1, 0)).abs().maxCoeff(), 0.05f);
+    EXPECT_LT(at(3, 3).maxCoeff(), 0.05f);
+}
+
+// A quarter of the light passes a square of alpha 0.75, to the camera and to what is below.
+TEST(GltfMaterial, LetsLightThroughByItsAlpha) {
+    GltfFile file;
+    json veil = Matte(0, 0, 0);
+    veil["alphaMode"] = "BLEND";
+    veil["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 0.75};
+    file.Node({{"mesh", Square(&file, veil)}, {"translation", {0, 0, 1}}});
+    file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
+    Sun(&file, Vec3f::UnitZ());
+    const Total t = Measure(*Compiled(file), Estimator::Combined, 20000);
+    EXPECT_NEAR(t.mean.y() * kPi, 1 / 16., 4.5 * t.error * kPi);
+    EXPECT_GT(t.error, 0);
+    // With a cutoff it is there or not.
+    for (const double cutoff : {0.5, 0.8}) {
+        file.root["materials"][0]["alphaMode"] = "MASK";
+        file.root["materials"][0]["alphaCutoff"] = cutoff;
+        EXPECT_NEAR(Measure(*Compiled(file)).mean.y() * kPi, cutoff > 0.75 ? 1 : 0, 1e-4);
+    }
+}
+
+TEST(GltfMaterial, ColoursItsVertices) {
+    GltfFile file;
+    const int mesh = Square(&file, Matte(1, 0.5, 1));
+    file.root["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["COLOR_0"] =
+        file.Floats({0.5, 1, 0, 0.5, 1, 0, 0.5, 1, 0, 0.5, 1, 0}, "VEC3");
+    file.Node({{"mesh", mesh}});
+    Sun(&file, Vec3f::UnitZ());
+    EXPECT_LT((Measure(*Compiled(file)).mean * kPi - Rgb(0.5f, 0.5f, 0)).abs().maxCoeff(), 1e-4f);
+}
+
+// A lamp whose left half shines: the camera sees it, and both ways of sampling it agree about what
+// it lights.
+TEST(GltfMaterial, EmitsByItsTexture) {
+    GltfFile file;
+    json lamp = Matte(0, 0, 0);
+    lamp["doubleSided"] = true;
+    lamp["emissiveFactor"] = {1, 1, 1};
+    lamp["emissiveTexture"] = {{"index", Texture(&file, {{255, 255, 255}, {0, 0, 0}}, 2)}};
+    file.Node({{"mesh", Square(&file, lamp, true)}});
+    const Total seen = Measure(*Compiled(file));
+    EXPECT_NEAR(seen.mean.y(), 0.5, 4.5 * seen.error);
+
+    file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}, {"translation", {0, 0, -1}}});
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 1}}}}};
+    file.Node(
+        {{"camera", 0}, {"translation", {1.5, 0, -0.5}}, {"rotation", {0, 0.5, 0, 0.8660254}}});
+    const auto scene = Compiled(file);
+    const Total a = Measure(*scene, kEstimators[0], 1000),
+                b = Measure(*scene, kEstimators[1], 1000);
+    EXPECT_GT(a.mean.y(), 0.01);
+    EXPECT_NEAR(a.mean.y(), b.mean.y(), 4.5 * std::hypot(a.error, b.error));
+}
+
+// KHR_lights_punctual: ((cos - cos outer) / (cos inner - cos outer))^2 between the two cones.
+TEST(GltfLights, FallOffInTheirCone) {
+    for (const double tangent : {0.0, 0.3, 0.45, 0.6}) {
+        GltfFile file;
+        file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}, {"scale", {0.01, 0.01, 1}}});
+        const double outer = 0.5, inner = 0.2;
+        const int spot =
+            AddLight(&file, {{"type", "spot"},
+                             {"intensity", 683},
+                             {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}});
+        file.Node({{"translation", {tangent, 0, 1}},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", spot}}}}}});
+        file.root["cameras"] = {
+            {{"type", "orthographic"},
+             {"orthographic", {{"xmag", 1e-3}, {"ymag", 1e-3}, {"znear", 0}, {"zfar", 9}}}}};
+        file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+        const double cosine = 1 / std::hypot(1, tangent), distance2 = 1 + tangent * tangent;
+        const double x =
+            std::clamp((cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.0, 1.0);
+        EXPECT_NEAR(Measure(*Compiled(file), Estimator::Combined, 4).mean.y() * kPi,
+                    x * x * cosine / distance2, 2e-3)
+            << tangent;
+    }
+}
+
+}  // namespace
+}  // namespace lull::gltf_test
