@@ -4,14 +4,15 @@
 Everything is a function of the numbers below: the files it writes are the files that are here.
 """
 
+import json
 import math
 import random
 import struct
 import zlib
 
 
-def write_png(path, width, height, pixel):
-    """Writes an 8-bit PNG; pixel(x, y) returns 1 or 3 values in [0, 1]."""
+def png(width, height, pixel):
+    """Encodes an 8-bit PNG; pixel(x, y) returns 1 or 3 values in [0, 1]."""
     channels = len(pixel(0, 0))
     rows = b''
     for y in range(height):
@@ -23,9 +24,13 @@ def write_png(path, width, height, pixel):
         return struct.pack('>I', len(data)) + kind + data + crc
 
     header = struct.pack('>IIBBBBB', width, height, 8, 2 if channels == 3 else 0, 0, 0, 0)
+    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) +
+            chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
+
+
+def write_png(path, width, height, pixel):
     with open(path, 'wb') as f:
-        f.write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) +
-                chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
+        f.write(png(width, height, pixel))
 
 
 def write_exr(path, width, height, pixel):
@@ -102,8 +107,8 @@ def goblet():
         f.write(']\n')
 
 
-def revolve(path, outline, sides, v_scale=1):
-    """Revolves an outline [(radius, height)], smooth along it and around."""
+def revolved(outline, sides, v_scale=1):
+    """Revolves an outline [(radius, height)], smooth along it and around; see write_ply."""
     vertices, triangles = [], []
     length = 0
     for i, (r, y) in enumerate(outline):
@@ -122,7 +127,11 @@ def revolve(path, outline, sides, v_scale=1):
             a, b = i * row + j, (i + 1) * row + j
             triangles += [(a, b, a + 1)] * (outline[i][0] > 0)  # none of no area at the axis
             triangles += [(a + 1, b, b + 1)]
-    write_ply(path, vertices, triangles)
+    return vertices, triangles
+
+
+def revolve(path, outline, sides, v_scale=1):
+    write_ply(path, *revolved(outline, sides, v_scale))
 
 
 def bricks():
@@ -225,6 +234,187 @@ def bulbs():
                 n += 5 if i % 3 == 2 else 1
 
 
+class Glb:
+    """Collects a glTF scene and writes it as one .glb file."""
+
+    def __init__(self):
+        self.data = b''
+        self.root = {'asset': {'version': '2.0', 'generator': 'make.py'}, 'scene': 0,
+                     'scenes': [{'nodes': []}], 'extensionsUsed': ['KHR_mesh_quantization'],
+                     'extensionsRequired': ['KHR_mesh_quantization']}
+
+    def add(self, kind, **entry):
+        self.root.setdefault(kind, []).append(entry)
+        return len(self.root[kind]) - 1
+
+    def view(self, data, **more):
+        self.data += bytes(-len(self.data) % 4)
+        self.data += data
+        return self.add('bufferViews', buffer=0, byteOffset=len(self.data) - len(data),
+                        byteLength=len(data), **more)
+
+    def shape(self, vertices, triangles):
+        """Adds the arrays of a mesh: normals in bytes, texture coordinates in 16 bits."""
+        count = len(vertices)
+        at = [v[:3] for v in vertices]
+        position = self.add(
+            'accessors', componentType=5126, count=count, type='VEC3',
+            min=[min(p[i] for p in at) for i in range(3)],
+            max=[max(p[i] for p in at) for i in range(3)],
+            bufferView=self.view(b''.join(struct.pack('<3f', *p) for p in at)))
+        normal = self.add(
+            'accessors', componentType=5120, count=count, type='VEC3', normalized=True,
+            bufferView=self.view(b''.join(struct.pack('<3bx', *(round(127 * n) for n in v[3:6]))
+                                          for v in vertices), byteStride=4))
+        uv = self.add(
+            'accessors', componentType=5126, count=count, type='VEC2',
+            bufferView=self.view(b''.join(struct.pack('<2f', *v[6:]) for v in vertices)))
+        indices = self.add(
+            'accessors', componentType=5123, count=3 * len(triangles), type='SCALAR',
+            bufferView=self.view(b''.join(struct.pack('<3H', *t) for t in triangles)))
+        return {'attributes': {'POSITION': position, 'NORMAL': normal, 'TEXCOORD_0': uv},
+                'indices': indices}
+
+    def texture(self, picture):
+        image = self.add('images', bufferView=self.view(picture), mimeType='image/png')
+        return self.add('textures', source=image)
+
+    def material(self, name, color, metallic=0, roughness=.5, extensions=None, **more):
+        for extension in extensions or {}:
+            if extension not in self.root['extensionsUsed']:
+                self.root['extensionsUsed'].append(extension)
+        pbr = {'baseColorFactor': [*color, 1], 'metallicFactor': metallic,
+               'roughnessFactor': roughness}
+        pbr.update(more.pop('pbr', {}))
+        if extensions:
+            more['extensions'] = extensions
+        return self.add('materials', name=name, pbrMetallicRoughness=pbr, **more)
+
+    def place(self, shape, material, at, scale=1, **more):
+        mesh = self.add('meshes', primitives=[{**shape, 'material': material}])
+        self.node(mesh=mesh, translation=at, scale=[scale] * 3, **more)
+
+    def look(self, eye, at, **entry):
+        """Adds a node that looks along its -z, as cameras and lights do."""
+        def unit(v):
+            length = math.sqrt(sum(c * c for c in v))
+            return [c / length for c in v]
+
+        def cross(a, b):
+            return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+        back = unit([e - a for e, a in zip(eye, at)])
+        right = unit(cross((0, 1, 0), back))
+        axes = [right, cross(back, right), back]
+        self.node(matrix=[round(v, 6) for axis in axes for v in (*axis, 0)] + [*eye, 1], **entry)
+
+    def node(self, **entry):
+        self.root['scenes'][0]['nodes'].append(self.add('nodes', **entry))
+
+    def write(self, path):
+        self.data += bytes(-len(self.data) % 4)
+        self.root['buffers'] = [{'byteLength': len(self.data)}]
+        text = json.dumps(self.root, separators=(',', ':')).encode()
+        text += b' ' * (-len(text) % 4)
+        with open(path, 'wb') as f:
+            f.write(b'glTF' + struct.pack('<II', 2, 28 + len(text) + len(self.data)) +
+                    struct.pack('<I', len(text)) + b'JSON' + text +
+                    struct.pack('<I', len(self.data)) + b'BIN\0' + self.data)
+
+
+def tiles():
+    """Glazed tiles with a star each: colour, roughness with metal, normals."""
+    size, groove = 128, .035
+    rng = random.Random(4)
+    grain = [[round(rng.random() * 3) / 3 for _ in range(size)] for _ in range(size)]
+
+    def place(x, y):
+        """The height of the surface, whether it is glaze, and whether it is inside the star."""
+        u, v = (2 * x / size) % 1, (2 * y / size) % 1
+        edge = min(u, 1 - u, v, 1 - v)
+        a, r = math.atan2(v - .5, u - .5), math.hypot(u - .5, v - .5)
+        star = r < .22 + .09 * math.cos(8 * a)
+        height = min(1, edge / groove) ** .5
+        return height + (.25 if star else 0), edge > groove / 2, star
+
+    def colour(x, y):
+        _, glazed, star = place(x, y)
+        odd = (2 * x // size + 2 * y // size) % 2
+        if not glazed:
+            return [.45 - .05 * grain[y % size][x % size]] * 3
+        if star:
+            return (.93, .8, .52)
+        return (.1, .3, .42) if odd else (.82, .8, .74)
+
+    def packed(x, y):
+        _, glazed, star = place(x, y)
+        return (0, (.25 if star else .15 + .05 * grain[y][x]) if glazed else .9, 1. * star)
+
+    def normal(x, y):
+        dx = place((x + 1) % size, y)[0] - place(x - 1, y)[0]
+        dy = place(x, y - 1)[0] - place(x, (y + 1) % size)[0]
+        n = (-.7 * dx, -.7 * dy, 1)
+        l = math.sqrt(sum(c * c for c in n))
+        return [.5 + .5 * c / l for c in n]
+
+    return png(size, size, colour), png(size, size, packed), png(size, size, normal)
+
+
+def still_life():
+    """Spheres and vessels of metal, glass and lacquer on a tiled table."""
+    glb = Glb()
+    colour, packed, normal = (glb.texture(picture) for picture in tiles())
+    ball = glb.shape(*revolved(
+        [(math.sin(math.pi * i / 24), -math.cos(math.pi * i / 24)) for i in range(25)], 48))
+    vase = glb.shape(*revolved(
+        [(0, 0), (.3, 0), (.34, .02), (.5, .3), (.58, .6), (.52, .9), (.33, 1.15), (.22, 1.35),
+         (.2, 1.5), (.25, 1.62), (.33, 1.68), (.31, 1.69), (.22, 1.62), (.17, 1.5), (.19, 1.35),
+         (.3, 1.12), (.48, .9), (.54, .6), (.46, .32), (.3, .06), (0, .05)], 40))
+    bowl = glb.shape(*revolved(
+        [(0, 0), (.28, 0), (.3, .03), (.3, .06), (.55, .2), (.74, .42), (.76, .45), (.73, .45),
+         (.52, .24), (.28, .1), (0, .08)], 40))
+    table = glb.shape([(-1, 0, -1, 0, 1, 0, 0, 0), (1, 0, -1, 0, 1, 0, 6, 0),
+                       (1, 0, 1, 0, 1, 0, 6, 6), (-1, 0, 1, 0, 1, 0, 0, 6)],
+                      [(0, 2, 1), (0, 3, 2)])
+
+    tiled = glb.material(
+        'tiles', (1, 1, 1), 1, 1, pbr={'baseColorTexture': {'index': colour},
+                                       'metallicRoughnessTexture': {'index': packed}},
+        normalTexture={'index': normal})
+    glass = glb.material('glass', (.97, 1, .98), 0, 0, {
+        'KHR_materials_transmission': {'transmissionFactor': 1},
+        'KHR_materials_volume': {'thicknessFactor': 1}, 'KHR_materials_ior': {'ior': 1.5}})
+    copper = glb.material('copper', (.93, .52, .36), 1, .3)
+    gold = glb.material('gold', (1, .77, .34), 1, .12)
+    lacquer = glb.material('lacquer', (.5, .02, .025), 0, .6, {
+        'KHR_materials_clearcoat': {'clearcoatFactor': 1, 'clearcoatRoughnessFactor': .03}})
+    clay = glb.material('clay', (.75, .6, .45), 0, .9)
+    lamp = glb.material('lamp', (0, 0, 0), 0, 1,
+                        {'KHR_materials_emissive_strength': {'emissiveStrength': 9}},
+                        emissiveFactor=[1, .85, .65])
+
+    glb.place(table, tiled, [0, 0, 0], 4)
+    glb.place(vase, copper, [-.85, 0, -.6], 1.1)
+    glb.place(ball, glass, [.35, .55, .35], .55)
+    glb.place(ball, lacquer, [-.55, .36, .75], .36)
+    glb.place(bowl, clay, [1.25, 0, -.45], 1)
+    pearl = glb.add('meshes', primitives=[{**ball, 'material': gold}])
+    for x, y, z in ((1.1, .3, -.5), (1.42, .3, -.62), (1.3, .3, -.24), (1.28, .53, -.46),
+                    (-.05, .16, 1.15), (1.35, .16, .75)):
+        glb.node(mesh=pearl, translation=[x, y, z], scale=[.16] * 3)
+    # Turned over, so that it shines downwards.
+    glb.place(table, lamp, [-1.5, 3.2, 1.2], .6, rotation=[.966, 0, .259, 0])
+    glb.root['extensionsUsed'].append('KHR_lights_punctual')
+    glb.root['extensions'] = {'KHR_lights_punctual': {'lights': [
+        {'type': 'spot', 'color': [.6, .75, 1], 'intensity': 12000,
+         'spot': {'innerConeAngle': .3, 'outerConeAngle': .6}}]}}
+    glb.look((3.2, 2.6, 1.6), (.3, .3, 0), extensions={'KHR_lights_punctual': {'light': 0}})
+    camera = glb.add('cameras', type='perspective', name='view', perspective={
+        'yfov': .52, 'aspectRatio': 1, 'znear': .1})
+    glb.look((.8, 2.6, 5.4), (.15, .55, 0), camera=camera)
+    glb.write('gltf/scene.glb')
+
+
 goblet()
 revolve('caustic/shade.ply', [(.34, 0), (.37, .2), (.36, .45), (.3, .7), (.24, .85)], 32)
 revolve('textured/pot.ply',
@@ -235,3 +425,4 @@ leaf()
 plants()
 sky()
 bulbs()
+still_life()
