@@ -72,7 +72,7 @@ TEST(RangeCoverage, IsWhatItClaims) {
     EXPECT_THROW(RangeCoverage(std::span(viewpoints).first(1)), std::invalid_argument);
     // All that people put at the cap is in a range without an upper end.
     const std::vector<ViewpointOutcome> atCap = {Viewpoint({{10000, 9500}, {10000, 10000}}),
-                                                 Viewpoint({{10000, 9000}, {10000, 10000}})};
+                                                 Viewpoint({{10000, 9500}, {10000, 10000}})};
     EXPECT_EQ(RangeCoverage(atCap), 1);
 }
 
