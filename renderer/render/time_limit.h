@@ -15,7 +15,8 @@ double ParseDuration(const std::string& text);
 // Throws std::invalid_argument for anything else.
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
-// Returns the seconds to leave for the files of an image: more than they take (see README).
+// Returns the seconds to leave for the files of an image: twice what they take of a
+// core that nobody shares (renderer/README.md).
 double SecondsToWrite(int64_t pixels);
 
 }  // namespace lull
