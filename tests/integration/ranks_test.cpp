@@ -50,7 +50,7 @@ TEST_F(RanksTest, ComeToTheSameBits) {
 }
 
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
-    const std::string render = std::string(kRender) + "--cap 1500 --stop lnoise:0.15 ";
+    const std::string render = std::string(kRender) + "--cap 800 --stop lnoise:0.2 ";
     ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
     const std::string parts =
         render + "-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
