@@ -156,6 +156,8 @@ struct FresnelBlend {
         const Rgb f = Rgb(scale) * (diffuse + glossy);
         if (!SameHemisphere(wo, wi)) return {f, 0};
         const float glossyPdf = 0.5f * d / (cosO + distribution.Stretch(wo));
+        // Even shares in one product, which rounds as pbrt-v3's estimator always has.
+        if (glossyShare == 0.5f) return {f, 0.5f * (cosI * kInvPi + glossyPdf)};
         return {f, (1 - glossyShare) * (cosI * kInvPi) + glossyShare * glossyPdf};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
