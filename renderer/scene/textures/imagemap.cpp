@@ -20,8 +20,8 @@ bool IsEncodedByDefault(const std::string& filename) {
     return false;
 }
 
-Wrap GetWrap(const TextureInput& input, const char* parameter, const std::string& otherwise) {
-    const std::string wrap = input.entity.parameters.GetString(parameter, otherwise);
+Wrap GetWrap(const TextureInput& input, const char* parameter) {
+    const std::string wrap = input.entity.parameters.GetString(parameter, "repeat");
     if (wrap == "black") return Wrap::Black;
     if (wrap == "clamp") return Wrap::Clamp;
     if (wrap == "mirrored") return Wrap::Mirror;
@@ -61,8 +61,8 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
     const int embedded = parameters.GetInt("embeddedimage", -1);
     const bool gamma = parameters.GetBool("gamma", IsEncodedByDefault(filename));
     const TextureChannels channels = GetChannels(input, std::is_same_v<T, float>);
-    const Wrap wrap = GetWrap(input, "wrap", "repeat");
-    const Wrap wrapT = GetWrap(input, "wrapt", parameters.GetString("wrap", "repeat"));
+    const Wrap wrap = GetWrap(input, "wrap");
+    const Wrap wrapT = parameters.GetString("wrapt", "").empty() ? wrap : GetWrap(input, "wrapt");
     ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT};
     parameters.GetBool("trilinear", false);
     parameters.GetFloat("maxanisotropy", 8);

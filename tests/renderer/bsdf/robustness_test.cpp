@@ -150,6 +150,10 @@ TEST(Robustness, WeightsOfSamplesAreBounded) {
         const Vec3f wo = HardDirection(&random, Vec3f::UnitZ());
         const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
         if (!s) continue;
+        // Grows with the tangent of the smaller angle: without bounds where both directions graze.
+        if (std::holds_alternative<OrenNayar>(lobe) &&
+            std::max(std::abs(wo.z()), std::abs(s->wi.z())) < 0.1f)
+            continue;
         // Colours are at most 1 and refraction scales by at most 3^2; Oren-Nayar reaches 1.6.
         EXPECT_LT(s->f.maxCoeff() * std::abs(s->wi.z()) / s->pdf, 9.5f);
         if (testing::Test::HasFailure()) return;
