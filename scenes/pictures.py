@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Renders many-lights until every block has stopped, and makes the pictures of the README.
 
-pictures.py LULL: writes scenes/pictures/render.jpg, spp.png and decision.svg. The last is drawn from the
-report: what the rule computed of the block that stopped last, pass by pass. Needs ImageMagick's
-convert for the JPEG (where it is missing, a PNG is left beside).
+pictures.py LULL: writes scenes/pictures/render.png, spp.png and decision.svg. The last is drawn from
+the report: what the rule computed of the block that stopped last, pass by pass.
 """
 import json
 import math
@@ -14,7 +13,7 @@ import sys
 import tempfile
 
 SCENES = pathlib.Path(__file__).resolve().parent
-SIDE = 240
+SIDE = 200
 
 
 def curve(decisions, width, height):
@@ -58,13 +57,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         subprocess.run([sys.argv[1], "render", SCENES / "many-lights/scene.pbrt", "--resolution",
-                        f"{SIDE}x{SIDE}", "--block", "60", "--cap", "2000", "-o", out / "r.exr", "--report", out / "r.json"],
+                        f"{SIDE}x{SIDE}", "--block", "50", "--cap", "1000", "-o", out / "r.exr", "--report", out / "r.json"],
                        check=True)
         shutil.copy(out / "r.spp.png", pictures / "spp.png")
-        if shutil.which("convert"):
-            subprocess.run(["convert", out / "r.png", "-quality", "92", pictures / "render.jpg"], check=True)
-        else:
-            shutil.copy(out / "r.png", pictures / "render.png")
+        shutil.copy(out / "r.png", pictures / "render.png")
         blocks = json.loads((out / "r.json").read_text())["blocks"]
         stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
         last = max(stopped, key=lambda b: b["spp"])
