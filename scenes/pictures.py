@@ -22,10 +22,10 @@ def curve(decisions, width, height):
     limit, left, bottom = decisions["threshold"], 44, 36
     xs = [math.log(s) for s, _ in points]
     ys = [math.log(v) for _, v in points] + [math.log(limit)]
-    low, high = min(ys) - 0.1, max(ys) + 0.1
+    low, high = min(ys) - 0.4, max(ys) + 0.1
 
     def place(x, y):
-        return (left + (x - xs[0]) / (xs[-1] - xs[0]) * (width - left - 12),
+        return (left + (x - xs[0]) / (xs[-1] - xs[0]) * (width - left - 24),
                 12 + (high - y) / (high - low) * (height - bottom - 12))
 
     line = " ".join("%.1f,%.1f" % place(x, math.log(v)) for x, (_, v) in zip(xs, points))
@@ -33,15 +33,15 @@ def curve(decisions, width, height):
     end_x, end_y = place(xs[-1], math.log(points[-1][1]))
     ticks = "".join(
         '<text x="%.0f" y="%d" text-anchor="middle">%d</text>' % (place(x, low)[0], height - 20, round(math.exp(x)))
-        for x in (xs[0], (xs[0] + xs[-1]) / 2, xs[-1] - 0.1))
+        for x in (xs[0], (xs[0] + xs[-1]) / 2, xs[-1]))
     return f"""<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}"
  font-family="sans-serif" font-size="13" fill="#555">
 <rect width="{width}" height="{height}" fill="#fff"/>
 <line x1="{left}" x2="{width - 12}" y1="{limit_y:.1f}" y2="{limit_y:.1f}" stroke="#c33" stroke-dasharray="5 4"/>
-<text x="{left + 6}" y="{limit_y - 6:.1f}" fill="#c33">stops below this</text>
+<text x="{left + 6}" y="{limit_y + 16:.1f}" fill="#c33">stops below this</text>
 <polyline points="{line}" fill="none" stroke="#246" stroke-width="2"/>
 <circle cx="{end_x:.1f}" cy="{end_y:.1f}" r="5" fill="#246"/>
-<text x="{end_x - 8:.1f}" y="{end_y - 12:.1f}" text-anchor="end" fill="#246">stopped at {points[-1][0]} spp</text>
+<text x="{width - 12}" y="{limit_y + 34:.1f}" text-anchor="end" fill="#246">stopped at {points[-1][0]} spp</text>
 {ticks}
 <text x="{(width + left) / 2:.0f}" y="{height - 4}" text-anchor="middle">samples per pixel</text>
 <text transform="translate(16 {height / 2 - 10:.0f}) rotate(-90)" text-anchor="middle">what the rule computes</text>
@@ -64,7 +64,7 @@ def main():
         blocks = json.loads((out / "r.json").read_text())["blocks"]
         stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
         last = max(stopped, key=lambda b: b["spp"])
-        (pictures / "decision.svg").write_text(curve(last["decisions"], SIDE, SIDE))
+        (pictures / "decision.svg").write_text(curve(last["decisions"], 300, 300))
 
 
 if __name__ == "__main__":
