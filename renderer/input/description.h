@@ -2,6 +2,7 @@
 // from. Loaders fill a Description; compile (renderer/scene/compile.h) makes a Scene of it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -125,10 +126,23 @@ struct ObjectEntity {
 };
 
 struct InstanceEntity {
-    int object = -1;  // into Description::objects
-    Mat4d worldFromInstance = Mat4d::Identity();
+    int object = -1;                              // into Description::objects
+    Mat4d worldFromInstance = Mat4d::Identity();  // of one that moves: at the start
     FileLoc loc;
+    int motion = -1;  // into Description::motions; -1: it stands still
 };
+
+// Holds a transform at Description::transformTimes, the start and the end of the time.
+struct TransformPair {
+    std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
+
+    // What differs by rounding alone does not move.
+    bool IsAnimated() const { return at[0].cast<float>() != at[1].cast<float>(); }
+};
+
+// Holds the transforms of an instance that moves, outermost first: a moving shape in an object that
+// is placed has one in the object and one of the object.
+using Motion = std::vector<TransformPair>;
 
 // Holds an image that lies inside the scene's file, as its own format encodes it.
 struct EmbeddedImage {
@@ -141,6 +155,8 @@ struct Description {
     Entity camera{"perspective", {}, {}}, film{"image", {}, {}}, filter{"box", {}, {}},
         sampler{"halton", {}, {}}, integrator{"path", {}, {}};
     Mat4d cameraFromWorld = Mat4d::Identity();
+    std::optional<TransformPair> movingCameraFromWorld;  // where the camera moves
+    std::array<double, 2> transformTimes = {0, 1};       // in units of the camera's shutter times
 
     std::vector<MediumEntity> media;  // none where the integrator does not see them
     int cameraMedium = -1;            // what the camera is in; -1: vacuum
@@ -150,6 +166,7 @@ struct Description {
     std::vector<ShapeEntity> shapes;
     std::vector<ObjectEntity> objects;
     std::vector<InstanceEntity> instances;
+    std::vector<Motion> motions;
     std::vector<EmbeddedImage> images;
 
     std::string directory;  // of the scene's file; relative file names start there

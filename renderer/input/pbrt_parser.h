@@ -9,9 +9,9 @@
 namespace lull {
 
 struct ParseOptions {
-    // Leaves out what is not modelled (media, motion) with a counted warning instead of an error.
-    // Media need it only with the integrators that look at them; the others ignore media in pbrt-v3
-    // as well, so that is a warning at all times.
+    // Leaves out what is not modelled with a counted warning instead of an error. Of what the
+    // parser itself judges that is nothing at present: plug-ins are judged where the scene is
+    // compiled.
     bool substitute = false;
 };
 

@@ -28,6 +28,9 @@ class Hasher {
         Number(uint64_t(text.size()));
         Bytes(text.data(), text.size());
     }
+    void Of(const TransformPair& pair) {
+        for (const Mat4d& m : pair.at) Matrix(m);
+    }
     void Matrix(const Mat4d& m) { Bytes(m.data(), sizeof(double) * size_t(m.size())); }
 
     void Value(const Parameter& parameter) {
@@ -93,6 +96,9 @@ std::string SceneHash(const Description& d) {
             if (entity != &d.film || parameter.name != "filename") hash.Value(parameter);
     }
     hash.Matrix(d.cameraFromWorld);
+    if (d.movingCameraFromWorld) hash.Of(*d.movingCameraFromWorld);
+    if (d.movingCameraFromWorld || !d.motions.empty())
+        for (const double time : d.transformTimes) hash.Number(time);
     for (const TextureEntity& texture : d.textures) {
         hash.Of(texture);
         hash.Number(texture.isSpectrum);
@@ -114,6 +120,8 @@ std::string SceneHash(const Description& d) {
     for (const InstanceEntity& instance : d.instances) {
         hash.Number(instance.object);
         hash.Matrix(instance.worldFromInstance);
+        if (instance.motion >= 0)
+            for (const TransformPair& pair : d.motions[instance.motion]) hash.Of(pair);
     }
     for (const MediumEntity& medium : d.media) {
         hash.Of(medium);

@@ -2,10 +2,12 @@
 
 namespace lull {
 
-bool Accelerator::Intersect(const Ray& ray, Hit* hit) const {
-    return FindNearest(*implementation, ray, hit);
+bool Accelerator::Intersect(const Ray& ray, Hit* hit, float time) const {
+    return FindNearest(*implementation, ray, time, hit);
 }
 
-bool Accelerator::Occluded(const Ray& ray) const { return IsOccluded(*implementation, ray); }
+bool Accelerator::Occluded(const Ray& ray, float time) const {
+    return IsOccluded(*implementation, ray, time);
+}
 
 }  // namespace lull

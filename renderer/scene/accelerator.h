@@ -18,11 +18,11 @@ class Accelerator {
     // the accelerator and stay where they are. Throws Error when memory runs out.
     Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads);
 
-    // Finds the nearest hit in (0, ray.tMax).
-    bool Intersect(const Ray& ray, Hit* hit) const;
+    // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
+    bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;
 
-    // Says whether anything lies in (0, ray.tMax); shadow alpha counts too.
-    bool Occluded(const Ray& ray) const;
+    // Says whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
+    bool Occluded(const Ray& ray, float time = 0) const;
 
     // For programs that measure Embree itself, see accelerator_internal.h.
     struct Implementation;

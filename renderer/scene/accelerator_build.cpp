@@ -83,10 +83,7 @@ void QuadricBounds(const RTCBoundsFunctionArguments* args) {
                 return g.WorldBounds();
         },
         geometry);
-    // Leave room for the rounding between the exact bounds and the boxes.
-    const Vec3f pad = Gamma(16) * (b.lower.cwiseAbs().cwiseMax(b.upper.cwiseAbs()));
-    const Vec3f lower = b.lower - pad, upper = b.upper + pad;
-    *args->bounds_o = {lower.x(), lower.y(), lower.z(), 0, upper.x(), upper.y(), upper.z(), 0};
+    *args->bounds_o = PaddedBounds(b);
 }
 
 }  // namespace
@@ -172,6 +169,14 @@ void Accelerator::Implementation::AttachInstance(const Instance& instance, int i
     rtcReleaseGeometry(geometry);
 }
 
+void Accelerator::Implementation::AttachMoving(const ShapeTable& shapes, int index) {
+    const Instance& instance = shapes.instances[index];
+    movingUsers.push_back(std::make_unique<MovingUser>(MovingUser{
+        &shapes, index, objects[instance.object].get(),
+        BoundMotion(shapes.motions[instance.motion], shapes.ObjectBounds(instance.object))}));
+    movingUsers.back()->Attach(device.get(), world.get(), unsigned(shapeCount + index));
+}
+
 Accelerator::Accelerator() = default;
 Accelerator::~Accelerator() = default;
 Accelerator::Accelerator(Accelerator&&) noexcept = default;
@@ -196,7 +201,10 @@ Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures,
     impl.world = impl.NewScene();
     for (int i = 0; i < shapes.worldShapeCount; ++i) impl.Attach(impl.world.get(), shapes, i);
     for (size_t i = 0; i < shapes.instances.size(); ++i)
-        impl.AttachInstance(shapes.instances[i], int(i));
+        if (shapes.instances[i].motion < 0)
+            impl.AttachInstance(shapes.instances[i], int(i));
+        else
+            impl.AttachMoving(shapes, int(i));
     rtcCommitScene(impl.world.get());
 }
 

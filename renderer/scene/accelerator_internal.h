@@ -31,6 +31,17 @@ struct ShapeUser {
     int shape;
 };
 
+// Holds what the callbacks of an instance that moves get to see.
+struct MovingUser {
+    const ShapeTable* shapes;
+    int instance;
+    RTCScene object;
+    std::vector<Bounds3f> bounds;  // one a time step
+
+    // Attaches the geometry to the world under `id`.
+    void Attach(RTCDevice device, RTCScene world, unsigned id);
+};
+
 // Callbacks of Embree, called with one ray at a time, as rays are traced one at a time. Those of
 // quadrics intersect spheres and disks; the filters say that a hit is cut out by alpha.
 void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
@@ -43,6 +54,7 @@ struct Accelerator::Implementation {
     Device device;
     std::vector<ShapeUser> users;
     std::vector<EmbreeScene> objects;
+    std::vector<std::unique_ptr<MovingUser>> movingUsers;
     EmbreeScene world;
     int shapeCount = 0;
 
@@ -50,9 +62,17 @@ struct Accelerator::Implementation {
     // Attaches a shape under its own number, so that a hit names it directly.
     void Attach(RTCScene scene, const ShapeTable& shapes, int index);
     void AttachInstance(const Instance& instance, int index);
+    void AttachMoving(const ShapeTable& shapes, int index);
 };
 
-inline RTCRay MakeRay(const Ray& ray) {
+// Returns the box for Embree, with room for the rounding between exact bounds and boxes.
+inline RTCBounds PaddedBounds(const Bounds3f& b) {
+    const Vec3f pad = Gamma(16) * (b.lower.cwiseAbs().cwiseMax(b.upper.cwiseAbs()));
+    const Vec3f lower = b.lower - pad, upper = b.upper + pad;
+    return {lower.x(), lower.y(), lower.z(), 0, upper.x(), upper.y(), upper.z(), 0};
+}
+
+inline RTCRay MakeRay(const Ray& ray, float time) {
     RTCRay r;
     r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
     r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
@@ -60,7 +80,7 @@ inline RTCRay MakeRay(const Ray& ray) {
     // origin, where error bounds are 0, meets that plane at exactly 0, which must not count.
     r.tnear = std::numeric_limits<float>::min();
     r.tfar = ray.tMax;
-    r.time = 0;
+    r.time = time;
     r.mask = ~0u;
     r.id = 0;
     r.flags = 0;
@@ -68,9 +88,10 @@ inline RTCRay MakeRay(const Ray& ray) {
 }
 
 // Do what the accelerator is asked for; see there.
-inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, Hit* hit) {
+inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, float time,
+                        Hit* hit) {
     RTCRayHit r;
-    r.ray = MakeRay(ray);
+    r.ray = MakeRay(ray, time);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
@@ -91,8 +112,8 @@ inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray,
     return true;
 }
 
-inline bool IsOccluded(const Accelerator::Implementation& impl, const Ray& ray) {
-    RTCRay r = MakeRay(ray);
+inline bool IsOccluded(const Accelerator::Implementation& impl, const Ray& ray, float time) {
+    RTCRay r = MakeRay(ray, time);
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(impl.world.get(), &r);
 #else

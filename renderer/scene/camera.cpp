@@ -38,6 +38,11 @@ Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
     return {position + rotation * origin, rotation * direction, kInfinity};
 }
 
+Ray Camera::Move(const Ray& ray, float time) const {
+    const Mat4d m = motion->At(time);
+    return {TransformPoint(m, ray.o), TransformVector(m, ray.d), ray.tMax};
+}
+
 namespace {
 
 // Reads the screen window: [-1, 1] along the shorter axis unless the scene says otherwise.
@@ -85,9 +90,9 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     camera.projection = ReadProjection(entity);
     const std::array<float, 4> screen = ReadScreen(entity, resolution);
     const float fov = camera.projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
-    // Nothing moves here, so the shutter has no effect.
-    params.GetFloat("shutteropen", 0);
-    params.GetFloat("shutterclose", 1);
+    const Shutter shutter = ReadShutter(entity);
+    if (params.GetFloat("shutterclose", 1) < params.GetFloat("shutteropen", 0))
+        warnings.Add(entity.loc, "the shutter closes before it opens; the times are swapped");
     camera.lensRadius = params.GetFloat("lensradius", 0);
     camera.focalDistance = params.GetFloat("focaldistance", 1e6f);
     if (!(camera.lensRadius >= 0) || !(camera.focalDistance > 0))
@@ -105,12 +110,24 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
                                              (screen[2] - screen[3]) / resolution.y());
     }
     camera.worldFromCamera = description.cameraFromWorld.inverse();
+    if (description.movingCameraFromWorld) {
+        const auto& [open, close] = description.movingCameraFromWorld->at;
+        const auto& [startTime, endTime] = description.transformTimes;
+        const AnimatedTransform motion(open.inverse(), close.inverse(), startTime, endTime,
+                                       shutter);
+        camera.worldFromCamera = motion.At(0);
+        if (!motion.IsConstant()) camera.motion = motion;
+    }
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
     camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
     // Scales in the transform change the length of directions, not what they point at; remove a
     // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
     camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();
+    if (camera.motion) {
+        camera.rotation.setIdentity();
+        camera.position.setZero();
+    }
     return camera;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "renderer/input/description.h"
+#include "renderer/scene/animated_transform.h"
 #include "renderer/scene/film_settings.h"
 
 namespace lull {
@@ -25,15 +26,22 @@ struct Camera {
     // the scene asks for, as in pbrt-v3, even if the stopping rule takes more or fewer.
     float sampleSpacing = 1;
 
-    // Returns the ray through `film` (pixels) and the lens point that u chooses; direction unit.
-    Ray GenerateRay(const Vec2f& film, const Vec2f& lens) const {
-        return projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
-                                                     : GenerateOtherRay(film, lens);
+    // Of a camera that moves; rotation and position are then those of no transform at all, and
+    // worldFromCamera that of the time when the shutter opens.
+    std::optional<AnimatedTransform> motion;
+
+    // Returns the ray through `film` (pixels) and the lens point that u chooses, at `time` from 0
+    // where the shutter opens to 1; direction unit.
+    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time = 0) const {
+        const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
+                                                              : GenerateOtherRay(film, lens);
+        return motion ? Move(ray, time) : ray;
     }
 
   private:
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
+    Ray Move(const Ray& ray, float time) const;
 };
 
 // Reads Camera "perspective", "orthographic" or "environment". Throws Error for other cameras, a

@@ -80,6 +80,8 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     scene->acceleratorSeconds = Timed(
         [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });
 
+    scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
+
     // Say what would otherwise be found out by a black picture.
     if (scene->lights.Count() == 0)
         warnings.Add(description.integrator.loc,

@@ -26,6 +26,7 @@ struct Scene {
     int samplesPerPixel = 16;
     int maxDepth = 5;
     float rrThreshold = 1;
+    bool isMoving = false;      // shapes, instances or the camera, while the shutter is open
     bool isVolumetric = false;  // media, or interfaces that shadow rays pass, are to be seen
 
     TextureTable textures;

@@ -43,12 +43,12 @@ void Place(const Instance& instance, SurfaceInteraction* hit) {
     hit->dndv = TransformNormal(instance.instanceFromWorld, hit->dndv);
 }
 
+}  // namespace
+
 Ray IntoInstance(const Instance& instance, const Ray& ray) {
     return {TransformPoint(instance.instanceFromWorld, ray.o),
             TransformVector(instance.instanceFromWorld, ray.d), ray.tMax};
 }
-
-}  // namespace
 
 uint32_t Shape::PrimitiveCount() const {
     const Mesh* mesh = std::get_if<Mesh>(&geometry);
@@ -66,26 +66,56 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
     for (const ObjectEntity& object : description.objects) {
         objects.push_back({int(shapes.size()), int(object.shapes.size())});
         for (const ShapeEntity& entity : object.shapes) add(entity);
-        Bounds3f bounds;
-        for (int i = objects.back().firstShape; i < int(shapes.size()); ++i)
-            bounds.Extend(ShapeBounds(shapes[i]));
-        objectBounds.push_back(bounds);
+        objectBounds.push_back(ObjectBounds(int(objects.size()) - 1));
     }
 
     for (int i = 0; i < worldShapeCount; ++i) bounds.Extend(ShapeBounds(shapes[i]));
+    const Shutter shutter = ReadShutter(description.camera);
     for (const InstanceEntity& entity : description.instances) {
         const Bounds3f& b = objectBounds[entity.object];
         if (b.IsEmpty()) continue;
-        instances.push_back(
-            {entity.object, entity.worldFromInstance, entity.worldFromInstance.inverse()});
-        if (!instances.back().instanceFromWorld.allFinite())
+        Instance instance{entity.object, -1, entity.worldFromInstance, Mat4d::Identity()};
+        if (entity.motion >= 0) AddMotion(description, entity, shutter, &instance);
+        instance.instanceFromWorld = instance.worldFromInstance.inverse();
+        if (!instance.instanceFromWorld.allFinite())
             throw Error(entity.loc, "the instance's transform cannot be inverted");
-        for (int corner = 0; corner < 8; ++corner)
-            bounds.Extend(TransformPoint(entity.worldFromInstance,
-                                         Vec3f(corner & 1 ? b.lower.x() : b.upper.x(),
-                                               corner & 2 ? b.lower.y() : b.upper.y(),
-                                               corner & 4 ? b.lower.z() : b.upper.z())));
+        instances.push_back(instance);
+        if (instance.motion < 0)
+            bounds.Extend(TransformBox(instance.worldFromInstance, b));
+        else
+            for (const Bounds3f& box : BoundMotion(motions[instance.motion], b)) bounds.Extend(box);
     }
+}
+
+// Gives an instance the motion that the description has for it, or the place where it is all the
+// time that the shutter is open.
+void ShapeTable::AddMotion(const Description& description, const InstanceEntity& entity,
+                           const Shutter& shutter, Instance* instance) {
+    const auto& [startTime, endTime] = description.transformTimes;
+    std::vector<AnimatedTransform> transforms;
+    for (const TransformPair& pair : description.motions[entity.motion])
+        transforms.emplace_back(pair.at[0], pair.at[1], startTime, endTime, shutter);
+    instance->worldFromInstance = ProductAt(transforms, 0);
+    if (std::all_of(transforms.begin(), transforms.end(),
+                    [](const AnimatedTransform& t) { return t.IsConstant(); }))
+        return;
+    instance->motion = int(motions.size());
+    motions.push_back(std::move(transforms));
+}
+
+Bounds3f ShapeTable::ObjectBounds(int object) const {
+    const auto [first, count] = objects[object];
+    Bounds3f bounds;
+    for (int i = first; i < first + count; ++i) bounds.Extend(ShapeBounds(shapes[i]));
+    return bounds;
+}
+
+Instance ShapeTable::InstanceAt(const Instance& instance, float time) const {
+    Instance moved = instance;
+    moved.worldFromInstance = ProductAt(motions[instance.motion], time);
+    moved.instanceFromWorld =
+        Eigen::Affine3d(moved.worldFromInstance).inverse(Eigen::Affine).matrix();
+    return moved;
 }
 
 size_t ShapeTable::TriangleCount() const {
@@ -103,12 +133,28 @@ size_t ShapeTable::TriangleCount() const {
 }
 
 void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
-                          SurfaceInteraction* interaction) const {
+                          SurfaceInteraction* interaction, float time) const {
+    const Instance* instance = hit.instance < 0 ? nullptr : &instances[hit.instance];
+    if (instance && instance->motion >= 0)
+        InteractMoving(ray, hit, *instance, time, needs, interaction);
+    else
+        InteractIn(instance, ray, hit, needs, interaction);
+}
+
+void ShapeTable::InteractMoving(const Ray& ray, const Hit& hit, const Instance& instance,
+                                float time, SurfaceNeeds needs,
+                                SurfaceInteraction* interaction) const {
+    const Instance moved = InstanceAt(instance, time);
+    InteractIn(&moved, ray, hit, needs, interaction);
+}
+
+void ShapeTable::InteractIn(const Instance* instance, const Ray& ray, const Hit& hit,
+                            SurfaceNeeds needs, SurfaceInteraction* interaction) const {
     const Shape& shape = shapes[hit.shape];
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
         mesh->Interact(hit.primitive, hit.b1, hit.b2, needs, interaction);
     } else {
-        const Ray local = hit.instance < 0 ? ray : IntoInstance(instances[hit.instance], ray);
+        const Ray local = instance ? IntoInstance(*instance, ray) : ray;
         if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
             lull::Interact(*sphere, local, hit.t, needs, interaction);
         else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
@@ -120,7 +166,7 @@ void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
         interaction->uv1 = interaction->uv;
         interaction->color = Rgb::Ones();
     }
-    if (hit.instance >= 0) Place(instances[hit.instance], interaction);
+    if (instance) Place(*instance, interaction);
     interaction->wo = -ray.d;
     interaction->material = shape.material;
     interaction->areaLight = LightAt(hit);

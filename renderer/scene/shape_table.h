@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/scene/animated_transform.h"
 #include "renderer/scene/material.h"
 #include "renderer/scene/shapes/mesh.h"
 #include "renderer/scene/shapes/quadric.h"
@@ -40,7 +41,8 @@ struct Object {
 
 struct Instance {
     int object = -1;
-    Mat4d worldFromInstance, instanceFromWorld;
+    int motion = -1;                             // into ShapeTable::motions; -1: it stands still
+    Mat4d worldFromInstance, instanceFromWorld;  // of one that moves: when the shutter opens
 };
 
 struct Hit {
@@ -56,7 +58,8 @@ struct ShapeTable {
     int worldShapeCount = 0;
     std::vector<Object> objects;
     std::vector<Instance> instances;
-    Bounds3f bounds;  // of everything placed, world
+    std::vector<std::vector<AnimatedTransform>> motions;  // each outermost first
+    Bounds3f bounds;                                      // of everything placed, world
 
     // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
     // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
@@ -66,9 +69,15 @@ struct ShapeTable {
 
     size_t TriangleCount() const;  // instances counted as often as they are placed
 
-    // Fills in the interaction at a hit of `ray`, all but what `needs` leaves out.
+    // Fills in the interaction at a hit of `ray`, all but what `needs` leaves out. `time` is that
+    // of the ray, from 0 where the shutter opens to 1; it matters to what moves only.
     void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
-                  SurfaceInteraction* interaction) const;
+                  SurfaceInteraction* interaction, float time = 0) const;
+
+    // Returns the instance, which moves, as it stands at `time`.
+    Instance InstanceAt(const Instance& instance, float time) const;
+    // Returns where an object's shapes are, in its own space.
+    Bounds3f ObjectBounds(int object) const;
 
     // Returns the light whose surface was hit, -1 for none.
     int LightAt(const Hit& hit) const {
@@ -78,6 +87,17 @@ struct ShapeTable {
 
     // Returns the texture coordinates of a hit, for alpha textures.
     Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
+
+  private:
+    void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
+    void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
+                        SurfaceInteraction*) const;
+    // `instance` is null for what stands in the world itself.
+    void InteractIn(const Instance* instance, const Ray&, const Hit&, SurfaceNeeds,
+                    SurfaceInteraction*) const;
 };
+
+// Carries a ray from the world into the space of the instance; its parameter stays the same.
+Ray IntoInstance(const Instance& instance, const Ray& ray);
 
 }  // namespace lull

@@ -11,19 +11,20 @@ namespace {
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
 // the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
 // turns a grazing ray to the other side of the surface, it would pass through: that is in shadow.
-bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSample& light) {
-    if (light.isAtInfinity) return !scene.accelerator.Occluded(hit.SpawnRay(light.wi));
+bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSample& light,
+               float time) {
+    if (light.isAtInfinity) return !scene.accelerator.Occluded(hit.SpawnRay(light.wi), time);
     const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
     const Vec3f d = target - origin;
     if ((d.dot(hit.n) < 0) != (light.wi.dot(hit.n) < 0)) return false;
-    return !scene.accelerator.Occluded({origin, d, 1 - 0.0001f});
+    return !scene.accelerator.Occluded({origin, d, 1 - 0.0001f}, time);
 }
 
 // Returns the light that sampling light `index` brings to the hit, weighted against BSDF sampling.
 // `pmf` is the probability of having chosen the light.
 Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteraction& hit,
-                const Bsdf& bsdf, int index, float pmf, const Vec2f& u) {
+                const Bsdf& bsdf, int index, float pmf, const Vec2f& u, float time) {
     const auto light = scene.lights.Sample(index, hit.p, u);
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
@@ -40,14 +41,14 @@ Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteractio
         light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
     const Rgb L =
         value.f * light->L * (std::abs(light->wi.dot(hit.ns)) * weight / (light->pdf * pmf));
-    if (IsBlack(L) || !IsVisible(scene, hit, *light)) return Rgb::Zero();
+    if (IsBlack(L) || !IsVisible(scene, hit, *light, time)) return Rgb::Zero();
     return L;
 }
 
 // Returns the light that a BSDF sample of its own finds on light `index`: the other half of
 // pbrt-v3's direct light.
 Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
-                       int index, float pmf, const Vec2f& u) {
+                       int index, float pmf, const Vec2f& u, float time) {
     const Light& light = scene.lights[index];
     const AreaLight* area = std::get_if<AreaLight>(&light);
     const InfiniteLight* environment = std::get_if<InfiniteLight>(&light);
@@ -60,11 +61,12 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
     float lightPdf;
     if (environment) {
         lightPdf = environment->Pdf(sample->wi);
-        if (lightPdf == 0 || scene.accelerator.Occluded(ray)) return Rgb::Zero();
+        if (lightPdf == 0 || scene.accelerator.Occluded(ray, time)) return Rgb::Zero();
         L = environment->Le(sample->wi);
     } else {
         Hit lightHit;
-        if (!scene.accelerator.Intersect(ray, &lightHit) || scene.shapes.LightAt(lightHit) != index)
+        if (!scene.accelerator.Intersect(ray, &lightHit, time) ||
+            scene.shapes.LightAt(lightHit) != index)
             return Rgb::Zero();
         SurfaceInteraction at;
         scene.shapes.Interact(ray, lightHit, kNeedsNothing, &at);
@@ -79,13 +81,14 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
 
 // Samples direct light as the estimator says: chooses one light of the table `choice`.
 Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
-                      const SurfaceInteraction& hit, const Bsdf& bsdf, const LightChoice& choice) {
+                      const SurfaceInteraction& hit, const Bsdf& bsdf, const LightChoice& choice,
+                      float time) {
     float pmf;
     const int index = choice.Sample(sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
-    Rgb L = SampleLight(scene, estimator, hit, bsdf, index, pmf, sampler.Get2D());
+    Rgb L = SampleLight(scene, estimator, hit, bsdf, index, pmf, sampler.Get2D(), time);
     if (estimator == Estimator::PbrtV3)
-        L += SampleBsdfForLight(scene, hit, bsdf, index, pmf, sampler.Get2D());
+        L += SampleBsdfForLight(scene, hit, bsdf, index, pmf, sampler.Get2D(), time);
     return L;
 }
 
@@ -100,9 +103,9 @@ void GoThrough(const SurfaceInteraction& hit, Path* path) {
 }  // namespace
 
 Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-             const Vec2f& lens) {
+             const Vec2f& lens, float time) {
     Rgb L = Rgb::Zero();
-    Path path{.ray = scene.camera.GenerateRay(film, lens)};
+    Path path{.ray = scene.camera.GenerateRay(film, lens, time)};
     for (int bounces = 0;; ++bounces) {
         // Stop where the ray could only add emission that has been counted or cannot be found.
         const bool isLast = bounces >= scene.maxDepth;
@@ -111,7 +114,7 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
 
         // Find the next vertex and add what it emits.
         Hit found;
-        if (!scene.accelerator.Intersect(path.ray, &found)) {
+        if (!scene.accelerator.Intersect(path.ray, &found, time)) {
             L += path.beta * Emission(scene, estimator, path, nullptr, found);
             break;
         }
@@ -119,10 +122,10 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         if (isLast && shape.firstLight < 0) break;
         SurfaceInteraction hit;
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
-        scene.shapes.Interact(path.ray, found, needs, &hit);
+        scene.shapes.Interact(path.ray, found, needs, &hit, time);
         scene.lights.Prefetch(hit.p);
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
-            ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
+            ComputeFootprint(scene.camera, film, lens, time, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
         if (isLast) break;
         if (needs & kIsInterface) {
@@ -136,7 +139,8 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ve
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
             path.choice = scene.lights.Choice(hit, bsdf);
-            L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice);
+            L += path.beta *
+                 SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice, time);
         }
 
         if (!Scatter(bsdf, hit, sampler, &path)) break;
@@ -151,8 +155,9 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
     const Vec2f lens = scene.camera.lensRadius > 0 ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
-    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, film, lens)
-                               : Radiance(scene, estimator, sampler, film, lens);
+    const float time = scene.isMoving ? sampler.Get1D() : 0;
+    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, film, lens, time)
+                               : Radiance(scene, estimator, sampler, film, lens, time);
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;

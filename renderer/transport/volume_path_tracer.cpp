@@ -13,7 +13,8 @@ struct Vertex {
     const Bsdf* bsdf = nullptr;
     int shape = -1;
     Vec3f p, wo;
-    int medium;   // of the ray that came
+    int medium;  // of the ray that came
+    float time;
     float g = 0;  // in a medium: of its phase function
 
     // Returns f times the cosine at a surface, the phase function in a medium, and the density.
@@ -40,12 +41,12 @@ Vec3f OriginTowards(const Vertex& v, const Vec3f& w) {
 // Follows a ray through interfaces and adds up what its media leave of the light.
 class Beam {
   public:
-    Beam(const Scene& scene, Sampler& sampler, const Ray& ray, int medium)
-        : ray(ray), scene(scene), sampler(sampler), medium(medium) {}
+    Beam(const Scene& scene, Sampler& sampler, const Ray& ray, int medium, float time)
+        : ray(ray), scene(scene), sampler(sampler), medium(medium), time(time) {}
 
     // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
-        const bool isHit = scene.accelerator.Intersect(ray, &found);
+        const bool isHit = scene.accelerator.Intersect(ray, &found, time);
         if (medium != kVacuum) {
             Ray segment = ray;
             if (isHit) segment.tMax = found.t;
@@ -55,7 +56,7 @@ class Beam {
         const int material = scene.shapes.shapes[found.shape].material;
         isInterface = scene.materials.Needs(material) & kIsInterface;
         light = scene.shapes.LightAt(found);
-        scene.shapes.Interact(ray, found, kNeedsNothing, &hit);
+        scene.shapes.Interact(ray, found, kNeedsNothing, &hit, time);
         medium = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, medium);
         return true;
     }
@@ -72,6 +73,7 @@ class Beam {
     const Scene& scene;
     Sampler& sampler;
     int medium;
+    float time;
 };
 
 // Estimates the share of the light's sample that reaches the vertex.
@@ -87,7 +89,7 @@ Rgb Visibility(const Scene& scene, Sampler& sampler, const Vertex& v, const Ligh
     Ray ray = rayFrom(origin);
     // A grazing ray that rounding turns to the other side would pass through the surface.
     if (v.hit && (ray.d.dot(v.hit->n) < 0) != (light.wi.dot(v.hit->n) < 0)) return Rgb::Zero();
-    Beam beam(scene, sampler, ray, medium);
+    Beam beam(scene, sampler, ray, medium, v.time);
     while (beam.Advance()) {
         if (!beam.isInterface || IsBlack(beam.transmittance)) return Rgb::Zero();
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
@@ -134,7 +136,7 @@ Rgb SampleDirectionForLight(const Scene& scene, Sampler& sampler, const Vertex& 
         pdf = PhaseHenyeyGreenstein(v.wo.dot(wi), v.g);
     }
     Beam beam(scene, sampler, {OriginTowards(v, wi), wi, kInfinity},
-              v.MediumTowards(scene.media, wi));
+              v.MediumTowards(scene.media, wi), v.time);
     bool isHit;
     while ((isHit = beam.Advance()) && beam.isInterface) {
         if (IsBlack(beam.transmittance)) return Rgb::Zero();
@@ -179,9 +181,9 @@ void ScatterInMedium(const Vertex& v, Sampler& sampler, Path* path) {
 }  // namespace
 
 Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-                   const Vec2f& lens) {
+                   const Vec2f& lens, float time) {
     Rgb L = Rgb::Zero();
-    Path path{.ray = scene.camera.GenerateRay(film, lens)};
+    Path path{.ray = scene.camera.GenerateRay(film, lens, time)};
     int medium = scene.media.ofCamera;
     const auto direct = [&](const Vertex& v) {
         if (scene.lights.Count() == 0) return;
@@ -196,7 +198,7 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
 
         // Find the next vertex: a surface, or a point in the medium before it.
         Hit found;
-        const bool isHit = scene.accelerator.Intersect(path.ray, &found);
+        const bool isHit = scene.accelerator.Intersect(path.ray, &found, time);
         MediumSample inMedium;
         if (medium != kVacuum) {
             Ray segment = path.ray;
@@ -210,6 +212,7 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             const Vertex v{.p = path.ray.o + *inMedium.t * path.ray.d,
                            .wo = -path.ray.d.normalized(),
                            .medium = medium,
+                           .time = time,
                            .g = scene.media.PhaseParameter(medium)};
             direct(v);
             ScatterInMedium(v, sampler, &path);
@@ -221,9 +224,9 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             SurfaceInteraction hit;
             const SurfaceNeeds needs =
                 scene.materials.Needs(scene.shapes.shapes[found.shape].material);
-            scene.shapes.Interact(path.ray, found, needs, &hit);
+            scene.shapes.Interact(path.ray, found, needs, &hit, time);
             if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
-                ComputeFootprint(scene.camera, film, lens, scene.camera.sampleSpacing, &hit);
+                ComputeFootprint(scene.camera, film, lens, time, scene.camera.sampleSpacing, &hit);
             if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
             if (needs & kIsInterface) {
                 // What lies behind still belongs to the last vertex, whose shadow rays see it; rays
@@ -242,7 +245,8 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
                            .shape = found.shape,
                            .p = hit.p,
                            .wo = hit.wo,
-                           .medium = medium};
+                           .medium = medium,
+                           .time = time};
             if (bsdf.LobeCount(LobeSet::NonSpecular) > 0) direct(v);
             if (!Scatter(bsdf, hit, sampler, &path)) break;
             medium = v.MediumTowards(scene.media, path.ray.d);

@@ -198,6 +198,59 @@ AttributeEnd''', camera='''MakeNamedMedium "fog" "string type" "homogeneous" "rg
 MediumInterface "" "fog"
 LookAt 0 -5 2.2  0 0 0.4  0 0 1
 Camera "perspective" "float fov" 38''', integrator='"volpath"', depth=8),
+    'motion-shape': scene(SKY + FLOOR + '''AttributeBegin
+''' + PATTERN + '''ActiveTransform StartTime
+Translate -1.2 0 .5
+ActiveTransform EndTime
+Translate -.4 .3 1
+Rotate 150 0 0 1
+Scale 1 1.5 .7
+ActiveTransform All
+Shape "sphere" "float radius" .5
+AttributeEnd
+AttributeBegin
+Translate .9 0 .8
+ActiveTransform EndTime
+Rotate 180 0 1 0
+ActiveTransform All
+Material "plastic" "rgb Kd" [.2 .6 .3]
+''' + f'Shape "trianglemesh" {QUAD} "point P" [-.2 0 -.2  .7 0 -.2  .7 .4 .5  -.2 .4 .5]\nAttributeEnd'),
+    'motion-instance': scene(SKY + LAMP + FLOOR + '''ObjectBegin "o"
+Material "plastic" "rgb Kd" [.6 .3 .2]
+Shape "sphere" "float radius" .3
+AttributeBegin
+Material "metal" "float roughness" .2
+Translate 0 0 .6
+ActiveTransform EndTime
+Translate .4 0 .3
+ActiveTransform All
+Shape "disk" "float radius" .35
+AttributeEnd
+ObjectEnd
+AttributeBegin
+Translate -.8 0 .4
+ObjectInstance "o"
+AttributeEnd
+AttributeBegin
+ActiveTransform StartTime
+Translate .4 -.6 .3
+Rotate -30 1 0 0
+ActiveTransform EndTime
+Translate 1.3 .5 .5
+Rotate 60 1 0 1
+Scale 1.2 .6 1
+ActiveTransform All
+ObjectInstance "o"
+AttributeEnd''', '''TransformTimes 1.2 1.8
+LookAt 0 -5 2.2  0 0 0.4  0 0 1
+Camera "perspective" "float fov" 38 "float shutteropen" 1 "float shutterclose" 1.6'''),
+    'motion-camera': scene(SKY + FLOOR + PATTERN + '''Translate 0 0 .6
+Shape "sphere" "float radius" .6''', '''ActiveTransform StartTime
+LookAt -.3 -5 2.2  0 0 0.4  0 0 1
+ActiveTransform EndTime
+LookAt .5 -4.5 2.6  0.2 .1 .5  .3 0 1
+ActiveTransform All
+Camera "perspective" "float fov" 38 "float lensradius" .1 "float focaldistance" 5'''),
 } | {f'shape-{name}': text for name, text in SHAPES.items()}
 
 

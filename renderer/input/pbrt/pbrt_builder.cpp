@@ -40,12 +40,6 @@ Description PbrtBuilder::Finish(const FileLoc& end) {
     return std::move(description);
 }
 
-// Stops at what is not modelled, or lets the caller leave it out where the user asked for that.
-void PbrtBuilder::Refuse(const std::string& what, const std::string& remedy) {
-    if (!options.substitute) throw Error(loc, what + " not modelled; " + remedy);
-    warnings.Add(loc, what + " not modelled and left out");
-}
-
 void PbrtBuilder::Include() {
     const std::string name = ReadString("the name of a file");
     lexer.Include(ResolvePath(description, name), loc);
@@ -135,7 +129,40 @@ void PbrtBuilder::ObjectInstance() {
     if (it == objects.end())
         throw Error(loc, "ObjectInstance of \"" + Printable(name) +
                              "\", which no ObjectBegin before it defines");
-    description.instances.push_back({it->second, StaticTransform("ObjectInstance"), loc});
+    AddInstance(it->second, {state.ctm});
+    const auto [first, last] = movingParts.equal_range(it->second);
+    for (auto part = first; part != last; ++part)
+        AddInstance(part->second.first, {state.ctm, part->second.second});
+}
+
+void PbrtBuilder::AddInstance(int object, const Motion& motion) {
+    Mat4d atStart = motion[0].at[0];
+    bool isAnimated = motion[0].IsAnimated();
+    for (size_t i = 1; i < motion.size(); ++i) {
+        atStart *= motion[i].at[0];
+        isAnimated |= motion[i].IsAnimated();
+    }
+    InstanceEntity instance{object, atStart, loc};
+    if (isAnimated) {
+        instance.motion = int(description.motions.size());
+        description.motions.push_back(motion);
+    }
+    description.instances.push_back(std::move(instance));
+}
+
+// Makes a shape that moves the instance of an object that holds nothing else.
+void PbrtBuilder::AddMovingShape(ShapeEntity shape) {
+    if (state.areaLight)
+        warnings.Add(loc, "area light ignored at a moving shape",
+                     "shapes that move cannot emit light, in pbrt-v3 neither");
+    shape.worldFromObject = Mat4d::Identity();
+    const int object = int(description.objects.size());
+    description.objects.push_back({"", loc, {}});
+    description.objects.back().shapes.push_back(std::move(shape));
+    if (currentObject < 0)
+        AddInstance(object, {state.ctm});
+    else
+        movingParts.insert({currentObject, {object, state.ctm}});
 }
 
 // The scene.
@@ -159,11 +186,15 @@ void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.rever
 
 void PbrtBuilder::Shape() {
     auto shape = ReadAs<ShapeEntity>();
-    shape.worldFromObject = StaticTransform("Shape");
+    shape.worldFromObject = state.ctm.at[0];
     shape.reverseOrientation = state.reverseOrientation;
     shape.material = CurrentMaterial();
     shape.insideMedium = MediumNamed(state.insideMedium);
     shape.outsideMedium = MediumNamed(state.outsideMedium);
+    if (state.ctm.IsAnimated()) {
+        AddMovingShape(std::move(shape));
+        return;
+    }
     if (currentObject < 0) {
         if (state.areaLight) shape.areaLight = *state.areaLight;
         description.shapes.push_back(std::move(shape));

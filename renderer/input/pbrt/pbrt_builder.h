@@ -95,9 +95,10 @@ class PbrtBuilder {
     void Apply(const Mat4d& m);
     void Check();
     const Mat4d& StaticTransform(const char* owner);
+    void AddInstance(int object, const Motion& motion);
+    void AddMovingShape(ShapeEntity shape);
     void Begin(ScopeKind kind);
     void End(ScopeKind kind);
-    void Refuse(const std::string& what, const std::string& remedy);
     bool SeesMedium(const std::string& directive);
     int MediumNamed(const std::string& name);
     int AddMaterial(MaterialEntity material);
@@ -115,6 +116,8 @@ class PbrtBuilder {
     int defaultMaterial = -1;
     std::unordered_map<std::string, int> objects;
     int currentObject = -1;  // the one being defined, into Description::objects
+    // The shapes that move within an object, each an object of its own: by the object they are in.
+    std::multimap<int, std::pair<int, TransformPair>> movingParts;
     std::map<std::string, TransformPair> coordinateSystems;
     std::map<std::string, FileLoc> optionsSeen;
     std::map<std::string, int> media;                            // into Description::media

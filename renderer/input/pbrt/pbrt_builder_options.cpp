@@ -55,12 +55,14 @@ void PbrtBuilder::Film() { ReadOption(&description.film, "Film"); }
 void PbrtBuilder::Integrator() { ReadOption(&description.integrator, "Integrator"); }
 void PbrtBuilder::PixelFilter() { ReadOption(&description.filter, "PixelFilter"); }
 void PbrtBuilder::Sampler() { ReadOption(&description.sampler, "Sampler"); }
-void PbrtBuilder::Accelerator() { ReadEntity(); }         // Embree builds its own
-void PbrtBuilder::TransformTimes() { ReadNumbers<2>(); }  // matters to moving things only
+void PbrtBuilder::Accelerator() { ReadEntity(); }  // Embree builds its own
+void PbrtBuilder::TransformTimes() { description.transformTimes = ReadNumbers<2>(); }
 
 void PbrtBuilder::Camera() {
     ReadOption(&description.camera, "Camera");
-    description.cameraFromWorld = StaticTransform("Camera");
+    description.cameraFromWorld = state.ctm.at[0];
+    description.movingCameraFromWorld.reset();
+    if (state.ctm.IsAnimated()) description.movingCameraFromWorld = state.ctm;
     TransformPair worldFromCamera = state.ctm;
     for (Mat4d& m : worldFromCamera.at) m = Mat4d(m.inverse());
     coordinateSystems["camera"] = worldFromCamera;
@@ -78,11 +80,11 @@ void PbrtBuilder::Apply(const Mat4d& m) {
     Check();
 }
 
-// Returns the current transform for something that cannot move.
+// Returns the current transform for something that cannot move, in pbrt-v3 neither.
 const Mat4d& PbrtBuilder::StaticTransform(const char* owner) {
     if (state.ctm.IsAnimated())
-        Refuse(std::string("moving transforms (ActiveTransform) of ") + owner + " are",
-               "give the same transform for StartTime and EndTime or use --substitute");
+        warnings.Add(loc, "motion ignored",
+                     std::string(owner) + " does not move; it is where it is at the start");
     return state.ctm.at[0];
 }
 

@@ -35,14 +35,7 @@ class ScopedNames {
     std::vector<std::pair<std::string, int>> undo;
 };
 
-// Holds the transforms at the start and the end of the shutter time; directives change those that
-// ActiveTransform chose.
-struct TransformPair {
-    std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
-
-    bool IsAnimated() const { return at[0] != at[1]; }
-};
-
+// Says which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
 // Holds what AttributeBegin saves and AttributeEnd brings back.

@@ -140,12 +140,52 @@ TEST_F(Directives, ActiveTransformIsHarmlessWhereBothEndsAgree) {
               Translation(1, 2, 3));
 }
 
-TEST_F(Directives, MotionIsSubstitutedByItsStart) {
-    const auto d =
-        folder.Parse("WorldBegin ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\" WorldEnd",
-                     &warnings, {.substitute = true});
-    EXPECT_EQ(d.shapes.at(0).worldFromObject, Mat4d::Identity());
-    EXPECT_EQ(warnings.Total(), 1);
+TEST_F(Directives, ShapesThatMoveAreInstancesOfObjectsOfTheirOwn) {
+    const auto d = folder.Parse(
+        "TransformTimes .5 2 WorldBegin AreaLightSource \"diffuse\" Translate 0 0 1\n"
+        "ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\" WorldEnd",
+        &warnings);
+    EXPECT_TRUE(d.shapes.empty());
+    ASSERT_EQ(d.objects.size(), 1u);
+    EXPECT_EQ(d.objects[0].shapes.at(0).worldFromObject, Mat4d::Identity());
+    EXPECT_FALSE(d.objects[0].shapes[0].areaLight);
+    ASSERT_EQ(d.instances.size(), 1u);
+    EXPECT_EQ(d.instances[0].worldFromInstance, Translation(0, 0, 1));
+    const Motion& motion = d.motions.at(d.instances[0].motion);
+    ASSERT_EQ(motion.size(), 1u);
+    EXPECT_EQ(motion[0].at[0], Translation(0, 0, 1));
+    EXPECT_EQ(motion[0].at[1], Translation(1, 0, 1));
+    EXPECT_EQ(d.transformTimes, (std::array<double, 2>{0.5, 2}));
+    EXPECT_EQ(warnings.Counts().at("area light ignored at a moving shape"), 1);
+}
+
+TEST_F(Directives, ShapesMoveWithinObjectsThatMove) {
+    const auto d = folder.ParseWorld(
+        "ObjectBegin \"o\" Shape \"disk\" ActiveTransform EndTime Translate 0 1 0\n"
+        "Shape \"sphere\" ObjectEnd ObjectInstance \"o\"\n"
+        "ActiveTransform EndTime Translate 1 0 0 ObjectInstance \"o\"");
+    ASSERT_EQ(d.objects.size(), 2u);
+    ASSERT_EQ(d.instances.size(), 4u);
+    EXPECT_EQ(d.instances[0].object, 0);
+    EXPECT_EQ(d.instances[0].motion, -1);
+    EXPECT_EQ(d.instances[1].object, 1);
+    EXPECT_EQ(d.motions.at(d.instances[2].motion).size(), 1u);
+    const Motion& both = d.motions.at(d.instances[3].motion);
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].at[1], Translation(1, 0, 0));
+    EXPECT_EQ(both[1].at[1], Translation(0, 1, 0));
+}
+
+TEST_F(Directives, CamerasMoveAndLightsDoNot) {
+    const auto d = folder.Parse(
+        "ActiveTransform StartTime Translate 1 0 0 Camera \"perspective\"\n"
+        "WorldBegin ActiveTransform EndTime Translate 0 0 1 LightSource \"point\" WorldEnd",
+        &warnings);
+    ASSERT_TRUE(d.movingCameraFromWorld);
+    EXPECT_EQ(d.cameraFromWorld, Translation(1, 0, 0));
+    EXPECT_EQ(d.movingCameraFromWorld->at[1], Mat4d::Identity());
+    EXPECT_EQ(d.lights.at(0).worldFromLight, Mat4d::Identity());
+    EXPECT_EQ(warnings.Counts().at("motion ignored"), 1);
 }
 
 TEST_F(Directives, AttributeScopeRestoresEverything) {

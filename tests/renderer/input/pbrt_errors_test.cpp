@@ -187,14 +187,6 @@ TEST_F(PbrtErrors, Refusals) {
            "scene.pbrt:2: medium \"a\" of MediumInterface: no MakeNamedMedium before defines it");
     Expect("MediumInterface \"\" \"fog\"\nIntegrator \"bdpt\" WorldBegin\nWorldEnd",
            "scene.pbrt:3: medium \"fog\" of MediumInterface");
-    ExpectInWorld("ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\"",
-                  "moving transforms (ActiveTransform) of Shape are not modelled; give the same");
-    ExpectInWorld(
-        "ActiveTransform EndTime Translate 1 0 0 ObjectBegin \"o\" ObjectEnd "
-        "ObjectInstance \"o\"",
-        "moving transforms (ActiveTransform) of ObjectInstance are not modelled");
-    Expect("ActiveTransform StartTime Rotate 5 0 0 1 Camera \"perspective\"",
-           "scene.pbrt:1: moving transforms (ActiveTransform) of Camera are not modelled");
 }
 
 TEST_F(PbrtErrors, Files) {

@@ -67,14 +67,14 @@ struct Packet<16> {
 
 }  // namespace
 
-bool Accelerator::Intersect(const Ray& ray, Hit* hit) const {
+bool Accelerator::Intersect(const Ray& ray, Hit* hit, float time) const {
     if (rayLog) rayLog->nearest.push_back({ray, ++rayLog->bounce});
-    return FindNearest(*implementation, ray, hit);
+    return FindNearest(*implementation, ray, time, hit);
 }
 
-bool Accelerator::Occluded(const Ray& ray) const {
+bool Accelerator::Occluded(const Ray& ray, float time) const {
     if (rayLog) rayLog->occlusion.push_back({ray, rayLog->bounce});
-    return IsOccluded(*implementation, ray);
+    return IsOccluded(*implementation, ray, time);
 }
 
 RTCScene AdmitPackets(const Scene& scene) {

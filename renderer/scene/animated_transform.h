@@ -1,0 +1,68 @@
+// Interpolates between two transforms as pbrt-v3 does: what moves, moves by this.
+#pragma once
+
+#include <span>
+
+#include "renderer/input/description.h"
+
+namespace lull {
+
+// Holds when the shutter opens and closes, in the scene's units of time; open <= close.
+struct Shutter {
+    double open = 0, close = 1;
+};
+
+// Reads "shutteropen" and "shutterclose" of the camera, and swaps them where they are the wrong way
+// round. Throws Error where they are not finite.
+Shutter ReadShutter(const Entity& camera);
+
+// Represents a transform that goes from one matrix to another in a span of time and stays as it is
+// before and after. Both are taken apart into translation, rotation and the rest by polar
+// decomposition (Shoemake and Duff 1992); rotations are interpolated on the shorter arc, the others
+// linearly. Times count from 0 where the shutter opens to 1 where it closes.
+class AnimatedTransform {
+  public:
+    // `startTime` and `endTime` are of the scene, like the shutter's. Where the shutter opens for
+    // no time at all, the transform is what it is then.
+    AnimatedTransform(const Mat4d& start, const Mat4d& end, double startTime, double endTime,
+                      const Shutter& shutter);
+
+    // Returns the transform at `time` in [0, 1].
+    Mat4d At(double time) const;
+
+    // Says whether it is the same all the time that the shutter is open.
+    bool IsConstant() const { return isConstant; }
+
+    // Says whether every point moves on one straight line at one speed.
+    bool IsLinear() const { return cosHalfAngle >= 1 && startTime <= 0 && endTime >= 1; }
+
+    // Bounds how far a point of the box may be from the straight line between where it is at two
+    // times `step` apart: step^2 / 8 times the greatest acceleration.
+    double Sagitta(const Bounds3f& box, double step) const;
+
+  private:
+    struct Parts {
+        Eigen::Vector3d translation;
+        Eigen::Quaterniond rotation;
+        Eigen::Matrix3d scale;  // and shear, and mirror
+    };
+    static Parts Decompose(const Mat4d& m);
+
+    Mat4d start, end;
+    double startTime, endTime;
+    std::array<Parts, 2> parts;
+    double cosHalfAngle = 1;  // of the rotation between both
+    bool isConstant = true;
+};
+
+// Returns the product of the transforms, outermost first, at `time` in [0, 1].
+Mat4d ProductAt(std::span<const AnimatedTransform> transforms, double time);
+
+// Returns a box that holds the transformed one.
+Bounds3f TransformBox(const Mat4d& m, const Bounds3f& box);
+
+// Returns boxes that hold what lies in `box` as it moves: those of n + 1 times 0, 1/n ... 1, such
+// that at every time in between the box interpolated linearly between its neighbours holds it.
+std::vector<Bounds3f> BoundMotion(std::span<const AnimatedTransform> transforms, Bounds3f box);
+
+}  // namespace lull
