@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/compared_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/bench.h"
+#include "renderer/measure/compared_files.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/bench_page.h"
 
@@ -93,35 +93,21 @@ struct Job {
     std::string sceneHash;
     Provenance provenance;
     std::vector<ObservedRule> rules;
-    std::vector<ComparedFile> external;
-    std::vector<double> externalSeconds;
+    std::vector<ExternalImage> external;
+    std::vector<RgbImage> externalImages;
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
 };
-
-RgbImage ReadPicture(const std::string& file, const PixelRect& region, ComparedFile* read) {
-    *read = ReadComparedFile(file, file);
-    const RgbImage& image = read->image.image;
-    if (image.width != region.Width() || image.height != region.Height())
-        throw Error(fmt::format("{}: has {}x{} pixels, not {}x{}", file, image.width, image.height,
-                                region.Width(), region.Height()));
-    return image;
-}
 
 Job Prepare(const Options& options) {
     const RenderSettings& settings = options.render;
     SceneInput input(settings.scene);
     Job job;
     job.rules = MakeRules(options, input.region);
-    ComparedFile file;
     if (!options.reference.empty())
-        job.reference = ReadPicture(options.reference, input.region, &file);
-    if (!options.external.empty())
-        for (const ExternalImage& external : ReadExternalImages(options.external)) {
-            ReadPicture(external.file, input.region, &file);
-            file.image.name = external.name;
-            job.external.push_back(file);
-            job.externalSeconds.push_back(external.seconds);
-        }
+        job.reference = ReadImageOfSize(options.reference, input.region);
+    if (!options.external.empty()) job.external = ReadExternalImages(options.external);
+    for (const ExternalImage& external : job.external)
+        job.externalImages.push_back(ReadImageOfSize(external.file, input.region));
     CheckWritable(options.output + ".csv");
     if (!options.report.empty()) CheckWritable(options.report);
     job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
@@ -199,15 +185,6 @@ bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
     return true;
 }
 
-void AddExternalPoints(const Job& job, std::vector<BenchPoint>* points) {
-    for (size_t i = 0; i < job.external.size(); ++i) {
-        BenchPoint& point = points->emplace_back();
-        point.rule = job.external[i].image.name;
-        point.seconds = job.externalSeconds[i];
-        point.figures = Average(CompareImages(job.external[i].image.image, *job.reference));
-    }
-}
-
 ExitCode RunBench(Options options) {
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
@@ -222,7 +199,8 @@ ExitCode RunBench(Options options) {
                    CheckpointName(options, sampler));
         return kInterrupted;
     }
-    AddExternalPoints(job, &points);
+    for (size_t i = 0; i < job.external.size(); ++i)
+        points.push_back(MeasureExternal(job.external[i], job.externalImages[i], *job.reference));
 
     std::vector<std::string> notes;
     if (options.reference.empty())

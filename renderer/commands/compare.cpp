@@ -7,23 +7,17 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/compare_options.h"
-#include "renderer/commands/compared_files.h"
 #include "renderer/commands/comparison_table.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/compared_files.h"
 #include "renderer/output/file_io.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
 
 namespace {
-
-std::vector<PixelRect> RectsOf(const std::vector<Block>& blocks) {
-    std::vector<PixelRect> rects;
-    for (const Block& block : blocks) rects.push_back(block.pixels);
-    return rects;
-}
 
 // Writes figures and page, and prints the table and the names of the files, `images` first.
 void WriteReport(const CompareOptions& options, ComparisonReport report,
@@ -65,17 +59,8 @@ ExitCode CompareFiles(CompareOptions options) {
 
     ComparisonReport report;
     report.title = options.reference;
-    Comparison& comparison = report.comparison;
-    comparison.region = CommonRegion(files, options.reference);
-    comparison.blocks = RectsOf(MakeBlocks(comparison.region, options.render.schedule));
-    comparison.hasReference = true;
-    for (ComparedFile& file : files) {
-        SetCosts(comparison.blocks, &file);
-        comparison.images.push_back(std::move(file.image));
-    }
-    for (const BlockCost& cost : comparison.images.back().costs)
-        comparison.cap = std::max(comparison.cap, cost.spp);
-    Measure(&comparison);
+    report.comparison = ComparisonOf(std::move(files), options.reference, options.render.schedule);
+    Measure(&report.comparison);
     WriteReport(options, report, {});
     return kDone;
 }
@@ -138,13 +123,7 @@ Verification Verify(const Job& job, const RenderSettings& settings, int threads,
     const RenderResult result = Render(SamplesOf(*job.scene, settings.estimator), options, &film);
     printer.Finish(result.progress);
 
-    Verification v{.threads = result.threads, .wallSeconds = result.progress.seconds};
-    for (const BlockResult& block : result.blocks) {
-        v.seconds += block.seconds;
-        v.ruleSeconds += block.criterionSeconds;
-    }
-    v.samePixels = film.MeanImage() == expected.image.values;
-    return v;
+    return VerificationOf(result, film, expected);
 }
 
 std::vector<std::string> WriteImages(const CompareOptions& options, const Job& job,
@@ -173,20 +152,6 @@ std::vector<std::string> WriteImages(const CompareOptions& options, const Job& j
     return names;
 }
 
-ComparedImage ReadBeside(const std::string& path, const std::string& name,
-                         const Comparison& comparison) {
-    ComparedFile file = ReadComparedFile(path, name);
-    const PixelRect& region = comparison.region;
-    if (file.image.isDisplay && file.region.Width() == region.Width() &&
-        file.region.Height() == region.Height())
-        file.region = region;
-    if (!(file.region == region))
-        throw Error(path + ": shows another part of the image than the scene would");
-    SetCosts(comparison.blocks, &file);
-    if (!file.image.wallSeconds) file.image.wallSeconds = 0;
-    return std::move(file.image);
-}
-
 ExitCode CompareRenders(CompareOptions options) {
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
@@ -200,15 +165,13 @@ ExitCode CompareRenders(CompareOptions options) {
 
     ComparisonReport report;
     Comparison& comparison = report.comparison;
-    comparison.region = region;
-    comparison.blocks = RectsOf(MakeBlocks(region, settings.schedule));
+    comparison = BeginComparison(region, settings.schedule);
     comparison.cap = settings.schedule.cap;
-    comparison.hasReference = true;
     std::vector<ComparedImage> fromFiles;
     if (IsImageFile(options.human))
-        fromFiles.push_back(ReadBeside(options.human, "human", comparison));
+        fromFiles.push_back(ReadImageBeside(options.human, "human", comparison));
     if (!options.reference.empty())
-        fromFiles.push_back(ReadBeside(options.reference, "reference", comparison));
+        fromFiles.push_back(ReadImageBeside(options.reference, "reference", comparison));
 
     Film film(region);
     const std::optional<RenderState> interrupted = Resume(settings.checkpoint, job.identity, &film);

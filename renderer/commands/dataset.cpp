@@ -3,16 +3,14 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/recorded_viewpoint.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/recorded_viewpoint.h"
 #include "renderer/output/file_io.h"
-#include "stopping/rules/thresholds.h"
 
 namespace lull {
 
@@ -79,53 +77,6 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer(kFooter);
 }
 
-// Returns the spp at which each block's recording ends; 0 for blocks that are not to be recorded.
-std::vector<int> MakeLimits(const Options& options, size_t blockCount) {
-    std::vector<int> limits(blockCount, options.blocks.empty() ? options.render.schedule.cap : 0);
-    for (const int block : options.blocks) {
-        if (size_t(block) >= blockCount)
-            throw Error(fmt::format("--blocks: there is no block {}, the last of the image is {}",
-                                    block, blockCount - 1));
-        limits[size_t(block)] = options.render.schedule.cap;
-    }
-    if (options.past == 0) return limits;
-
-    const std::vector<ThresholdsRow> rows = ReadThresholds(options.human);
-    const auto row = std::ranges::find(rows, options.name, &ThresholdsRow::name);
-    if (row == rows.end())
-        throw Error(fmt::format("{}: has no row '{}'", options.human, options.name));
-    if (row->spp.size() != blockCount)
-        throw Error(fmt::format("{}: '{}' has {} blocks, the image {}", options.human, options.name,
-                                row->spp.size(), blockCount));
-    for (size_t i = 0; i < blockCount; ++i)
-        limits[i] = std::min(limits[i], int(std::ceil(options.past * row->spp[i])));
-    return limits;
-}
-
-// Returns how many samples it takes to bring each block to the pass that reaches its limit.
-int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& blocks,
-                    const ScheduleOptions& schedule) {
-    int64_t samples = 0;
-    for (size_t i = 0; i < blocks.size(); ++i) {
-        const int pass = schedule.passLength;
-        const int spp = std::min((limits[i] + pass - 1) / pass * pass, schedule.cap);
-        samples += spp * blocks[i].pixels.Area();
-    }
-    return samples;
-}
-
-// Returns the state of a render that has not begun, with the blocks left out that have no limit.
-RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& limits) {
-    RenderState state;
-    state.criteria.resize(blocks.size());
-    for (size_t i = 0; i < blocks.size(); ++i) {
-        BlockResult& result = state.blocks.emplace_back();
-        result.block = blocks[i];
-        result.block.stopped = limits[i] == 0;
-    }
-    return state;
-}
-
 std::string CheckpointName(const Options& options) {
     return fmt::format("{}.{}.checkpoint", options.output, options.name);
 }
@@ -138,7 +89,8 @@ ExitCode RunDataset(const Options& options) {
     CheckRecordable(blocks, settings.schedule);
 
     // Leave out what is there already.
-    std::vector<int> limits = MakeLimits(options, blocks.size());
+    std::vector<int> limits = RecordingLimits(blocks.size(), options.blocks, settings.schedule.cap);
+    if (options.past > 0) LimitByHuman(options.human, options.name, options.past, &limits);
     std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
     CheckWritable(options.output);
     const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
@@ -165,26 +117,15 @@ ExitCode RunDataset(const Options& options) {
                                        .interval = settings.checkpoint.interval,
                                        .resume = std::filesystem::exists(CheckpointName(options))};
     Film pixels(region);
-    const RenderState state =
-        Resume(checkpoint, identity, &pixels).value_or(Beginning(blocks, limits));
+    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &pixels);
 
-    std::vector<BlockRecording> recordings(blocks.size());
     ProgressPrinter printer = MakePrinter(settings, false);
     CatchInterrupts();
     RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
-    render.makeCriterion = [&](const BlockInfo& info) {
-        return std::make_unique<Recorder>(settings.schedule.passLength, settings.schedule.cap,
-                                          limits[size_t(info.index)],
-                                          &recordings[size_t(info.index)]);
-    };
-    const int64_t wanted = SamplesUpTo(limits, blocks, settings.schedule);
-    render.onProgress = [&](RenderProgress progress) {
-        progress.samplesToCap = wanted - progress.samples;
-        printer.Print(progress);
-    };
     WriteCheckpoints(checkpoint, identity, pixels, &render);
     const RenderResult result =
-        Render(SamplesOf(*scene, settings.estimator), render, &pixels, &state);
+        RecordBlocks(SamplesOf(*scene, settings.estimator), render, limits, &pixels,
+                     interrupted ? &*interrupted : nullptr, &viewpoint);
     printer.Finish(result.progress);
     if (result.cancelled) {
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
@@ -192,10 +133,6 @@ ExitCode RunDataset(const Options& options) {
         return kInterrupted;
     }
 
-    for (size_t i = 0; i < blocks.size(); ++i) {
-        if (limits[i] == 0) continue;
-        AddBlock(i, std::move(recordings[i]), result.blocks[i], &viewpoint);
-    }
     AddToDataset(viewpoint, &dataset);
     WriteFileAtomically(options.output, EncodeDataset(dataset));
     std::filesystem::remove(checkpoint.file);

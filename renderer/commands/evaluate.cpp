@@ -2,16 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <filesystem>
 
-#include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
-#include "renderer/commands/judged_blocks.h"
 #include "renderer/commands/render_settings.h"
+#include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
-#include "stopping/learning/rivals.h"
+#include "stopping/learning/judged_rules.h"
 
 namespace lull {
 
@@ -102,97 +99,30 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
 }
 
-std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
-
-void Talk(const std::string& message) { fmt::print(stderr, "lull: {}\n", message); }
-
-// Reads thresholds less the viewpoints that are to be left out.
-std::vector<ThresholdsRow> ReadHuman(const Options& options) {
-    std::vector<ThresholdsRow> rows = ReadThresholds(options.human);
-    for (const std::string& name : options.without)
-        if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0)
-            throw Error(fmt::format("--without: {} has no row '{}'", options.human, name));
-    return rows;
-}
-
-// Judges the thresholds of a file on the viewpoints that people judged, too.
-JudgedRule JudgeFile(const std::string& path, const std::vector<ThresholdsRow>& human,
-                     const Options& options) {
-    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
-    JudgedRule rule{.name = Stem(path)};
-    for (const ThresholdsRow& people : human) {
-        const auto row = std::ranges::find(rows, people.name, &ThresholdsRow::name);
-        if (row == rows.end()) continue;
-        if (row->spp.size() != people.spp.size())
-            throw Error(fmt::format("{}: '{}' has {} thresholds, but {} in {}", path, row->name,
-                                    row->spp.size(), people.spp.size(), options.human));
-        ViewpointOutcome& viewpoint = rule.viewpoints.emplace_back();
-        viewpoint.name = row->name;
-        for (size_t i = 0; i < row->spp.size(); ++i)
-            viewpoint.blocks.push_back(
-                {people.spp[i], OutcomeOfStop(row->spp[i], options.judge.grid)});
-    }
-    if (rule.viewpoints.empty())
-        throw Error(fmt::format("{} and {} have no viewpoint in common", path, options.human));
-    if (rule.viewpoints.size() < rows.size())
-        Talk(
-            fmt::format("{} of {} viewpoints in {} are judged; there are no human thresholds for "
-                        "the others",
-                        rule.viewpoints.size(), rows.size(), path));
-    return rule;
-}
-
-// Judges the thresholds of a file on recorded blocks; those beyond the end of a recording as they
-// are or, if `clipped`, at that end, as rules that run on recordings are judged.
-JudgedRule JudgeFileOnBlocks(const std::string& path, std::span<const JudgedBlock> blocks,
-                             bool clipped) {
-    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
-    const Simulator simulator = [&](const JudgedBlock& block) {
-        const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
-        if (row == rows.end() || size_t(block.block) >= row->spp.size())
-            throw Error(fmt::format("{}: has no threshold for block {} of '{}'", path, block.block,
-                                    block.viewpoint));
-        RuleOutcome outcome = SimulateStop(block, row->spp[size_t(block.block)]);
-        const int end = block.recording->spp.back();
-        if (clipped && outcome.stop > end) {
-            outcome.stop = end;
-            outcome.open = true;
-        }
-        return outcome;
-    };
-    return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
-}
-
-std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const Options& options) {
+std::vector<JudgedRule> JudgeFiles(const Options& options) {
+    const std::vector<ThresholdsRow> people = ReadHumanThresholds(options.human, options.without);
     std::vector<JudgedRule> rules;
-    if (options.rivals)
-        for (Rival& rival : JudgeRivals(blocks, options.chooseBy, options.judge.grid))
-            rules.push_back(
-                {rival.rule, fmt::format("{:.3g}", rival.bestOfAll), std::move(rival.viewpoints)});
-    const RuleContext context{.models = ModelFolder(), .caution = options.caution};
-    for (const std::string& rule : options.rules)
-        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, context), "")});
-    const bool anyShort = std::ranges::any_of(
-        blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
-    for (const std::string& path : options.predicted) {
-        rules.push_back(JudgeFileOnBlocks(path, blocks, false));
-        if (anyShort) rules.push_back(JudgeFileOnBlocks(path, blocks, true));
-    }
+    for (const std::string& path : options.predicted)
+        rules.push_back(
+            JudgeThresholds(path, options.human, people, options.judge.grid, PrintTalk));
     return rules;
+}
+
+std::vector<JudgedRule> JudgeRecordings(const Options& options) {
+    const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+    return JudgeOnBlocks(ReadJudgedBlocks(viewpoints, options.human, options.without, PrintTalk),
+                         {.rivals = options.rivals,
+                          .chooseBy = options.chooseBy,
+                          .rules = options.rules,
+                          .context = {.models = ModelFolder(), .caution = options.caution},
+                          .predicted = options.predicted,
+                          .grid = options.judge.grid});
 }
 
 ExitCode RunEvaluate(const Options& options) {
     if (!options.csv.empty()) CheckWritable(options.csv);
-    std::vector<JudgedRule> rules;
-    if (options.datasets.empty()) {
-        const std::vector<ThresholdsRow> human = ReadHuman(options);
-        for (const std::string& path : options.predicted)
-            rules.push_back(JudgeFile(path, human, options));
-    } else {
-        const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
-        rules =
-            JudgeOnBlocks(ReadJudgedBlocks(viewpoints, options.human, options.without), options);
-    }
+    const std::vector<JudgedRule> rules =
+        options.datasets.empty() ? JudgeFiles(options) : JudgeRecordings(options);
     PrintEvaluation(stdout, rules, options.judge, !options.brief);
     if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
     return kDone;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "stopping/base/csv.h"
+
 namespace lull {
 
 namespace {
@@ -54,14 +56,6 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
                    100 * j.absoluteError / kJudgedCap, 100 * j.early, 100 * j.late,
                    PercentText(j.accuracy, 1), PercentText(j.auc, 1));
     }
-}
-
-// Puts a text in quotation marks where a comma or a quotation mark would break the line.
-std::string CsvField(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
 }
 
 std::string ShareField(std::optional<double> share) {

@@ -9,13 +9,6 @@
 
 namespace lull {
 
-// Holds the outcomes of a rule, or of the thresholds in a file.
-struct JudgedRule {
-    std::string name;
-    std::string setting = {};  // the one for all viewpoints, if there is one
-    std::vector<ViewpointOutcome> viewpoints = {};
-};
-
 // Prints a table of the rules over all viewpoints and, if `each`, one of each rule before, with a
 // row a viewpoint.
 void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,

@@ -9,9 +9,9 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
-#include "renderer/commands/recorded_viewpoint.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/study_render.h"
 #include "renderer/output/file_io.h"
 #include "stopping/base/parallel.h"
 
@@ -40,21 +40,6 @@ ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
                                   settings.levels, kLadderRatio);
     RunWithThreads(settings.render.scene.compile.threads, [&] { WriteStudy(settings, study); });
     return kDone;
-}
-
-// Returns the study's frame: all but the pictures.
-Study BeginStudy(const std::string& name, const PixelRect& region, std::vector<int> levels,
-                 const std::vector<Block>& blocks, const RenderIdentity& identity) {
-    Study study{.viewpoint = name,
-                .width = region.Width(),
-                .height = region.Height(),
-                .levels = std::move(levels),
-                .blocks = {},
-                .provenance = identity};
-    for (const Block& block : blocks)
-        study.blocks.push_back(
-            {{block.pixels.min - region.min, block.pixels.max - region.min}, {}});
-    return study;
 }
 
 ExitCode MakeStudyOfScene(const JudgeSettings& options) {
@@ -102,21 +87,13 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &film);
 
     Study study = BeginStudy(name, input.region, levels, blocks, identity);
-    std::vector<BlockRecording> recordings(blocks.size());
     ProgressPrinter printer = MakePrinter(settings, false);
     CatchInterrupts();
     RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
-    render.makeCriterion = [&](const BlockInfo& info) {
-        std::unique_ptr<Criterion> recorder;
-        if (records)
-            recorder = std::make_unique<Recorder>(schedule.passLength, schedule.cap, schedule.cap,
-                                                  &recordings[size_t(info.index)]);
-        return std::make_unique<PictureLadder>(levels, std::move(recorder),
-                                               &study.blocks[size_t(info.index)].pictures);
-    };
     WriteCheckpoints(checkpoint, identity, film, &render);
-    const RenderResult result = Render(SamplesOf(*scene, settings.estimator), render, &film,
-                                       interrupted ? &*interrupted : nullptr);
+    const RenderResult result =
+        RenderStudy(SamplesOf(*scene, settings.estimator), render, &film,
+                    interrupted ? &*interrupted : nullptr, &study, records ? &viewpoint : nullptr);
     printer.Finish(result.progress);
     if (result.cancelled) {
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n", file);
@@ -125,8 +102,6 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
     if (records) {
-        for (size_t i = 0; i < blocks.size(); ++i)
-            AddBlock(i, std::move(recordings[i]), result.blocks[i], &viewpoint);
         AddToDataset(viewpoint, &dataset);
         WriteFileAtomically(options.record, EncodeDataset(dataset));
         fmt::print("{}\n", options.record);

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "renderer/commands/recorded_viewpoint.h"
+#include "renderer/measure/recorded_viewpoint.h"
 
 namespace lull {
 

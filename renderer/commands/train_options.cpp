@@ -185,29 +185,29 @@ void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* l
 }  // namespace
 
 void AddTrainOptions(CLI::App& app, TrainOptions* o) {
-    app.add_option("DATASET.h5", o->datasets, "Recordings to learn from")
+    app.add_option("DATASET.h5", o->plan.datasets, "Recordings to learn from")
         ->required()
         ->check(CLI::ExistingFile);
-    app.add_option("--human", o->human, "Thresholds of people")
+    app.add_option("--human", o->plan.human, "Thresholds of people")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("H.csv");
     app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
-    AddSettings(app, &o->settings);
-    AddTraining(app, &o->training);
-    AddList(app, "--leave-out", &o->leaveOut,
+    AddSettings(app, &o->plan.settings);
+    AddTraining(app, &o->plan.training);
+    AddList(app, "--leave-out", &o->plan.leaveOut,
             "Viewpoint to judge by, not to train on; can be given again");
-    AddList(app, "--without", &o->without, "Viewpoint to ignore; can be given again");
+    AddList(app, "--without", &o->plan.without, "Viewpoint to ignore; can be given again");
     app.add_option_function<std::string>(
            "--split",
            [o](const std::string& text) {
                if (!text.starts_with("paper:") || text.size() == 6)
                    throw CLI::ValidationError("--split", text + " is not paper:FILE");
-               o->split = text.substr(6);
+               o->plan.split = text.substr(6);
            },
            "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others")
         ->type_name("paper:FILE");
-    app.add_flag("--cross-validate", o->crossValidate, "Leave each viewpoint out in turn");
+    app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
     app.add_option("--search", o->search, "Try all combinations of values in a file; see below")
         ->check(CLI::ExistingFile)
         ->type_name("GRID");
@@ -226,34 +226,38 @@ void CompleteTrainOptions(TrainOptions* o) {
     if (!o->search.empty()) {
         if (!o->output.empty()) throw CLI::ValidationError("--search", "writes no model: no -o");
         if (o->csv.empty()) throw CLI::ValidationError("--search", "needs --csv F.csv");
-        if (o->leaveOut.empty() && o->split.empty()) o->crossValidate = true;
-    } else if (o->output.empty() && !o->crossValidate) {
+        if (o->plan.leaveOut.empty() && o->plan.split.empty()) o->plan.crossValidate = true;
+    } else if (o->output.empty() && !o->plan.crossValidate) {
         throw CLI::ValidationError("train", "needs -o MODEL.h5, --cross-validate or --search");
     } else if (o->resume && o->output.empty())
         throw CLI::ValidationError("--resume", "needs -o MODEL.h5, beside which the checkpoint is");
-    if (o->crossValidate && (!o->leaveOut.empty() || !o->split.empty()))
+    if (o->plan.crossValidate && (!o->plan.leaveOut.empty() || !o->plan.split.empty()))
         throw CLI::ValidationError("--cross-validate",
                                    "chooses blocks itself, without --leave-out and --split");
+    TrainingPlan& plan = o->plan;
+    plan.withLast = !o->output.empty() || (!o->search.empty() && !plan.crossValidate);
+    plan.version = LULL_VERSION;
     // Recordings have every second pass, and so has a rule that votes as often as it was trained.
-    if (o->settings.voteSpacing == 0 && o->search.empty()) o->settings.voteSpacing = o->settings.n;
+    if (plan.settings.voteSpacing == 0 && o->search.empty())
+        plan.settings.voteSpacing = plan.settings.n;
 }
 
-void SetTrainOptions(std::span<const OptionValue> values, TrainOptions* options) {
+void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan) {
     CLI::App app;
-    AddSettings(app, &options->settings);
-    AddTraining(app, &options->training);
+    AddSettings(app, &plan->settings);
+    AddTraining(app, &plan->training);
     std::vector<std::string> arguments;  // the first last, as the parser wants them
     for (const OptionValue& option : values)
         arguments.insert(arguments.begin(), "--" + option.name + "=" + option.value);
     try {
         app.parse(arguments);
-        CheckSettings(options->settings);
+        CheckSettings(plan->settings);
     } catch (const CLI::ExtrasError&) {
         throw std::invalid_argument("this is no option that a search can vary");
     } catch (const CLI::ParseError& error) {
         throw std::invalid_argument(error.what());
     }
-    if (options->settings.voteSpacing == 0) options->settings.voteSpacing = options->settings.n;
+    if (plan->settings.voteSpacing == 0) plan->settings.voteSpacing = plan->settings.n;
 }
 
 ProgressStyle StyleOf(const TrainOptions& options) {

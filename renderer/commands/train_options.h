@@ -7,20 +7,16 @@
 #include <vector>
 
 #include "renderer/output/progress.h"
-#include "stopping/learning/training.h"
+#include "stopping/learning/search_run.h"
 
 namespace lull {
 
 struct TrainOptions {
-    std::vector<std::string> datasets;
-    std::string human, output, csv;
-    std::string search;                          // a grid of options to try; empty: none
-    std::string split;                           // a file of blocks to train on; empty: all
-    std::vector<std::string> leaveOut, without;  // names of viewpoints
-    bool crossValidate = false, resume = false;
+    TrainingPlan plan;
+    std::string output, csv;
+    std::string search;  // a grid of options to try; empty: none
+    bool resume = false;
     double checkpointInterval = 60;  // s
-    ModelSettings settings;
-    TrainingOptions training;
     int threads = 0;
     bool quiet = false, jsonProgress = false;
 };
@@ -29,10 +25,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* options);
 
 // Sets options of the model and its training as `--name=value` would; any of them can be set.
 // Throws std::invalid_argument saying what is wrong.
-struct OptionValue {
-    std::string name, value;
-};
-void SetTrainOptions(std::span<const OptionValue> values, TrainOptions* options);
+void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan);
 
 // Says how progress is to be shown.
 ProgressStyle StyleOf(const TrainOptions& options);

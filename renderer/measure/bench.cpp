@@ -132,4 +132,13 @@ std::vector<ExternalImage> ReadExternalImages(const std::string& csv) {
     return images;
 }
 
+BenchPoint MeasureExternal(const ExternalImage& external, const RgbImage& image,
+                           const RgbImage& reference) {
+    BenchPoint point;
+    point.rule = external.name;
+    point.seconds = external.seconds;
+    point.figures = Average(CompareImages(image, reference));
+    return point;
+}
+
 }  // namespace lull

@@ -46,4 +46,7 @@ struct ExternalImage {
 // of column names are skipped. Throws Error with file and line.
 std::vector<ExternalImage> ReadExternalImages(const std::string& csv);
 
+// Returns the point of an image that has been read; it must have the reference's size.
+BenchPoint MeasureExternal(const ExternalImage&, const RgbImage& image, const RgbImage& reference);
+
 }  // namespace lull

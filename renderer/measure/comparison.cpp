@@ -116,6 +116,15 @@ PixelRect Comparison::Local(size_t block) const {
     return {blocks[block].min - region.min, blocks[block].max - region.min};
 }
 
+Comparison BeginComparison(const PixelRect& region, const ScheduleOptions& schedule) {
+    Comparison comparison;
+    comparison.region = region;
+    for (const Block& block : MakeBlocks(region, schedule))
+        comparison.blocks.push_back(block.pixels);
+    comparison.hasReference = true;
+    return comparison;
+}
+
 void Measure(Comparison* comparison) {
     std::vector<PixelRect> blocks;
     for (size_t i = 0; i < comparison->blocks.size(); ++i) blocks.push_back(comparison->Local(i));

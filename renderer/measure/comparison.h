@@ -49,6 +49,9 @@ struct Comparison {
     PixelRect Local(size_t block) const;
 };
 
+// Returns a comparison with a reference, in the blocks of a schedule, that has no images yet.
+Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
+
 // Fills in figures by the reference, and seams. The noise of an image where it is not known is its
 // error in lightness. Throws Error if images differ in size.
 void Measure(Comparison*);

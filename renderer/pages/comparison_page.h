@@ -1,19 +1,10 @@
 // Writes down comparisons: as JSON for programs, as a page for people.
 #pragma once
 
+#include "renderer/measure/verification.h"
 #include "renderer/pages/html_page.h"
 
 namespace lull {
-
-// Holds one render of the automatic image by itself, as a measure of what the stopping rule costs
-// and saves on a number of threads.
-struct Verification {
-    int threads = 0;
-    double wallSeconds = 0;  // of the render
-    double seconds = 0;      // of processors, spent on samples
-    double ruleSeconds = 0;  // of processors, spent on the rule
-    bool samePixels = false;
-};
 
 // Holds what a comparison is reported with.
 struct ComparisonReport {

@@ -39,6 +39,13 @@ struct ViewpointOutcome {
     std::vector<BlockOutcome> blocks = {};
 };
 
+// Holds the outcomes of a rule, or of the thresholds in a file.
+struct JudgedRule {
+    std::string name;
+    std::string setting = {};  // the one for all viewpoints, if there is one
+    std::vector<ViewpointOutcome> viewpoints = {};
+};
+
 // Returns the critical error of one viewpoint (paper, Table 3), in [0, 1]: over its blocks and the
 // spp x = 20, 20 + grid, ... up to kJudgedCap, the share of x at which the stop S is wrong. With
 // the human threshold T and a margin of `margin` % of the cap in all, lo and hi are half the margin

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
 
+#include "stopping/base/csv.h"
 #include "stopping/base/state.h"
 #include "stopping/network/model_inputs.h"
 
@@ -40,11 +42,6 @@ std::string Text(double value, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, value);
     return text;
-}
-
-std::string CsvField(const std::string& text) {
-    if (text.find(',') == std::string::npos) return text;
-    return std::string("\"").append(text).append("\"");
 }
 
 // Returns how many windows a recording gives.
@@ -210,6 +207,15 @@ std::vector<SearchResult> RestoreResults(std::span<const std::byte> bytes,
     }
     reader.Finish();
     return results;
+}
+
+std::vector<SearchResult> ReadResults(const std::string& path, const std::string& data) try {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw std::runtime_error("there is no checkpoint to resume from");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    return RestoreResults(std::as_bytes(std::span(text)), data);
+} catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
 }
 
 double SearchCost(const ModelSettings& settings, const TrainingOptions& training,

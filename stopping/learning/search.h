@@ -55,6 +55,8 @@ std::string SearchMarkdown(std::span<const SearchAxis> axes, std::span<const Sea
 // RestoreResults() throws std::runtime_error if it is another now, or the bytes are damaged.
 std::vector<std::byte> SaveResults(const std::string& data, std::span<const SearchResult> results);
 std::vector<SearchResult> RestoreResults(std::span<const std::byte> bytes, const std::string& data);
+// Does the same with a file of such bytes; what it throws begins with the file's name.
+std::vector<SearchResult> ReadResults(const std::string& path, const std::string& data);
 
 // Estimates how long a combination takes, in a unit of its own: the training of all splits, and
 // judging their blocks.

@@ -82,6 +82,16 @@ TEST(ReadExternalImages, ReadsNamesSecondsAndFiles) {
     EXPECT_EQ(images[1].file, directory.File("sub/b.exr"));
 }
 
+TEST(MeasureExternal, ComparesAnImageWithTheReference) {
+    const RgbImage reference{4, 4, std::vector<float>(48, 0.5f)},
+        image{4, 4, std::vector<float>(48, 0.75f)};
+    const BenchPoint point = MeasureExternal({"other", 1.5, "a.exr"}, image, reference);
+    EXPECT_EQ(point.rule, "other");
+    EXPECT_EQ(point.seconds, 1.5);
+    EXPECT_EQ(point.sampler, "");
+    EXPECT_NEAR(point.figures.rmse, 0.25, 1e-6);
+}
+
 TEST(ReadExternalImages, NamesTheLineThatIsWrong) {
     const TemporaryDirectory directory;
     for (const char* line :

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
+#include "renderer/measure/verification.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/small_blocks.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -92,6 +93,34 @@ TEST(TakeWholeImage, IsTheFilm) {
     const ComparedImage image = TakeWholeImage(observed.Get());
     EXPECT_EQ(image.image.values, observed.film.MeanImage());
     EXPECT_EQ(image.noise.size(), size_t(kRegion.Area()));
+}
+
+// The image of a rule that was rendered alone is the one that was taken; another rule's is not.
+TEST(VerificationOf, ComparesPixelsAndAddsUpSeconds) {
+    const Observed observed(true);
+    const ComparedImage taken = TakeImage(observed.Get(), observed.rules, 1);
+    for (const size_t rule : {size_t(0), size_t(1)}) {
+        Film film(kRegion);
+        RenderOptions options = Options();
+        options.schedule.smallestSide = observed.rules[rule].smallestSide;
+        options.makeCriterion = observed.rules[rule].make;
+        const RenderResult result = Render(SyntheticSample, options, &film);
+        const Verification verification = VerificationOf(result, film, taken);
+        EXPECT_EQ(verification.samePixels, rule == 1);
+        EXPECT_EQ(verification.threads, 2);
+        double seconds = 0;
+        for (const BlockResult& block : result.blocks) seconds += block.seconds;
+        EXPECT_EQ(verification.seconds, seconds);
+        EXPECT_EQ(verification.wallSeconds, result.progress.seconds);
+    }
+}
+
+TEST(BeginComparison, HasTheBlocksOfTheSchedule) {
+    const Comparison comparison = BeginComparison(kRegion, Schedule());
+    EXPECT_EQ(comparison.region, kRegion);
+    EXPECT_EQ(comparison.blocks.size(), 6u);
+    EXPECT_EQ(comparison.blocks[5], (PixelRect{{103, 55}, {123, 105}}));
+    EXPECT_TRUE(comparison.hasReference);
 }
 
 Comparison TwoImages() {

@@ -1,4 +1,4 @@
-#include "renderer/commands/compared_files.h"
+#include "renderer/measure/compared_files.h"
 
 #include <fmt/format.h>
 
@@ -116,6 +116,40 @@ void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
         costs.push_back({.spp = int(spp)});
     }
     file->image.costs = std::move(costs);
+}
+
+RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region) {
+    RgbImage image = ReadComparedFile(path, path).image.image;
+    if (image.width != region.Width() || image.height != region.Height())
+        throw Error(fmt::format("{}: has {}x{} pixels, not {}x{}", path, image.width, image.height,
+                                region.Width(), region.Height()));
+    return image;
+}
+
+ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
+                              const Comparison& comparison) {
+    ComparedFile file = ReadComparedFile(path, name);
+    const PixelRect& region = comparison.region;
+    if (file.image.isDisplay && file.region.Width() == region.Width() &&
+        file.region.Height() == region.Height())
+        file.region = region;
+    if (!(file.region == region))
+        throw Error(path + ": shows another part of the image than the scene would");
+    SetCosts(comparison.blocks, &file);
+    if (!file.image.wallSeconds) file.image.wallSeconds = 0;
+    return std::move(file.image);
+}
+
+Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
+                        const ScheduleOptions& schedule) {
+    Comparison comparison = BeginComparison(CommonRegion(files, reference), schedule);
+    for (ComparedFile& file : files) {
+        SetCosts(comparison.blocks, &file);
+        comparison.images.push_back(std::move(file.image));
+    }
+    for (const BlockCost& cost : comparison.images.back().costs)
+        comparison.cap = std::max(comparison.cap, cost.spp);
+    return comparison;
 }
 
 }  // namespace lull

@@ -1,0 +1,21 @@
+// Makes the pictures of a study by rendering them.
+#pragma once
+
+#include "renderer/measure/recorded_viewpoint.h"
+#include "renderer/measure/study.h"
+
+namespace lull {
+
+// Returns the frame of a study: all but the pictures. Blocks are placed within `region`, which
+// becomes the whole image.
+Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vector<int> levels,
+                 const std::vector<Block>& blocks, const RenderIdentity&);
+
+// Renders all blocks to the cap, the study's last level, and fills in their pictures; adds what can
+// be learned from the same samples to `viewpoint`, unless that is null. Starts from nothing or from
+// where an interrupted render of the same study left film and state. `render` has no rule. If it
+// was cancelled, the study is not complete. Throws as Render() does.
+RenderResult RenderStudy(const SampleSource&, RenderOptions render, Film*,
+                         const RenderState* interrupted, Study*, ViewpointRecording* viewpoint);
+
+}  // namespace lull
