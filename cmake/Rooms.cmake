@@ -2,14 +2,16 @@
 # those that they link, can be included in it: the folder of the project is on nobody's include path.
 # Instead each room has a folder in the build tree with nothing in it but a link to its own.
 
-# lull_room_headers(TARGET FOLDER): lets those who link the target include FOLDER/..., which is given
-# relative to the project.
+# lull_room_headers(TARGET FOLDER [PRIVATE]): lets those who link the target include FOLDER/..., which
+# is given relative to the project; or the target alone.
 function(lull_room_headers target folder)
   set(view ${PROJECT_BINARY_DIR}/rooms/${target})
   get_filename_component(parent ${view}/${folder} DIRECTORY)
   file(MAKE_DIRECTORY ${parent})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
-  target_include_directories(${target} PUBLIC ${view})
+  set(visibility PUBLIC ${ARGN})
+  list(GET visibility -1 visibility)
+  target_include_directories(${target} ${visibility} ${view})
 endfunction()
 
 # lull_room(TARGET FOLDER LINKED...): makes a library of all that is in FOLDER, seen from the calling

@@ -56,7 +56,7 @@ struct BlockInfo {
 
 // Holds what a rule can depend on beside its own text.
 struct RuleContext {
-    int passSpp = 20;            // samples per pixel and pass, > 0; the first pass ends at this spp
+    int passSpp = 20;            // spp of a pass, also of the first; 0: any (see FreeLooks)
     int blockCount = 0;          // blocks in the image; 0: not known
     int cap = 0;                 // spp that no block exceeds; 0: not known
     std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty

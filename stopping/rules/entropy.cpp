@@ -24,12 +24,12 @@ class EntropyCriterion final : public Criterion {
         : threshold(threshold), visibility(visibility), passSpp(passSpp) {}
 
     ViewNeed Need(int spp) const override {
-        return EntropyRuleLooks(spp, passSpp) ? ViewNeed::Mean : ViewNeed::Nothing;
+        return Looks(spp) ? ViewNeed::Mean : ViewNeed::Nothing;
     }
 
     Decision Observe(const BlockView& view) override {
         CheckView(view, Need(view.spp));
-        const bool judged = EntropyRuleLooks(view.spp, passSpp) && Look(view);
+        const bool judged = Looks(view.spp) && Look(view);
         return {.stop = judged && votes.Stops(),
                 .judged = judged,
                 .value = value,
@@ -43,6 +43,7 @@ class EntropyCriterion final : public Criterion {
         writer.Put(int32_t(votes.inRow));
         writer.Put(value);
         history.Save(&writer);
+        if (passSpp == 0) writer.Put(int32_t(looks.last));
         return std::move(writer.bytes);
     }
     void Restore(std::span<const std::byte> state) override {
@@ -53,12 +54,18 @@ class EntropyCriterion final : public Criterion {
         if (votes.inRow < 0 || !(value >= 0) || !std::isfinite(value))
             throw std::runtime_error("the saved state of the rule entropy is damaged");
         history.Restore(&reader, kEntropySubBlocks);
+        if (passSpp == 0) looks.Restore(&reader);
         reader.Finish();
     }
 
   private:
+    bool Looks(int spp) const {
+        return passSpp == 0 ? looks.Looks(spp) : EntropyRuleLooks(spp, passSpp);
+    }
+
     // Returns whether there was an earlier state to compare with.
     bool Look(const BlockView& view) {
+        looks.last = view.spp;
         std::vector<double> h;
         for (const SvdEntropy& e : PictureEntropies(view, kEntropySubBlocks)) h.push_back(e.h);
         const auto visible = AddVisible(view.spp, h, MeasureLightness(view, kEntropySubBlocks),
@@ -72,6 +79,7 @@ class EntropyCriterion final : public Criterion {
     double threshold;
     NoiseVisibility visibility;
     int passSpp;
+    FreeLooks looks;  // where passSpp is 0
     DropHistory history;
     VoteCounter votes;
     double value = 0;  // of the last look

@@ -13,12 +13,13 @@ inline constexpr int kEntropySubBlocks = 100;
 
 // Stops a block when the mean visible drop of its sub-blocks (see entropy_drop.h) was below
 // `threshold`, > 0, at three looks in a row. It looks after the first pass and every 40 spp from
-// then on, or every pass if passes are longer: what recordings have (see recording.h). The block
-// needs at least 20 x 20 pixels.
+// then on, or every pass if passes are longer: what recordings have (see recording.h); with a
+// passSpp of 0, at whatever comes 40 spp or more after its last look. The block needs at least
+// 20 x 20 pixels.
 std::unique_ptr<Criterion> MakeEntropyRule(double threshold, const NoiseVisibility& visibility,
                                            int passSpp);
 
-// Says at which spp the rule looks.
+// Says at which spp the rule looks; passSpp > 0.
 bool EntropyRuleLooks(int spp, int passSpp);
 
 // Returns the number that is compared with the threshold.

@@ -18,6 +18,7 @@ namespace {
 constexpr uint32_t learnedTag = 0x314e524c;  // "LRN1"
 
 VoteSchedule MakeSchedule(const ModelSettings& settings, int passSpp) {
+    if (passSpp == 0) passSpp = settings.n;
     return {.firstSpp = passSpp,
             .n = settings.n,
             .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : passSpp};
@@ -28,17 +29,20 @@ class LearnedCriterion final : public Criterion {
     LearnedCriterion(std::shared_ptr<const Model> model, int passSpp)
         : model(std::move(model)),
           schedule(MakeSchedule(this->model->settings, passSpp)),
+          isFree(passSpp == 0 && this->model->settings.spacing == Spacing::Geometric),
+          looks{.spacing = this->model->settings.n},
           memory(this->model->settings),
           votes{.needed = this->model->settings.votes} {}
 
     ViewNeed Need(int spp) const override {
-        return schedule.Records(spp) ? NeedOf(model->settings) : ViewNeed::Nothing;
+        return Looks(spp) ? NeedOf(model->settings) : ViewNeed::Nothing;
     }
 
     Decision Observe(const BlockView& view) override {
         CheckView(view, Need(view.spp));
         bool judged = false;
-        if (schedule.Records(view.spp)) {
+        if (Looks(view.spp)) {
+            looks.last = view.spp;
             memory.Add(MeasureBlock(view, model->settings));
             judged = Vote(view.spp);
         }
@@ -55,6 +59,7 @@ class LearnedCriterion final : public Criterion {
         writer.Put(int32_t(votes.inRow));
         writer.Put(probability);
         memory.Save(&writer);
+        if (isFree) writer.Put(int32_t(looks.last));
         return std::move(writer.bytes);
     }
 
@@ -66,13 +71,16 @@ class LearnedCriterion final : public Criterion {
         if (votes.inRow < 0 || !(probability >= 0 && probability <= 1))
             throw std::runtime_error("the saved state of a learned rule is damaged");
         memory.Restore(&reader);
+        if (isFree) looks.Restore(&reader);
         reader.Finish();
     }
 
   private:
+    bool Looks(int spp) const { return isFree ? looks.Looks(spp) : schedule.Records(spp); }
+
     // Votes if a vote is due at this spp and the window is full. Returns whether it did.
     bool Vote(int spp) {
-        if (!schedule.Votes(spp)) return false;
+        if (!isFree && !schedule.Votes(spp)) return false;
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return false;
         probability = NoisyProbability(model->network, *window);
@@ -82,6 +90,8 @@ class LearnedCriterion final : public Criterion {
 
     std::shared_ptr<const Model> model;
     VoteSchedule schedule;
+    bool isFree;  // states come at any spp
+    FreeLooks looks;
     BlockMemory memory;
     VoteCounter votes;
     double probability = 1;  // of the last vote; noisy until there is one
@@ -108,7 +118,8 @@ std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int p
     if (outputs != 1)
         throw std::invalid_argument("the network has " + std::to_string(outputs) +
                                     " outputs; one, the probability of noise, is needed");
-    if (passSpp < 1 || settings.n % passSpp != 0 || settings.voteSpacing % passSpp != 0)
+    if (passSpp < 0 ||
+        (passSpp > 0 && (settings.n % passSpp != 0 || settings.voteSpacing % passSpp != 0)))
         throw std::invalid_argument("the model looks at a block every " +
                                     std::to_string(settings.n) + " spp (and votes every " +
                                     std::to_string(settings.voteSpacing) +

@@ -16,7 +16,10 @@ double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 // Makes a criterion that votes on the state after a pass once its window is full, and stops after
 // as many noiseless votes in a row as the model asks for. Throws std::invalid_argument if the
 // network does not fit its settings or has more than one output, or if the spp of the model
-// (n, vote_spacing) are no multiples of passSpp, so that no pass would end there.
+// (n, vote_spacing) are no multiples of passSpp, so that no pass would end there. With a passSpp of
+// 0 states may come at any spp: where the steps of a window are geometric, the model looks at
+// whatever comes n spp or more after its last look and votes; where they are fixed, it looks at
+// multiples of n.
 std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int passSpp);
 
 }  // namespace lull

@@ -1,7 +1,11 @@
 // Decides when a learned rule votes and when its votes are enough.
 #pragma once
 
+#include <cstdint>
 #include <numeric>
+#include <stdexcept>
+
+#include "stopping/base/state.h"
 
 namespace lull {
 
@@ -17,6 +21,21 @@ struct VoteSchedule {
     bool Records(int spp) const { return spp >= firstSpp && (spp - firstSpp) % Spacing() == 0; }
     // Returns the spp between recorded features.
     int Spacing() const { return std::gcd(n, voteSpacing); }
+};
+
+// Says which states a rule looks at where they come at any spp: those that are at least `spacing`
+// spp after the last one that it looked at.
+struct FreeLooks {
+    int spacing = 40;
+    int last = 0;  // spp; 0: none yet
+
+    bool Looks(int spp) const { return last == 0 || spp - last >= spacing; }
+
+    // Reads what the rule has saved; throws std::runtime_error if it is damaged.
+    void Restore(StateReader* reader) {
+        last = reader->Get<int32_t>();
+        if (last < 0) throw std::runtime_error("the saved looks of a stopping rule are damaged");
+    }
 };
 
 // Counts noiseless votes in a row; the paper asks for three, as single ones can be wrong.

@@ -1,0 +1,70 @@
+# What `cmake --install` puts where, and the packages that CPack makes of it. Everything finds the
+# rest by where it lies itself: the tree can be moved as a whole.
+include(CMakePackageConfigHelpers)
+
+set(lull_data ${CMAKE_INSTALL_DATADIR}/lull)
+set(lull_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/lull)
+file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
+
+install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${models} DESTINATION ${lull_data}/models)
+install(TARGETS lull_stopping EXPORT lullTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES stopping/embedding/include/lull/stopping.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
+install(EXPORT lullTargets NAMESPACE lull:: DESTINATION ${lull_cmake})
+set(LULL_INSTALLED_MODELS ${lull_data}/models)
+configure_package_config_file(cmake/lullConfig.cmake.in ${PROJECT_BINARY_DIR}/lullConfig.cmake
+                              INSTALL_DESTINATION ${lull_cmake} PATH_VARS LULL_INSTALLED_MODELS)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/lullConfig.cmake ${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
+        DESTINATION ${lull_cmake})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(DIRECTORY stopping/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The manual page and the completion of bash, made of what the program says of itself. (Python runs
+# the program; a sanitized one is slow, and nobody installs it.)
+find_package(Python3 QUIET COMPONENTS Interpreter)
+if(Python3_Interpreter_FOUND AND NOT LULL_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
+  set(manual ${PROJECT_BINARY_DIR}/manual)
+  add_custom_command(
+    OUTPUT ${manual}/lull.1 ${manual}/lull
+    COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/cmake/manual.py $<TARGET_FILE:lull> ${manual}
+    DEPENDS lull ${PROJECT_SOURCE_DIR}/cmake/manual.py
+    VERBATIM)
+  add_custom_target(manual ALL DEPENDS ${manual}/lull.1 ${manual}/lull)
+  install(FILES ${manual}/lull.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${manual}/lull DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+else()
+  message(STATUS "No manual page and no completion: they need Python")
+endif()
+
+# `cmake --build --preset release --target package` makes a Debian package of all that.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME lull)
+set(CPACK_PACKAGE_CONTACT "The authors of lull <lull@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer that knows when to stop")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+    "A path tracer for pbrt-v3 and glTF scenes that stops each part of a picture when people would
+ see no more noise there; the library lull::stopping, for C, C++ and Python, tells other renderers
+ when to.")
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+# A program for this machine's processor is not one for all: the version says so.
+if(LULL_NATIVE)
+  set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}+native)
+endif()
+if(TARGET lull_python)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS
+      "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy")
+endif()
+# Programs that link the library find it without being told where.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/triggers CONTENT "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
+include(CPack)

@@ -1,0 +1,93 @@
+#include "stopping/embedding/picture.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace lull {
+
+namespace {
+
+struct LinearTable {
+    std::array<float, 256> values;
+
+    LinearTable() {
+        for (int code = 0; code < 256; ++code) {
+            const double v = code / 255.0;
+            values[size_t(code)] =
+                float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+        }
+    }
+};
+
+// Values need not be aligned: strides are in bytes.
+float FromFloat(const std::byte* at) {
+    float value;
+    std::memcpy(&value, at, sizeof(value));
+    return std::isfinite(value) ? value : 0;
+}
+
+float FromSrgb8(const std::byte* at) {
+    static const LinearTable linear;
+    return linear.values[std::to_integer<size_t>(*at)];
+}
+
+struct Strides {
+    ptrdiff_t row, pixel, channel;
+};
+
+Strides StridesOf(const lull_picture& picture) {
+    const ptrdiff_t size = picture.format == LULL_SRGB8 ? 1 : sizeof(float);
+    Strides strides{picture.row_stride, picture.pixel_stride, picture.channel_stride};
+    if (strides.channel == 0) strides.channel = size;
+    if (strides.pixel == 0) strides.pixel = 3 * size;
+    if (strides.row == 0) strides.row = picture.width * strides.pixel;
+    return strides;
+}
+
+template <typename Read>
+std::vector<float> ReadWith(Read read, const Strides& strides, const std::byte* origin,
+                            const lull_rect& part) {
+    std::vector<float> linear;
+    linear.reserve(3 * size_t(part.width) * size_t(part.height));
+    for (int y = part.y; y < part.y + part.height; ++y)
+        for (int x = part.x; x < part.x + part.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                linear.push_back(
+                    read(origin + y * strides.row + x * strides.pixel + c * strides.channel));
+    return linear;
+}
+
+}  // namespace
+
+void CheckPicture(const lull_picture& picture, int width, int height, bool needsHalf) {
+    if (picture.width != width || picture.height != height)
+        throw std::invalid_argument("a picture of " + std::to_string(picture.width) + "x" +
+                                    std::to_string(picture.height) + " pixels was shown where " +
+                                    std::to_string(width) + "x" + std::to_string(height) +
+                                    " are needed");
+    if (picture.format != LULL_LINEAR_FLOAT && picture.format != LULL_SRGB8)
+        throw std::invalid_argument(
+            "the format of a picture must be LULL_LINEAR_FLOAT or LULL_SRGB8");
+    if (!picture.mean) throw std::invalid_argument("a picture without pixels: mean is null");
+    if (needsHalf && !picture.half)
+        throw std::invalid_argument(
+            "the stopping rule compares with a half of the samples, which the picture does not "
+            "have; "
+            "show it, or choose a rule that looks at the picture alone, such as the model "
+            "'entropy'");
+}
+
+std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
+                              const lull_rect& part) {
+    const auto* bytes = static_cast<const std::byte*>(origin);
+    const Strides strides = StridesOf(picture);
+    return picture.format == LULL_SRGB8 ? ReadWith(FromSrgb8, strides, bytes, part)
+                                        : ReadWith(FromFloat, strides, bytes, part);
+}
+
+}  // namespace lull

@@ -1,0 +1,20 @@
+// Reads the pixels that other programs show.
+#pragma once
+
+#include <vector>
+
+#include "lull/stopping.h"
+
+namespace lull {
+
+// Throws std::invalid_argument unless the picture has this size and a mean, a known format, and a
+// half if that is needed.
+void CheckPicture(const lull_picture& picture, int width, int height, bool needsHalf);
+
+// Returns the part of a picture that begins at `origin`, the mean or the half of a checked one, as
+// a BlockView has it: linear R, G, B, row by row, finite. 8 bits become the values in the middle
+// between those that are rounded to other codes, so that EncodeSrgb8() gives the codes again.
+std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
+                              const lull_rect& part);
+
+}  // namespace lull

@@ -1,0 +1,55 @@
+// Judges all blocks of a picture, as the C interface shows it; see lull/stopping.h for what its
+// functions mean. Can be used by several threads at once.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "stopping/embedding/grid.h"
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+class Stopper {
+  public:
+    // Throws std::invalid_argument for bad settings and std::runtime_error for bad files.
+    explicit Stopper(const lull_settings& settings);
+
+    const BlockGrid& Grid() const { return grid; }
+    // Returns where a block lies. Throws std::invalid_argument if there is no such block.
+    const lull_rect& RectOf(int block) const;
+    bool NeedsHalf() const { return needsHalf; }
+    bool Done() const;
+
+    // Throw std::invalid_argument, before anything has changed, for another picture than the
+    // settings and the block ask for, and for an spp that is not above the block's last.
+    std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
+    lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
+    lull_answer Answer(int block) const;
+
+    std::vector<std::byte> Save() const;
+    // Throws std::runtime_error if the state is damaged or belongs to other settings.
+    void Restore(std::span<const std::byte> state);
+
+  private:
+    struct Judge {
+        std::unique_ptr<Criterion> criterion;
+        lull_answer answer = {};
+    };
+
+    Judge MakeJudge(int block) const;
+    std::vector<std::unique_lock<std::mutex>> LockAll() const;
+    void Look(int block, const lull_picture& picture, const lull_rect& part, int spp);
+
+    CriterionFactory factory;
+    BlockGrid grid;
+    std::vector<std::byte> identity;  // of its saved states
+    bool needsHalf = false;
+    std::vector<Judge> judges;
+    mutable std::vector<std::mutex> locks;  // one for each block
+};
+
+}  // namespace lull

@@ -1,0 +1,316 @@
+// The Python module `lull`: the C interface with numpy arrays and exceptions.
+#include <lull/stopping.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace {
+
+// What the C interface says becomes an exception: ValueError, FileNotFoundError's parent OSError,
+// MemoryError or RuntimeError.
+void Check(lull_status status) {
+    if (status == LULL_OK) return;
+    const char* message = lull_error_message();
+    if (status == LULL_BAD_ARGUMENT) throw py::value_error(message);
+    PyErr_SetString(status == LULL_BAD_FILE        ? PyExc_OSError
+                    : status == LULL_OUT_OF_MEMORY ? PyExc_MemoryError
+                                                   : PyExc_RuntimeError,
+                    message);
+    throw py::error_already_set();
+}
+
+std::string ShapeOf(const py::array& array) {
+    std::string text;
+    for (py::ssize_t i = 0; i < array.ndim(); ++i)
+        text += (i ? " x " : "") + std::to_string(array.shape(i));
+    return text;
+}
+
+// Checks that an array is H x W x 3 (more channels, such as alpha, are left out) of float32 or
+// uint8; float16 and float64 are converted.
+py::array ToPixels(const py::array& array, const char* name, int width, int height) {
+    if (array.ndim() != 3 || array.shape(0) != height || array.shape(1) != width ||
+        array.shape(2) < 3)
+        throw py::value_error(std::string(name) + " has the shape " + ShapeOf(array) +
+                              "; needed are " + std::to_string(height) + " x " +
+                              std::to_string(width) + " x 3: rows, columns, R G B");
+    if (py::isinstance<py::array_t<float>>(array) || py::isinstance<py::array_t<uint8_t>>(array))
+        return array;
+    if (array.dtype().kind() == 'f') return py::array_t<float>(array);
+    throw py::value_error(std::string(name) + " has the type " +
+                          py::str(array.dtype()).cast<std::string>() +
+                          "; float32 (linear) or uint8 (sRGB) is needed");
+}
+
+// Returns an array with the same pixels, R, G and B side by side.
+py::array Packed(const py::array& pixels) {
+    return py::module_::import("numpy").attr("array")(
+        pixels[py::make_tuple(py::ellipsis(), py::slice(0, 3, 1))], py::arg("order") = "C");
+}
+
+// Shows arrays to the C interface, which read them with one set of strides, none of them 0.
+struct Picture {
+    py::array mean;
+    std::optional<py::array> half;
+    lull_picture view = {};
+
+    Picture(const py::array& image, const std::optional<py::array>& other, int width, int height)
+        : mean(ToPixels(image, "image", width, height)) {
+        bool isPlain = true;
+        if (other) half = ToPixels(*other, "half", width, height);
+        if (half && half->itemsize() != mean.itemsize())
+            throw py::value_error("image and half have different types");
+        for (int i = 0; i < 3; ++i)
+            isPlain =
+                isPlain && mean.strides(i) != 0 && (!half || half->strides(i) == mean.strides(i));
+        if (!isPlain) {
+            mean = Packed(mean);
+            if (half) half = Packed(*half);
+        }
+        view.width = width;
+        view.height = height;
+        view.format = mean.itemsize() == 1 ? LULL_SRGB8 : LULL_LINEAR_FLOAT;
+        view.mean = mean.data();
+        view.half = half ? half->data() : nullptr;
+        view.row_stride = mean.strides(0);
+        view.pixel_stride = mean.strides(1);
+        view.channel_stride = mean.strides(2);
+    }
+};
+
+// Holds how it stands with all blocks, for each number an array of rows x columns.
+struct Answer {
+    int columns;
+    std::vector<lull_answer> blocks;
+
+    template <typename T, typename Field>
+    py::array_t<T> Of(Field lull_answer::*field) const {
+        py::array_t<T> values({int(blocks.size()) / columns, columns});
+        for (size_t i = 0; i < blocks.size(); ++i) values.mutable_data()[i] = T(blocks[i].*field);
+        return values;
+    }
+    bool Stop() const {
+        for (const lull_answer& block : blocks)
+            if (!block.stop) return false;
+        return true;
+    }
+    // Returns None where a number is not known.
+    py::object Known(double lull_answer::*field) const {
+        for (const lull_answer& block : blocks)
+            if (block.*field < 0) return py::none();
+        return Of<double>(field);
+    }
+};
+
+class Stopper {
+  public:
+    Stopper(int width, int height, const std::optional<std::string>& model,
+            const std::optional<std::string>& rule, const std::optional<std::string>& models,
+            int block, int passSpp, int cap, double caution)
+        : width(width), height(height) {
+        if (model && rule) throw py::value_error("model and rule are both given; one is needed");
+        if (!(caution > 0)) throw py::value_error("caution must be above 0");
+        if (block == 0) throw py::value_error("blocks of 0 pixels");
+        lull_settings settings = {};
+        settings.width = width;
+        settings.height = height;
+        settings.model = model ? model->c_str() : nullptr;
+        settings.rule = rule ? rule->c_str() : nullptr;
+        settings.models = models ? models->c_str() : nullptr;
+        settings.block = block;
+        settings.pass = passSpp;
+        settings.cap = cap;
+        settings.caution = caution;
+        lull_stopper* made = nullptr;
+        Check(lull_stopper_create(&settings, &made));
+        handle.reset(made, lull_stopper_destroy);
+    }
+
+    Answer Observe(const py::array& image, int spp, const std::optional<py::array>& half) {
+        const Picture picture(image, half, width, height);
+        Answer answer = NoAnswer();
+        lull_status status;
+        {
+            const py::gil_scoped_release others;
+            status = lull_stopper_observe(handle.get(), &picture.view, spp, answer.blocks.data());
+        }
+        Check(status);
+        return answer;
+    }
+
+    lull_answer ObserveBlock(int block, const py::array& image, int spp,
+                             const std::optional<py::array>& half) {
+        const lull_rect rect = RectOf(block);
+        const Picture picture(image, half, rect.width, rect.height);
+        lull_answer answer;
+        lull_status status;
+        {
+            const py::gil_scoped_release others;
+            status = lull_stopper_observe_block(handle.get(), block, &picture.view, spp, &answer);
+        }
+        Check(status);
+        return answer;
+    }
+
+    Answer Last() const {
+        Answer answer = NoAnswer();
+        for (size_t i = 0; i < answer.blocks.size(); ++i)
+            Check(lull_stopper_answer(handle.get(), int(i), &answer.blocks[i]));
+        return answer;
+    }
+
+    std::vector<std::tuple<int, int, int, int>> Blocks() const {
+        std::vector<std::tuple<int, int, int, int>> blocks;
+        for (int i = 0; i < lull_stopper_block_count(handle.get()); ++i) {
+            const lull_rect rect = RectOf(i);
+            blocks.emplace_back(rect.x, rect.y, rect.width, rect.height);
+        }
+        return blocks;
+    }
+
+    py::array_t<bool> Active() const {
+        py::array_t<bool> mask({height, width});
+        const Answer answer = Last();
+        for (size_t i = 0; i < answer.blocks.size(); ++i) {
+            const lull_rect rect = RectOf(int(i));
+            for (int y = rect.y; y < rect.y + rect.height; ++y)
+                std::fill_n(mask.mutable_data(y, rect.x), rect.width, !answer.blocks[i].stop);
+        }
+        return mask;
+    }
+
+    bool Done() const { return lull_stopper_done(handle.get()) == 1; }
+    bool NeedsHalf() const { return lull_stopper_needs_half(handle.get()) == 1; }
+
+    py::bytes Save() const {
+        size_t size = 0;
+        Check(lull_stopper_save(handle.get(), nullptr, &size));
+        std::string bytes(size, 0);
+        Check(lull_stopper_save(handle.get(), bytes.data(), &size));
+        return py::bytes(bytes.data(), size);
+    }
+    void Restore(const py::bytes& state) {
+        const std::string_view bytes = state;
+        Check(lull_stopper_restore(handle.get(), bytes.data(), bytes.size()));
+    }
+
+    const int width, height;
+
+  private:
+    lull_rect RectOf(int block) const {
+        lull_rect rect;
+        Check(lull_stopper_block_rect(handle.get(), block, &rect));
+        return rect;
+    }
+    Answer NoAnswer() const {
+        return {lull_stopper_column_count(handle.get()),
+                std::vector<lull_answer>(size_t(lull_stopper_block_count(handle.get())))};
+    }
+
+    std::shared_ptr<lull_stopper> handle;
+};
+
+std::optional<double> Known(double value) {
+    return value < 0 ? std::nullopt : std::optional(value);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(lull, module) {
+    using namespace py::literals;
+    module.doc() =
+        "Says when a picture that is being rendered has had enough samples.\n\n"
+        "    stopper = lull.Stopper(width, height, model='entropy')\n"
+        "    while not stopper.done:\n"
+        "        ...  # render more where stopper.active\n"
+        "        answer = stopper.observe(image, spp)\n";
+    module.attr("__version__") = lull_version();
+
+    py::class_<lull_answer>(module, "BlockAnswer", "How it stands with a block.")
+        .def_property_readonly("stop", [](const lull_answer& a) { return a.stop == 1; })
+        .def_property_readonly("judged", [](const lull_answer& a) { return a.judged == 1; })
+        .def_readonly("spp", &lull_answer::spp)
+        .def_readonly("next_spp", &lull_answer::next_spp)
+        .def_readonly("votes", &lull_answer::votes)
+        .def_readonly("votes_needed", &lull_answer::votes_needed)
+        .def_readonly("people_low", &lull_answer::people_low)
+        .def_readonly("people_high", &lull_answer::people_high)
+        .def_readonly("value", &lull_answer::value)
+        .def_readonly("threshold", &lull_answer::threshold)
+        .def_property_readonly("probability",
+                               [](const lull_answer& a) { return Known(a.probability); })
+        .def_property_readonly("visible_noise",
+                               [](const lull_answer& a) { return Known(a.visible_noise); });
+
+    py::class_<Answer>(module, "Answer",
+                       "How it stands with all blocks: arrays of rows x columns. `probability` is "
+                       "None for rules that know none, `visible_noise` where no half was shown.")
+        .def_property_readonly("stop", &Answer::Stop, "Whether all blocks have stopped.")
+        .def_property_readonly("stopped",
+                               [](const Answer& a) { return a.Of<bool>(&lull_answer::stop); })
+        .def_property_readonly("judged",
+                               [](const Answer& a) { return a.Of<bool>(&lull_answer::judged); })
+        .def_property_readonly("spp", [](const Answer& a) { return a.Of<int>(&lull_answer::spp); })
+        .def_property_readonly("next_spp",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::next_spp); })
+        .def_property_readonly("votes",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::votes); })
+        .def_property_readonly("people_low",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_low); })
+        .def_property_readonly("people_high",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_high); })
+        .def_property_readonly("value",
+                               [](const Answer& a) { return a.Of<double>(&lull_answer::value); })
+        .def_property_readonly(
+            "threshold", [](const Answer& a) { return a.Of<double>(&lull_answer::threshold); })
+        .def_property_readonly("probability",
+                               [](const Answer& a) { return a.Known(&lull_answer::probability); })
+        .def_property_readonly(
+            "visible_noise", [](const Answer& a) { return a.Known(&lull_answer::visible_noise); });
+
+    py::class_<Stopper>(
+        module, "Stopper",
+        "Judges the blocks of a picture of width x height pixels, from its first samples to its\n"
+        "last. `model` is the name of an installed model ('entropy', the default; 'noise', "
+        "'paper')\n"
+        "or a file; `rule` any other rule of `lull render --stop`; `models` the folder of "
+        "installed\n"
+        "models; `block` the pixels a side of blocks; `pass_spp` the spp between two pictures, 0 "
+        "if\n"
+        "they come at any spp; `cap` the most spp, if above 10,000; `caution` divides the "
+        "threshold\n"
+        "of visible noise.")
+        .def(
+            py::init<int, int, const std::optional<std::string>&, const std::optional<std::string>&,
+                     const std::optional<std::string>&, int, int, int, double>(),
+            "width"_a, "height"_a, "model"_a = py::none(), py::kw_only(), "rule"_a = py::none(),
+            "models"_a = py::none(), "block"_a = 200, "pass_spp"_a = 0, "cap"_a = 0,
+            "caution"_a = 1.0)
+        .def("observe", &Stopper::Observe, "image"_a, "spp"_a, "half"_a = py::none(),
+             "Shows the picture at `spp` samples per pixel, more than at the last call: an array "
+             "of\n"
+             "height x width x 3, float32 (linear) or uint8 (sRGB), with any strides; `half` is "
+             "the\n"
+             "mean of a fixed half of the samples. Returns an Answer.")
+        .def("observe_block", &Stopper::ObserveBlock, "block"_a, "image"_a, "spp"_a,
+             "half"_a = py::none(), "The same for one block. Returns a BlockAnswer.")
+        .def("answer", &Stopper::Last, "Returns the last Answer again.")
+        .def_property_readonly("blocks", &Stopper::Blocks,
+                               "Where the blocks lie: (x, y, width, height), row by row.")
+        .def_property_readonly("active", &Stopper::Active,
+                               "An array of height x width: True where more samples are needed.")
+        .def_property_readonly("done", &Stopper::Done, "Whether all blocks have stopped.")
+        .def_property_readonly("needs_half", &Stopper::NeedsHalf,
+                               "Whether the rule has to be shown a half of the samples.")
+        .def("save", &Stopper::Save, "Returns all that has been noted, as bytes.")
+        .def("restore", &Stopper::Restore, "state"_a, "Takes up what save() has returned.")
+        .def_readonly("width", &Stopper::width)
+        .def_readonly("height", &Stopper::height);
+}

@@ -1,0 +1,203 @@
+// What is wrong is said, and changes nothing.
+#include <cstdlib>
+#include <limits>
+#include <thread>
+
+#include "tests/embedding/stopper_of.h"
+
+namespace lull {
+namespace {
+
+void ExpectError(lull_status expected, lull_status status, const std::string& part) {
+    EXPECT_EQ(status, expected);
+    EXPECT_NE(std::string(lull_error_message()).find(part), std::string::npos)
+        << "no '" << part << "' in: " << lull_error_message();
+}
+
+TEST(StopperErrors, RefusesBadSettings) {
+    struct Case {
+        lull_settings settings;
+        lull_status status;
+        const char* part;
+    };
+    std::vector<Case> cases;
+    auto add = [&](lull_status status, const char* part) -> lull_settings& {
+        cases.push_back({SettingsOf(100, 100, "entropy"), status, part});
+        return cases.back().settings;
+    };
+    add(LULL_BAD_ARGUMENT, "39x100").width = 39;
+    add(LULL_BAD_ARGUMENT, "100x0").height = 0;
+    add(LULL_BAD_ARGUMENT, "65536").width = std::numeric_limits<int>::max();
+    add(LULL_BAD_ARGUMENT, "blocks of 39").block = 39;
+    add(LULL_BAD_ARGUMENT, "blocks of -1").block = -1;
+    add(LULL_BAD_ARGUMENT, "pass").pass = -20;
+    add(LULL_BAD_ARGUMENT, "cap").cap = -1;
+    add(LULL_BAD_ARGUMENT, "caution").caution = std::numeric_limits<double>::quiet_NaN();
+    add(LULL_BAD_ARGUMENT, "caution").caution = -1;
+    add(LULL_BAD_ARGUMENT, "both").model = "entropy";
+    add(LULL_BAD_ARGUMENT, "there is no such rule").rule = "hunch";
+    add(LULL_BAD_ARGUMENT, "'-3' is not a threshold").rule = "entropy:-3";
+    add(LULL_BAD_FILE, "nowhere.h5").rule = "learned:nowhere.h5";
+    add(LULL_BAD_FILE, "nowhere.csv").rule = "thresholds:nowhere.csv";
+    lull_settings& unknown = add(LULL_BAD_FILE, "there are entropy, noise, paper");
+    unknown.rule = nullptr;
+    unknown.model = "unknown";
+    unknown.models = LULL_MODELS_DIR;
+    lull_settings& pass = add(LULL_BAD_FILE, "multiples of the pass of 30 spp");
+    pass.rule = nullptr;
+    pass.models = LULL_MODELS_DIR;
+    pass.pass = 30;
+    for (const Case& c : cases) {
+        lull_stopper* stopper = reinterpret_cast<lull_stopper*>(&cases);
+        ExpectError(c.status, lull_stopper_create(&c.settings, &stopper), c.part);
+        EXPECT_EQ(stopper, nullptr);
+    }
+}
+
+TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
+    const StopperHandle stopper = MakeStopper(SettingsOf(60, 50, "lnoise:9")),
+                        undisturbed = MakeStopper(SettingsOf(60, 50, "lnoise:9"));
+    for (int spp = 20; spp <= 60; spp += 20) {
+        const BlockImage image = ImageAt(spp);
+        const lull_picture good = PictureOf(image);
+        auto refuse = [&](lull_picture picture, int atSpp, const std::string& part) {
+            lull_answer answer = {};
+            answer.votes = 77;
+            ExpectError(LULL_BAD_ARGUMENT,
+                        lull_stopper_observe(stopper.get(), &picture, atSpp, &answer), part);
+            ExpectError(LULL_BAD_ARGUMENT,
+                        lull_stopper_observe_block(stopper.get(), 0, &picture, atSpp, &answer),
+                        part);
+            EXPECT_EQ(answer.votes, 77);
+        };
+        lull_picture bad = good;
+        bad.width = 59;
+        refuse(bad, spp, "59x50");
+        bad = good;
+        bad.format = 7;
+        refuse(bad, spp, "LULL_SRGB8");
+        bad = good;
+        bad.mean = nullptr;
+        refuse(bad, spp, "mean is null");
+        bad = good;
+        bad.half = nullptr;
+        refuse(bad, spp, "half of the samples");
+        refuse(good, 0, "above 0");
+        refuse(good, spp - 20, spp == 20 ? "above 0" : "spp must increase");
+        ExpectError(LULL_BAD_ARGUMENT,
+                    lull_stopper_observe_block(stopper.get(), 1, &good, spp, nullptr),
+                    "there is no block 1");
+        EXPECT_TRUE(SameAnswer(Show(stopper, good, spp), Show(undisturbed, good, spp)));
+    }
+    EXPECT_EQ(lull_stopper_done(stopper.get()), 1);
+    EXPECT_EQ(lull_stopper_needs_half(stopper.get()), 1);
+    EXPECT_EQ(lull_stopper_needs_half(MakeStopper(SettingsOf(60, 50, "entropy")).get()), 0);
+}
+
+TEST(StopperErrors, RefusesNullPointers) {
+    const StopperHandle owner = MakeStopper(SettingsOf(60, 50, "entropy"));
+    lull_stopper *stopper = owner.get(), *made = nullptr;
+    const BlockImage image = ImageAt(20);
+    const lull_picture picture = PictureOf(image);
+    const lull_settings settings = SettingsOf(60, 50, "entropy");
+    lull_rect rect;
+    lull_answer answer;
+    size_t size = 0;
+    char byte = 0;
+    for (const lull_status status :
+         {lull_stopper_create(nullptr, &made), lull_stopper_create(&settings, nullptr),
+          lull_stopper_block_rect(nullptr, 0, &rect), lull_stopper_block_rect(stopper, 0, nullptr),
+          lull_stopper_block_rect(stopper, -1, &rect),
+          lull_stopper_observe(nullptr, &picture, 20, nullptr),
+          lull_stopper_observe(stopper, nullptr, 20, nullptr),
+          lull_stopper_observe_block(nullptr, 0, &picture, 20, nullptr),
+          lull_stopper_observe_block(stopper, 0, nullptr, 20, nullptr),
+          lull_stopper_answer(nullptr, 0, &answer), lull_stopper_answer(stopper, 0, nullptr),
+          lull_stopper_answer(stopper, 1, &answer), lull_stopper_save(nullptr, nullptr, &size),
+          lull_stopper_save(stopper, nullptr, nullptr), lull_stopper_restore(nullptr, &byte, 1),
+          lull_stopper_restore(stopper, nullptr, 1)})
+        EXPECT_EQ(status, LULL_BAD_ARGUMENT);
+    lull_stopper_destroy(nullptr);
+    EXPECT_EQ(lull_stopper_block_count(nullptr), 0);
+    EXPECT_EQ(lull_stopper_column_count(nullptr), 0);
+    EXPECT_EQ(lull_stopper_needs_half(nullptr), 0);
+    EXPECT_EQ(lull_stopper_done(nullptr), 1);
+}
+
+TEST(StopperErrors, SaysToEachThreadItsOwn) {
+    lull_stopper_destroy(nullptr);
+    lull_stopper_create(nullptr, nullptr);
+    const std::string here = lull_error_message();
+    std::thread([] { EXPECT_STREQ(lull_error_message(), ""); }).join();
+    EXPECT_NE(here, "");
+    EXPECT_EQ(lull_error_message(), here);
+    EXPECT_STREQ(lull_version(), LULL_VERSION);
+}
+
+std::vector<char> SavedState(const StopperHandle& stopper) {
+    size_t size = 0;
+    EXPECT_EQ(lull_stopper_save(stopper.get(), nullptr, &size), LULL_OK);
+    std::vector<char> bytes(size--);
+    ExpectError(LULL_BAD_ARGUMENT, lull_stopper_save(stopper.get(), bytes.data(), &size), "room");
+    EXPECT_EQ(size, bytes.size());
+    EXPECT_EQ(lull_stopper_save(stopper.get(), bytes.data(), &size), LULL_OK);
+    return bytes;
+}
+
+TEST(StopperState, GoesOnAsIfNeverInterrupted) {
+    for (const char* rule : {"entropy:2", "lnoise:3", "learned", "fixed:300"}) {
+        lull_settings settings = SettingsOf(60, 50, rule);
+        settings.models = LULL_MODELS_DIR;
+        StopperHandle stopper = MakeStopper(settings);
+        const StopperHandle uninterrupted = MakeStopper(settings);
+        for (int spp = 30; spp <= 900; spp += 30) {
+            const BlockImage image = ImageAt(spp);
+            EXPECT_TRUE(SameAnswer(Show(stopper, PictureOf(image), spp),
+                                   Show(uninterrupted, PictureOf(image), spp)));
+            const std::vector<char> state = SavedState(stopper);
+            stopper = MakeStopper(settings);
+            ASSERT_EQ(lull_stopper_restore(stopper.get(), state.data(), state.size()), LULL_OK)
+                << lull_error_message();
+            EXPECT_EQ(SavedState(stopper), state);
+        }
+    }
+}
+
+TEST(StopperState, RefusesWhatIsDamagedOrAnothers) {
+    const StopperHandle stopper = MakeStopper(SettingsOf(60, 50, "entropy:2"));
+    for (const int spp : {30, 70, 110}) Show(stopper, PictureOf(ImageAt(spp)), spp);
+    const std::vector<char> state = SavedState(stopper);
+    for (size_t i = 0; i < state.size(); i += 11) {
+        std::vector<char> damaged = state;
+        damaged[i] ^= 1;
+        ExpectError(LULL_BAD_FILE,
+                    lull_stopper_restore(stopper.get(), damaged.data(), damaged.size()), "damaged");
+        EXPECT_EQ(lull_stopper_restore(stopper.get(), state.data(), i), LULL_BAD_FILE);
+    }
+    EXPECT_EQ(SavedState(stopper), state);
+    for (const lull_settings& other :
+         {SettingsOf(60, 51, "entropy:2"), SettingsOf(60, 50, "entropy"),
+          SettingsOf(60, 50, "entropy:2", 20)})
+        ExpectError(LULL_BAD_FILE,
+                    lull_stopper_restore(MakeStopper(other).get(), state.data(), state.size()),
+                    "other");
+}
+
+TEST(StopperModels, AreFoundByTheEnvironmentAndBesideTheLibrary) {
+    lull_settings settings = SettingsOf(60, 50, nullptr);
+    for (const char* model : {"entropy", "noise", "paper"}) {
+        settings.model = model;
+        MakeStopper(settings);  // beside the library
+    }
+    lull_stopper* stopper = nullptr;
+    setenv("LULL_MODELS", "/nowhere", 1);
+    ExpectError(LULL_BAD_FILE, lull_stopper_create(&settings, &stopper), "/nowhere");
+    setenv("LULL_MODELS", LULL_MODELS_DIR, 1);
+    MakeStopper(settings);
+    unsetenv("LULL_MODELS");
+    settings.model = LULL_MODELS_DIR "/noise.h5";
+    EXPECT_EQ(lull_stopper_needs_half(MakeStopper(settings).get()), 1);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""Tests of the Python module: python_test.py FOLDER, where the module is."""
+import sys
+import threading
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, sys.argv.pop(1))
+import lull  # noqa: E402
+
+WIDTH, HEIGHT = 70, 60
+
+
+def picture(spp, seed=0):
+    """Returns a gradient and the noise of two halves of so many samples: their mean and the first."""
+    random = np.random.default_rng(seed + spp)
+    truth = np.linspace(0.2, 0.6, WIDTH)[None, :, None] * np.ones((HEIGHT, WIDTH, 3))
+    halves = [truth + 0.4 * random.standard_normal(truth.shape) / np.sqrt(spp / 2) for _ in "ab"]
+    return np.float32(sum(halves) / 2), np.float32(halves[0])
+
+
+def numbers(answer):
+    return [np.asarray(getattr(answer, name)).tolist() for name in
+            ("stop", "stopped", "judged", "spp", "next_spp", "votes", "value", "probability")]
+
+
+class StopperTest(unittest.TestCase):
+    def test_stops_when_noise_is_gone(self):
+        stopper = lull.Stopper(WIDTH, HEIGHT, model="entropy")
+        self.assertFalse(stopper.done)
+        self.assertFalse(stopper.needs_half)
+        self.assertTrue(stopper.active.all())
+        spp = 0
+        while not stopper.done:
+            spp += 40
+            answer = stopper.observe(picture(spp)[0], spp)
+            self.assertLess(spp, 10000)
+            self.assertEqual(answer.stopped.shape, (1, 1))
+        self.assertGreater(spp, 160)
+        self.assertTrue(answer.stop)
+        self.assertLess(answer.probability[0, 0], 0.5)
+        self.assertEqual(answer.spp[0, 0], spp)
+        self.assertGreater(answer.people_high[0, 0], answer.people_low[0, 0])
+        self.assertIsNone(answer.visible_noise)
+        self.assertFalse(stopper.active.any())
+        self.assertEqual(numbers(stopper.answer())[3:], numbers(answer)[3:])
+
+    def test_reads_any_layout(self):
+        image, half = picture(40)
+        plain = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(image, 40, half)
+        self.assertGreater(plain.visible_noise[0, 0], 1)
+        self.assertIsNone(plain.probability)
+        with_alpha = np.concatenate([image, np.ones((HEIGHT, WIDTH, 1), np.float32)], axis=2)
+        wide = np.zeros((2 * HEIGHT, 3 * WIDTH, 3), np.float32)
+        wide[::2, ::3] = image
+        layouts = {
+            "fortran": np.asfortranarray(image),
+            "flipped": image[::-1, ::-1, ::-1].copy()[::-1, ::-1, ::-1],
+            "planes": np.ascontiguousarray(image.transpose(2, 0, 1)).transpose(1, 2, 0),
+            "alpha": with_alpha,
+            "every other": wide[::2, ::3],
+            "double": np.float64(image),
+            "big endian": image.astype(">f4"),
+        }
+        for name, other in layouts.items():
+            for other_half in (half, half.astype(np.float64), np.asfortranarray(half)):
+                answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(other, 40, other_half)
+                self.assertEqual(numbers(answer), numbers(plain), name)
+        grey = np.broadcast_to(image[:, :, :1], image.shape)  # one value for all three
+        answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(grey, 40, grey)
+        self.assertEqual(answer.value[0, 0], 0)
+
+    def test_takes_eight_bits(self):
+        codes = np.arange(HEIGHT * WIDTH * 3, dtype=np.uint64).reshape(HEIGHT, WIDTH, 3)
+        codes = (codes * codes // 7 % 256).astype(np.uint8)
+        v = codes / 255
+        linear = np.float32(np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4))
+        eight, real = (lull.Stopper(WIDTH, HEIGHT, rule="entropy") for _ in "ab")
+        for spp in (100, 200):
+            a, b = eight.observe(codes[::-1], spp), real.observe(linear[::-1], spp)
+            self.assertEqual(numbers(a), numbers(b))
+            codes, linear = codes[:, ::-1], linear[:, ::-1]
+
+    def test_blocks(self):
+        stopper = lull.Stopper(140, 60, rule="lnoise:1.5", block=70)
+        self.assertEqual(stopper.blocks, [(0, 0, 70, 60), (70, 0, 70, 60)])
+        for spp in (4000, 8000, 12000):
+            calm, noisy = picture(spp), picture(spp // 1000)
+            image = [np.concatenate([a, b], axis=1) for a, b in zip(calm, noisy)]
+            answer = stopper.observe(image[0], spp, image[1])
+        self.assertEqual(answer.stopped.tolist(), [[True, False]])
+        self.assertFalse(answer.stop)
+        self.assertEqual(stopper.active[:, :70].sum(), 0)
+        self.assertTrue(stopper.active[:, 70:].all())
+        one = stopper.observe_block(1, noisy[0], 12500, half=noisy[1])
+        self.assertEqual((one.stop, one.judged, one.spp, one.probability), (False, True, 12500, None))
+        self.assertGreater(one.visible_noise, 1.5)
+
+    def test_goes_on_from_saved_states(self):
+        stopper, whole = (lull.Stopper(WIDTH, HEIGHT) for _ in "ab")
+        for spp in range(40, 600, 40):
+            image = picture(spp)[0]
+            self.assertEqual(numbers(stopper.observe(image, spp)), numbers(whole.observe(image, spp)))
+            state = stopper.save()
+            stopper = lull.Stopper(WIDTH, HEIGHT)
+            stopper.restore(state)
+        with self.assertRaisesRegex(OSError, "damaged"):
+            stopper.restore(state[:-1])
+        with self.assertRaisesRegex(OSError, "other settings"):
+            lull.Stopper(WIDTH, HEIGHT + 1).restore(state)
+
+    def test_says_what_is_wrong(self):
+        image, _ = picture(40)
+        stopper = lull.Stopper(WIDTH, HEIGHT)
+        for wrong, message in (
+                (image[:-1], "59 x 70 x 3; needed are 60 x 70 x 3"),
+                (image[:, :, :2], "60 x 70 x 2"), (image[:, :, 0], "60 x 70;"),
+                (image.astype(np.int32), "int32"), (image > 0.3, "bool"), (np.complex64(image), "complex64")):
+            with self.assertRaisesRegex(ValueError, message):
+                stopper.observe(wrong, 40)
+        with self.assertRaises(TypeError):
+            stopper.observe("image", 40)
+        with self.assertRaisesRegex(ValueError, "different types"):
+            stopper.observe(image, 40, half=np.uint8(image))
+        with self.assertRaisesRegex(ValueError, "half of the samples"):
+            lull.Stopper(WIDTH, HEIGHT, model="noise").observe(image, 40)
+        stopper.observe(image, 40)
+        with self.assertRaisesRegex(ValueError, "spp must increase"):
+            stopper.observe(image, 40)
+        with self.assertRaisesRegex(ValueError, "there is no block 1"):
+            stopper.observe_block(1, image, 80)
+        for settings, error in ((dict(rule="hunch"), ValueError), (dict(model="unknown"), OSError),
+                                (dict(model="a", rule="b"), ValueError), (dict(block=0), ValueError),
+                                (dict(caution=0), ValueError), (dict(caution=float("nan")), ValueError)):
+            with self.assertRaises(error):
+                lull.Stopper(WIDTH, HEIGHT, **settings)
+        with self.assertRaises(ValueError):
+            lull.Stopper(39, HEIGHT)
+
+    def test_lets_other_threads_run(self):
+        answers = [None] * 4
+
+        def judge(i):
+            stopper = lull.Stopper(WIDTH, HEIGHT, rule="entropy:2")
+            for spp in range(40, 400, 40):
+                answers[i] = numbers(stopper.observe(picture(spp)[0], spp))
+
+        threads = [threading.Thread(target=judge, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(answers, [answers[0]] * 4)
+        self.assertIsNotNone(answers[0])
+
+    def test_version(self):
+        self.assertRegex(lull.__version__, r"^\d+\.\d+\.\d+$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,64 @@
+// Calls the C interface as a program in C++ would.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <lull/stopping.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/stopping/signals/block_images.h"
+
+namespace lull {
+
+struct DestroyStopper {
+    void operator()(lull_stopper* stopper) const { lull_stopper_destroy(stopper); }
+};
+using StopperHandle = std::unique_ptr<lull_stopper, DestroyStopper>;
+
+inline StopperHandle MakeStopper(const lull_settings& settings) {
+    lull_stopper* stopper = nullptr;
+    EXPECT_EQ(lull_stopper_create(&settings, &stopper), LULL_OK) << lull_error_message();
+    return StopperHandle(stopper);
+}
+
+inline lull_settings SettingsOf(int width, int height, const char* rule, int pass = 0) {
+    lull_settings settings = {};
+    settings.width = width;
+    settings.height = height;
+    settings.rule = rule;
+    settings.pass = pass;
+    return settings;
+}
+
+inline lull_picture PictureOf(const BlockImage& image, bool withHalf = true) {
+    lull_picture picture = {};
+    picture.width = image.width;
+    picture.height = image.height;
+    picture.mean = image.mean.data();
+    picture.half = withHalf ? image.halfMean.data() : nullptr;
+    return picture;
+}
+
+// Shows the only block of a picture; its answer.
+inline lull_answer Show(const StopperHandle& stopper, const lull_picture& picture, int spp) {
+    lull_answer answer = {};
+    EXPECT_EQ(lull_stopper_observe(stopper.get(), &picture, spp, &answer), LULL_OK)
+        << lull_error_message();
+    return answer;
+}
+
+// A picture of so many samples: the same whenever it is asked for.
+inline BlockImage ImageAt(int spp, int width = 60, int height = 50, double noise = 0.5) {
+    return NoisyBlock(width, height, noise, spp, unsigned(spp));
+}
+
+inline bool SameAnswer(const lull_answer& a, const lull_answer& b) {
+    return a.stop == b.stop && a.judged == b.judged && a.spp == b.spp && a.next_spp == b.next_spp &&
+           a.votes == b.votes && a.votes_needed == b.votes_needed && a.people_low == b.people_low &&
+           a.people_high == b.people_high && a.value == b.value && a.threshold == b.threshold &&
+           a.probability == b.probability && a.visible_noise == b.visible_noise;
+}
+
+}  // namespace lull

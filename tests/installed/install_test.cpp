@@ -1,0 +1,151 @@
+// What is installed works where it is put: the program, the library, the module, the manual.
+#include <cmath>
+#include <random>
+#include <regex>
+#include <set>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+// Runs a command in which PREFIX stands for the installed tree; expects that it succeeds.
+std::string Run(const TemporaryDirectory& directory, std::string command) {
+    const std::string prefix = directory.File("moved tree");
+    for (size_t at = 0; (at = command.find("PREFIX", at)) != std::string::npos;)
+        command.replace(at, 6, "'" + prefix + "'");
+    const Outcome outcome = RunShell(directory, command);
+    EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.out << outcome.err;
+    return outcome.out;
+}
+
+// Installs into a temporary folder and moves that, so that nothing finds its parts by a path that
+// was known when it was built. The environment names no models.
+struct InstalledTree : TemporaryDirectory {
+    InstalledTree() {
+        unsetenv("LULL_MODELS");
+        Run(*this, "'" LULL_CMAKE "' --install '" LULL_BUILD_DIR "' --prefix '" + File("tree") +
+                       "' >/dev/null && mv tree PREFIX");
+    }
+    bool Has(const std::string& name) const {
+        return std::filesystem::exists(path / "moved tree" / name);
+    }
+};
+
+// Returns what bash offers in place of the last of these words.
+std::string Complete(const InstalledTree& tree, const std::string& words, int last) {
+    tree.Write("complete.sh",
+               "set -e\n. 'moved tree/share/bash-completion/completions/lull'\nCOMP_WORDS=(" +
+                   words + ")\nCOMP_CWORD=" + std::to_string(last) +
+                   "\n_lull\necho \"${COMPREPLY[@]}\"\n");
+    return Run(tree, "bash complete.sh");
+}
+
+// Returns the long options that a help text defines, each at the beginning of a line.
+std::set<std::string> OptionsIn(const std::string& help) {
+    std::set<std::string> options;
+    const std::regex line("(?:^|\\n)  (-[^ ]*)"), option("--[a-z0-9-]+");
+    for (std::sregex_iterator l(help.begin(), help.end(), line), end; l != end; ++l) {
+        const std::string names = (*l)[1];
+        for (std::sregex_iterator o(names.begin(), names.end(), option); o != end; ++o)
+            options.insert(o->str());
+    }
+    return options;
+}
+
+const char* const kCommands[] = {"render",   "info",    "dataset", "train", "evaluate",
+                                 "selftest", "compare", "bench",   "judge"};
+
+TEST(Install, RunsWhereItIsMoved) {
+    const InstalledTree tree;
+    EXPECT_EQ(Run(tree, "PREFIX/bin/lull --version"), "lull " LULL_VERSION "\n");
+    tree.Write("scene.pbrt", SceneText(kSphere));
+    // The rule reads its model before anything is rendered.
+    Run(tree, "PREFIX/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
+    EXPECT_TRUE(std::filesystem::exists(tree.File("out.png")));
+    for (const char* file :
+         {"include/lull/stopping.h", "share/lull/models/entropy.h5", "share/lull/models/noise.h5",
+          "share/lull/models/paper.h5", "share/doc/lull/copyright"})
+        EXPECT_TRUE(tree.Has(file)) << file;
+}
+
+TEST(Install, ManualAndCompletionNameEveryOption) {
+    const InstalledTree tree;
+    if (!tree.Has("share/man/man1/lull.1")) GTEST_SKIP() << "built without Python";
+    const std::string page = ReadBytes(tree.File("moved tree/share/man/man1/lull.1"));
+    for (const std::string command : kCommands) {
+        const std::string help = RunLull(tree, command + " --help").out;
+        const std::set<std::string> options = OptionsIn(help);
+        EXPECT_GE(options.size(), command == "info" ? 2u : 4u);
+        const size_t begin = page.find(".SS lull " + command);
+        ASSERT_NE(begin, std::string::npos);
+        const std::string section = page.substr(begin, page.find("\n.SS ", begin + 1) - begin);
+        const std::string completed =
+            " " +
+            std::regex_replace(Complete(tree, "lull " + command + " -", 2), std::regex("\n"), " ");
+        for (const std::string& option : options) {
+            EXPECT_TRUE(Contains(section, std::regex_replace(option, std::regex("-"), "\\-")))
+                << option;
+            EXPECT_TRUE(Contains(completed, " " + option + " ")) << command << " " << option;
+        }
+    }
+}
+
+TEST(Install, CompletionKnowsCommandsAndValues) {
+    const InstalledTree tree;
+    if (!tree.Has("share/bash-completion/completions/lull")) GTEST_SKIP() << "built without Python";
+    EXPECT_EQ(Complete(tree, "lull re", 1), "render\n");
+    for (const char* command : kCommands)
+        EXPECT_TRUE(Contains(Complete(tree, "lull ''", 1), command)) << command;
+    EXPECT_EQ(Complete(tree, "lull render --sampler ''", 3), "random sobol\n");
+    EXPECT_EQ(Complete(tree, "lull render --sampler so", 3), "sobol\n");
+    EXPECT_EQ(Complete(tree, "lull render --stop ''", 3), "\n");  // bash completes files
+    EXPECT_EQ(Complete(tree, "lull render sc", 2), "\n");
+}
+
+// Writes pictures of ever less noise: a gradient, to which the mean of so many samples adds some.
+std::string WritePictures(const TemporaryDirectory& directory, int count, int step) {
+    std::mt19937 generator(1);
+    std::normal_distribution<float> gauss;
+    std::vector<Rgb> sum(100 * 60, Rgb(0, 0, 0)), mean = sum;
+    std::string names;
+    for (int k = 1; k <= count; ++k) {
+        for (size_t i = 0; i < sum.size(); ++i) {
+            const float truth = 0.2f + 0.4f * float(i % 100) / 100;
+            for (int c = 0; c < 3; ++c)
+                sum[i][c] += truth * float(step) + 0.3f * std::sqrt(float(step)) * gauss(generator);
+            mean[i] = sum[i] / float(k * step);
+        }
+        const std::string name = fmt::format("p{:02}.png", k);
+        WritePng(directory.File(name), mean, 100, 60);
+        names += " " + name;
+    }
+    return names;
+}
+
+TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
+    const InstalledTree tree;
+    const std::string example = Run(tree, "echo PREFIX/share/doc/lull/examples");
+    Run(tree, "'" LULL_CMAKE
+              "' -S PREFIX/share/doc/lull/examples -B build -DCMAKE_PREFIX_PATH=PREFIX "
+              "-DCMAKE_CXX_COMPILER='" LULL_CXX
+              "' -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON >&2 && "
+              "'" LULL_CMAKE "' --build build >&2");
+    const std::string pictures = WritePictures(tree, 30, 60);
+    const std::string out = Run(tree, "build/judge_pngs 60" + pictures);
+    EXPECT_TRUE(out.starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n")) << out;
+    EXPECT_TRUE(out.ends_with(", 0 of 1 blocks go on\n")) << out;
+    EXPECT_GT(std::ranges::count(out, '\n'), 5) << out;
+
+    const Outcome bad = RunShell(tree, "build/judge_pngs 60 p01.png nowhere.png");
+    EXPECT_EQ(bad.exitCode, 1);
+    EXPECT_TRUE(Contains(bad.err, "nowhere.png")) << bad.err;
+    WritePng(tree.File("small.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
+    const Outcome small = RunShell(tree, "build/judge_pngs 60 small.png");
+    EXPECT_EQ(small.exitCode, 1);
+    EXPECT_TRUE(Contains(small.err, "20x20")) << small.err;
+}
+
+}  // namespace
+}  // namespace lull
