@@ -39,6 +39,14 @@ struct MediumTable {
         return onNormalSide ? sides.outside : sides.inside;
     }
 
+    // Says of which channels nothing gets through the medium where it goes on for ever.
+    Eigen::Array<bool, 3, 1> Swallows(int medium) const {
+        const auto* m =
+            medium == kVacuum ? nullptr : std::get_if<HomogeneousMedium>(&media[medium]);
+        if (!m) return {false, false, false};
+        return m->sigmaT > 0;
+    }
+
     float PhaseParameter(int medium) const {
         return std::visit([](const auto& m) { return m.g; }, media[medium]);
     }

@@ -42,7 +42,7 @@ Vec3f OriginTowards(const Vertex& v, const Vec3f& w) {
 class Beam {
   public:
     Beam(const Scene& scene, Sampler& sampler, const Ray& ray, int medium, float time)
-        : ray(ray), scene(scene), sampler(sampler), medium(medium), time(time) {}
+        : ray(ray), medium(medium), scene(scene), sampler(sampler), time(time) {}
 
     // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
@@ -68,33 +68,41 @@ class Beam {
     int light = -1;
     Hit found;
     SurfaceInteraction hit;
+    int medium;  // beyond it
 
   private:
     const Scene& scene;
     Sampler& sampler;
-    int medium;
     float time;
 };
 
-// Estimates the share of the light's sample that reaches the vertex.
-Rgb Visibility(const Scene& scene, Sampler& sampler, const Vertex& v, const LightSample& light) {
+struct Visible {
+    Rgb share = Rgb::Zero();  // of the light's sample that reaches the vertex, an estimate
+    // The channels in which rays that look for the light end in a medium without an end.
+    Eigen::Array<bool, 3, 1> isOutOfReach = {false, false, false};
+};
+
+// Traces the shadow ray of a light's sample. As in pbrt-v3, light from infinity comes from twice
+// the scene's radius away: through a medium that fills the world it would not come from farther.
+Visible TraceLight(const Scene& scene, Sampler& sampler, const Vertex& v,
+                   const LightSample& light) {
     const int medium = v.MediumTowards(scene.media, light.wi);
     const Vec3f origin = OriginTowards(v, light.isAtInfinity ? light.wi : Vec3f(light.p - v.p));
     const Vec3f target = light.isAtInfinity
-                             ? light.p
+                             ? Vec3f(v.p + scene.shapes.bounds.Diagonal().norm() * light.wi)
                              : OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
-    const auto rayFrom = [&](const Vec3f& o) {
-        return light.isAtInfinity ? Ray{o, light.wi, kInfinity} : Ray{o, target - o, 1 - 0.0001f};
-    };
-    Ray ray = rayFrom(origin);
+    const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
+    const Ray ray = rayFrom(origin);
     // A grazing ray that rounding turns to the other side would pass through the surface.
-    if (v.hit && (ray.d.dot(v.hit->n) < 0) != (light.wi.dot(v.hit->n) < 0)) return Rgb::Zero();
+    if (v.hit && (ray.d.dot(v.hit->n) < 0) != (light.wi.dot(v.hit->n) < 0)) return {};
     Beam beam(scene, sampler, ray, medium, v.time);
     while (beam.Advance()) {
-        if (!beam.isInterface || IsBlack(beam.transmittance)) return Rgb::Zero();
+        if (!beam.isInterface || IsBlack(beam.transmittance)) return {};
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
     }
-    return beam.transmittance;
+    Visible visible{.share = beam.transmittance};
+    if (light.isAtInfinity) visible.isOutOfReach = scene.media.Swallows(beam.medium);
+    return visible;
 }
 
 // Returns the light that sampling light `index` brings to the vertex, weighted against sampling of
@@ -107,11 +115,18 @@ Rgb SampleLight(const Scene& scene, Estimator estimator, Sampler& sampler, const
     const bool hasOwnRay = estimator == Estimator::PbrtV3 || light->isHidden;
     const BsdfValue value = v.Evaluate(light->wi, hasOwnRay ? LobeSet::NonSpecular : LobeSet::All);
     if (IsBlack(value.f)) return Rgb::Zero();
-    const float weight =
-        light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
-    const Rgb L = value.f * light->L * (weight / (light->pdf * pmf));
-    if (IsBlack(L)) return Rgb::Zero();
-    return L * Visibility(scene, sampler, v, *light);
+    const Visible visible = TraceLight(scene, sampler, v, *light);
+    if (IsBlack(visible.share)) return Rgb::Zero();
+    Rgb weight = Rgb::Ones();
+    if (!light->isDelta) {
+        weight.fill(PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf));
+        // What no ray can reach keeps pbrt-v3's weight, too.
+        if (!hasOwnRay && visible.isOutOfReach.any()) {
+            const float pdf = v.Evaluate(light->wi, LobeSet::NonSpecular).pdf;
+            weight = visible.isOutOfReach.select(PowerHeuristic(light->pdf, pdf), weight);
+        }
+    }
+    return value.f * light->L * visible.share * weight / (light->pdf * pmf);
 }
 
 // Returns the light that a direction sampled for it finds on light `index`: the other half of

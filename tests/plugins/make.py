@@ -251,6 +251,15 @@ ActiveTransform EndTime
 LookAt .5 -4.5 2.6  0.2 .1 .5  .3 0 1
 ActiveTransform All
 Camera "perspective" "float fov" 38 "float lensradius" .1 "float focaldistance" 5'''),
+    # A medium without an end, on the side of the ball that it is not meant for.
+    'medium-endless': scene('''MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [.02 .03 .04] "rgb sigma_s" [.02 .02 .01]
+''' + SKY + FLOOR + '''AttributeBegin
+Material "glass"
+MediumInterface "" "m"
+Translate 0 0 .9
+Shape "sphere" "float radius" .9
+AttributeEnd
+''', integrator='"volpath"', depth=8),
 } | {f'shape-{name}': text for name, text in SHAPES.items()}
 
 
