@@ -1,14 +1,12 @@
 #include "renderer/input/spectrum.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include "renderer/input/cie_table.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/input/number_file.h"
 
 namespace lull {
 namespace {
@@ -35,8 +33,6 @@ double Planck(double wavelength, double kelvin) {
     return std::pow(wavelength, -5) /
            std::expm1(kPlanck * kLight / (wavelength * kBoltzmann * kelvin));
 }
-
-bool IsSeparator(char c) { return std::isspace(static_cast<unsigned char>(c)) || c == ','; }
 
 }  // namespace
 
@@ -92,31 +88,8 @@ Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc) {
 }
 
 Rgb LoadSpectrum(const std::string& path, const FileLoc& loc) {
-    const FileContents contents = ReadFile(path, loc);
-    FileLoc place{std::make_shared<const std::string>(path), 1};
-    std::vector<float> numbers;
-    const char* pos = contents.View().data();
-    const char* const end = pos + contents.size;
-    while (pos < end) {
-        if (*pos == '#') {
-            pos = std::find(pos, end, '\n');
-        } else if (IsSeparator(*pos)) {
-            if (*pos++ == '\n') ++place.line;
-        } else {
-            const char* const stop =
-                std::find_if(pos, end, [](char c) { return IsSeparator(c) || c == '#'; });
-            const char* const begin = *pos == '+' ? pos + 1 : pos;
-            float value = 0;
-            const auto [parsed, status] = std::from_chars(begin, stop, value);
-            if (status != std::errc() || parsed != stop || !std::isfinite(value))
-                throw Error(place, "'" + Printable({pos, size_t(stop - pos)}) +
-                                       "' in a spectrum file is not a number");
-            numbers.push_back(value);
-            pos = stop;
-        }
-    }
-    place.line = 0;
-    return RgbFromSamples(numbers, place);
+    return RgbFromSamples(ReadNumberFile(path, "spectrum", loc),
+                          {std::make_shared<const std::string>(path), 0});
 }
 
 // Both follow from the tabulated optical constants of copper (56 wavelengths from 299 to 886 nm)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/base/sampling.h"
+#include "renderer/scene/lens_file.h"
 
 namespace lull {
 
@@ -43,6 +44,25 @@ Ray Camera::Move(const Ray& ray, float time) const {
     return {TransformPoint(m, ray.o), TransformVector(m, ray.d), ray.tMax};
 }
 
+Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const {
+    const Ray ray = lenses->Generate(film.cwiseProduct(perPixel), lens, weight);
+    return {position + rotation * ray.o, rotation * ray.d, kInfinity};
+}
+
+std::optional<Ray> Camera::NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
+                                   int axis) const {
+    const Vec2f step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);
+    if (!lenses) return GenerateRay(film + step, lens, time);
+    for (const float share : {0.05f, -0.05f}) {
+        float weight;
+        const Ray next = GenerateRay(film + share * step, lens, time, &weight);
+        if (weight > 0)
+            return Ray{ray.o + (next.o - ray.o) / share, ray.d + (next.d - ray.d) / share,
+                       kInfinity};
+    }
+    return {};
+}
+
 namespace {
 
 // Reads the screen window: [-1, 1] along the shorter axis unless the scene says otherwise.
@@ -75,40 +95,80 @@ Projection ReadProjection(const Entity& entity) {
     if (entity.name == "perspective") return Projection::Perspective;
     if (entity.name == "orthographic") return Projection::Orthographic;
     if (entity.name == "environment") return Projection::Environment;
-    throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic "
-                                        "and environment are",
+    if (entity.name == "realistic") return Projection::Realistic;
+    throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic, "
+                                        "environment and realistic are",
                                         entity.name));
+}
+
+LensSystem ReadLenses(const Description& description, const FilmSettings& film,
+                      const Shutter& shutter, int threads, Warnings& warnings) {
+    const Entity& entity = description.camera;
+    const Parameters& params = entity.parameters;
+    const std::string file = params.GetString("lensfile", "");
+    if (file.empty()) throw Error(entity.loc, "Camera \"realistic\" needs a \"lensfile\"");
+    LensSystem::Settings settings;
+    settings.loc = entity.loc;
+    settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
+    const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
+    if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
+    for (LensInterface& stop : settings.interfaces)
+        if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
+            if (radius > stop.apertureRadius)
+                warnings.Add(entity.loc, "\"aperturediameter\" is limited to what the lens has",
+                             fmt::format("{:g} mm", 2000 * stop.apertureRadius));
+            stop.apertureRadius = std::min(stop.apertureRadius, radius);
+        }
+    settings.focusDistance = params.GetFloat("focusdistance", 10);
+    if (!(settings.focusDistance > 0))
+        throw Error(entity.loc, "\"focusdistance\" has to be above 0");
+    settings.simpleWeighting = params.GetBool("simpleweighting", true);
+    settings.exposureTime = float(shutter.close - shutter.open);
+    const float aspect = float(film.resolution.y()) / float(film.resolution.x());
+    settings.filmExtent = film.diagonal / std::sqrt(1 + Sqr(aspect)) * Vec2f(1, aspect);
+    return LensSystem(settings, threads);
+}
+
+// Sets the plane, or the angles, that the image is seen through, and the thin lens.
+void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
+    const Parameters& params = entity.parameters;
+    const std::array<float, 4> screen = ReadScreen(entity, resolution);
+    const float fov = camera->projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
+    camera->lensRadius = params.GetFloat("lensradius", 0);
+    camera->focalDistance = params.GetFloat("focaldistance", 1e6f);
+    if (!(camera->lensRadius >= 0) || !(camera->focalDistance > 0))
+        throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
+
+    if (camera->projection == Projection::Environment) {
+        camera->lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
+        camera->planePerPixel = {2 * kPi / resolution.x(), kPi / resolution.y()};
+    } else {
+        const float scale =
+            camera->projection == Projection::Perspective ? std::tan(fov * kPi / 360) : 1;
+        camera->planeOrigin = scale * Vec2f(screen[0], screen[3]);
+        camera->planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
+                                              (screen[2] - screen[3]) / resolution.y());
+    }
 }
 
 }  // namespace
 
-Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings) {
+Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings,
+                  int threads) {
     const Entity& entity = description.camera;
-    const Parameters& params = entity.parameters;
-    const Vec2i resolution = film.resolution;
     Camera camera;
     camera.projection = ReadProjection(entity);
-    const std::array<float, 4> screen = ReadScreen(entity, resolution);
-    const float fov = camera.projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
     const Shutter shutter = ReadShutter(entity);
-    if (params.GetFloat("shutterclose", 1) < params.GetFloat("shutteropen", 0))
+    if (entity.parameters.GetFloat("shutterclose", 1) <
+        entity.parameters.GetFloat("shutteropen", 0))
         warnings.Add(entity.loc, "the shutter closes before it opens; the times are swapped");
-    camera.lensRadius = params.GetFloat("lensradius", 0);
-    camera.focalDistance = params.GetFloat("focaldistance", 1e6f);
-    if (!(camera.lensRadius >= 0) || !(camera.focalDistance > 0))
-        throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
-    params.ReportUnused("Camera \"" + entity.name + "\"", warnings);
-
-    if (camera.projection == Projection::Environment) {
-        camera.lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
-        camera.planePerPixel = {2 * kPi / resolution.x(), kPi / resolution.y()};
+    if (camera.projection == Projection::Realistic) {
+        camera.lenses = ReadLenses(description, film, shutter, threads, warnings);
+        camera.perPixel = film.resolution.cast<float>().cwiseInverse();
     } else {
-        const float scale =
-            camera.projection == Projection::Perspective ? std::tan(fov * kPi / 360) : 1;
-        camera.planeOrigin = scale * Vec2f(screen[0], screen[3]);
-        camera.planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
-                                             (screen[2] - screen[3]) / resolution.y());
+        ReadPlane(entity, film.resolution, &camera);
     }
+    entity.parameters.ReportUnused("Camera \"" + entity.name + "\"", warnings);
     camera.worldFromCamera = description.cameraFromWorld.inverse();
     if (description.movingCameraFromWorld) {
         const auto& [open, close] = description.movingCameraFromWorld->at;
@@ -134,7 +194,7 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
 Mat4d WorldToCamera(const Camera& camera) { return camera.worldFromCamera.inverse(); }
 
 std::optional<Mat4d> WorldToNdc(const Camera& camera, const FilmSettings& film) {
-    if (camera.projection == Projection::Environment) return {};
+    if (camera.projection == Projection::Environment || camera.lenses) return {};
     const bool isPerspective = camera.projection == Projection::Perspective;
     // Project onto the plane z = 1, or along z, then scale the image to [0, 1]^2.
     Mat4d ndcFromCamera = Mat4d::Zero();

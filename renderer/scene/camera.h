@@ -1,14 +1,15 @@
 // Generates camera rays: pbrt-v3's perspective and orthographic cameras, with pinhole or thin lens,
-// and its environment camera.
+// its environment camera, and its realistic one, with lenses as they are built.
 #pragma once
 
 #include "renderer/input/description.h"
 #include "renderer/scene/animated_transform.h"
 #include "renderer/scene/film_settings.h"
+#include "renderer/scene/lens_system.h"
 
 namespace lull {
 
-enum class Projection { Perspective, Orthographic, Environment };
+enum class Projection { Perspective, Orthographic, Environment, Realistic };
 
 struct Camera {
     Projection projection = Projection::Perspective;
@@ -30,23 +31,43 @@ struct Camera {
     // worldFromCamera that of the time when the shutter opens.
     std::optional<AnimatedTransform> motion;
 
+    std::optional<LensSystem> lenses;  // of realistic cameras
+    Vec2f perPixel = Vec2f::Zero();    // theirs: the share of the film
+
+    bool HasLens() const { return lensRadius > 0 || lenses; }
+
     // Returns the ray through `film` (pixels) and the lens point that u chooses, at `time` from 0
-    // where the shutter opens to 1; direction unit.
-    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time = 0) const {
+    // where the shutter opens to 1; direction unit. The radiance that it finds counts *weight
+    // times, which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
+    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
+        *weight = 1;
         const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
-                                                              : GenerateOtherRay(film, lens);
+                        : lenses ? GenerateRealisticRay(film, lens, weight)
+                                 : GenerateOtherRay(film, lens);
         return motion ? Move(ray, time) : ray;
     }
+    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time = 0) const {
+        float weight;
+        return GenerateRay(film, lens, time, &weight);
+    }
+
+    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that through `film`
+    // and `lens`. For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it;
+    // nothing where no light passes there.
+    std::optional<Ray> NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
+                               int axis) const;
 
   private:
+    Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
     Ray Move(const Ray& ray, float time) const;
 };
 
-// Reads Camera "perspective", "orthographic" or "environment". Throws Error for other cameras, a
-// field of view outside (0, 180) or a transform that cannot be inverted.
-Camera MakeCamera(const Description&, const FilmSettings&, Warnings&);
+// Reads Camera "perspective", "orthographic", "environment" or "realistic", whose exit pupils are
+// found with `threads` threads (0: all). Throws Error for other cameras, a field of view outside
+// (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
+Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
 
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
 // is nothing where no matrix projects as the camera does.

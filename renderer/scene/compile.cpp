@@ -60,7 +60,7 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     auto scene = std::make_unique<Scene>();
     scene->film = MakeFilmSettings(description, options.film, warnings);
     scene->filter = Filter(description, warnings);
-    scene->camera = MakeCamera(description, scene->film, warnings);
+    scene->camera = MakeCamera(description, scene->film, warnings, options.threads);
     ReadSampler(description.sampler, scene.get(), warnings);
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
     scene->media = MediumTable(description, warnings);

@@ -43,7 +43,9 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
     film.maxSampleLuminance = params.GetFloat("maxsampleluminance", kInfinity);
     if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0))
         throw Error(entity.loc, "\"scale\" and \"maxsampleluminance\" have to be positive");
-    params.GetFloat("diagonal", 35);  // only realistic cameras read it
+    film.diagonal = params.GetFloat("diagonal", 35) * 0.001f;  // millimetres
+    if (!(film.diagonal > 0) || !std::isfinite(film.diagonal))
+        throw Error(entity.loc, "\"diagonal\" has to be positive");
     params.ReportUnused("Film \"image\"", warnings);
     return film;
 }

@@ -12,6 +12,7 @@ struct FilmSettings {
     Vec2i resolution = {1280, 720};  // of the whole image, pixels
     Vec2i cropMin = {0, 0};          // the pixels rendered: [cropMin, cropMax)
     Vec2i cropMax = {1280, 720};
+    float diagonal = 0.035f;  // of the whole image on the film, metres (realistic cameras)
     std::string filename = "lull.exr";
     float scale = 1;                       // multiplies every sample, exposure included
     float exposure = 0;                    // in stops

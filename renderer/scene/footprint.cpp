@@ -23,9 +23,10 @@ void ComputeFootprint(const Camera& camera, const Vec2f& film, const Vec2f& lens
     const Ray ray = camera.GenerateRay(film, lens, time);
     std::array<Vec3f, 2> moves;
     for (int axis = 0; axis < 2; ++axis) {
-        const Vec2f step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);
-        const Ray next = camera.GenerateRay(film + step, lens, time);
-        const Vec3f o = ray.o + spacing * (next.o - ray.o), d = ray.d + spacing * (next.d - ray.d);
+        const std::optional<Ray> next = camera.NextRay(ray, film, lens, time, axis);
+        if (!next) return;
+        const Vec3f o = ray.o + spacing * (next->o - ray.o);
+        const Vec3f d = ray.d + spacing * (next->d - ray.d);
         const float t = hit->n.dot(hit->p - o) / hit->n.dot(d);
         if (!std::isfinite(t)) return;
         moves[axis] = o + t * d - hit->p;

@@ -102,10 +102,10 @@ void GoThrough(const SurfaceInteraction& hit, Path* path) {
 
 }  // namespace
 
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-             const Vec2f& lens, float time) {
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+             const Vec2f& film, const Vec2f& lens, float time) {
     Rgb L = Rgb::Zero();
-    Path path{.ray = scene.camera.GenerateRay(film, lens, time)};
+    Path path{.ray = ray};
     for (int bounces = 0;; ++bounces) {
         // Stop where the ray could only add emission that has been counted or cannot be found.
         const bool isLast = bounces >= scene.maxDepth;
@@ -154,14 +154,17 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
     sampler.StartSample(pixel, index);
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
-    const Vec2f lens = scene.camera.lensRadius > 0 ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
+    const Vec2f lens = scene.camera.HasLens() ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
     const float time = scene.isMoving ? sampler.Get1D() : 0;
-    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, film, lens, time)
-                               : Radiance(scene, estimator, sampler, film, lens, time);
+    float cameraWeight;
+    const Ray ray = scene.camera.GenerateRay(film, lens, time, &cameraWeight);
+    if (cameraWeight == 0) return {Rgb::Zero(), false};
+    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, ray, film, lens, time)
+                               : Radiance(scene, estimator, sampler, ray, film, lens, time);
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
-    return {L * (filter.weight * scene.film.scale), false};
+    return {L * (cameraWeight * filter.weight * scene.film.scale), false};
 }
 
 }  // namespace lull

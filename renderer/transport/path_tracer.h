@@ -21,9 +21,9 @@ struct PathSample {
 PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
                         const Vec2i& pixel, uint32_t index);
 
-// Returns the radiance that arrives along the camera ray through `film` (pixels) and `lens` at
-// `time`, from 0 where the shutter opens to 1.
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-             const Vec2f& lens, float time);
+// Returns the radiance that arrives at `time`, from 0 where the shutter opens to 1, along `ray`:
+// the camera's through `film` (pixels) and `lens`.
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+             const Vec2f& film, const Vec2f& lens, float time);
 
 }  // namespace lull

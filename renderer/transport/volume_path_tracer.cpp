@@ -195,10 +195,10 @@ void ScatterInMedium(const Vertex& v, Sampler& sampler, Path* path) {
 
 }  // namespace
 
-Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-                   const Vec2f& lens, float time) {
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+                   const Vec2f& film, const Vec2f& lens, float time) {
     Rgb L = Rgb::Zero();
-    Path path{.ray = scene.camera.GenerateRay(film, lens, time)};
+    Path path{.ray = ray};
     int medium = scene.media.ofCamera;
     const auto direct = [&](const Vertex& v) {
         if (scene.lights.Count() == 0) return;

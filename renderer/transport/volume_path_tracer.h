@@ -6,10 +6,10 @@
 
 namespace lull {
 
-// Returns the radiance that arrives along the camera ray through `film` (pixels) and `lens` at
-// `time` (of 1), which surfaces and media scatter. Shadow rays go through surfaces of material
-// none.
-Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2f& film,
-                   const Vec2f& lens, float time);
+// Returns the radiance that arrives at `time` (of 1) along `ray`, the camera's through `film`
+// (pixels) and `lens`, which surfaces and media scatter. Shadow rays go through surfaces of
+// material none.
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+                   const Vec2f& film, const Vec2f& lens, float time);
 
 }  // namespace lull

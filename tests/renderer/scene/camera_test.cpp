@@ -184,7 +184,7 @@ TEST(Camera, RefusesNonsense) {
               }),
               "");
     Description description;
-    description.camera.name = "realistic";
+    description.camera.name = "fisheye";
     Warnings warnings;
     EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
 }

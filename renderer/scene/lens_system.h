@@ -1,0 +1,69 @@
+// Traces rays from the film through the lenses of a camera (Kolb, Mitchell and Hanrahan 1995), as
+// pbrt-v3's realistic camera does (3rd ed., 6.4).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "renderer/base/error.h"
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Lies where the axis meets it; lengths in metres.
+struct LensInterface {
+    double radius;          // of curvature, positive if convex as seen from the scene; 0: a stop
+    double thickness;       // to the next interface towards the film, of the last one to the film
+    double eta;             // index of refraction on the film's side
+    double apertureRadius;  // no light passes farther from the axis
+};
+
+// Stands on the z axis of camera space, with the film at z = 0 and the scene at positive z.
+class LensSystem {
+  public:
+    struct Settings {
+        std::vector<LensInterface> interfaces;  // from the scene to the film; at least one
+        Vec2f filmExtent;                       // width and height of the film, metres
+        float focusDistance;                    // from the film, metres; positive
+        bool simpleWeighting;                   // see Generate
+        float exposureTime;                     // seconds, at least 0
+        FileLoc loc;                            // for messages
+    };
+
+    // Moves the lenses to focus at the distance, by the approximation as one thick lens, and bounds
+    // where light leaves them to each distance from the middle of the film, with `threads` threads
+    // (0: all). Throws Error if no light passes along the axis, or they cannot focus so near.
+    LensSystem(const Settings&, int threads);
+
+    // Generates the ray, in camera space, of the point (s, t) of the film, in [0, 1] from the left
+    // and from the top of the image, through the point of the exit pupil's bounds that u chooses;
+    // the direction is unit. The weight of its radiance is 0, and the ray none, where no light
+    // passes. Else it is cos^4 of the angle at the film times the area of those bounds, with simple
+    // weighting over that for the middle of the film, otherwise over the squared distance from film
+    // to lens and times the exposure.
+    Ray Generate(const Vec2f& st, const Vec2f& u, float* weight) const;
+
+  private:
+    struct Line {
+        Eigen::Vector3d o, d;
+    };
+    struct Area {
+        Eigen::Vector2d lower, upper;
+    };
+
+    double RearZ() const { return interfaces.back().thickness; }
+    double FrontZ() const;
+    // Follow a ray to the other side; false where it does not get there.
+    bool TraceFromFilm(Line*) const;
+    bool TraceFromScene(Line*) const;
+    double FocusedRearZ(const Settings&) const;
+    Area BoundExitPupil(double r0, double r1, const std::vector<Vec2f>& points) const;
+
+    std::vector<LensInterface> interfaces;
+    std::vector<Area> pupils;  // by the distance from the middle of the film, in the lens's plane
+    Vec2f filmExtent;
+    double filmRadius;  // half its diagonal
+    double scale;       // of weights
+};
+
+}  // namespace lull
