@@ -35,9 +35,12 @@ Counts CountKinds(const Entities& entities) {
 }
 
 Counts CountShapes(const Description& description) {
-    Counts counts = CountKinds(description.shapes);
-    for (const ObjectEntity& object : description.objects)
-        for (const ShapeEntity& shape : object.shapes) ++counts[shape.name];
+    Counts counts;
+    const auto count = [&](const std::vector<ShapeEntity>& shapes) {
+        for (const ShapeEntity& shape : shapes) counts[shape.name] += 1 + int(shape.strands.size());
+    };
+    count(description.shapes);
+    for (const ObjectEntity& object : description.objects) count(object.shapes);
     return counts;
 }
 
@@ -73,7 +76,8 @@ void PrintView(const Description& description, const Scene& scene) {
     const Vec3f position = scene.camera.worldFromCamera.topRightCorner<3, 1>().cast<float>();
     Line("camera",
          fmt::format("{} at {}{}", description.camera.name, VectorText(position),
-                     scene.camera.lensRadius > 0
+                     scene.camera.lenses ? ""
+                     : scene.camera.lensRadius > 0
                          ? fmt::format(", lens radius {:g}, focus at {:g}", scene.camera.lensRadius,
                                        scene.camera.focalDistance)
                          : ", pinhole"));

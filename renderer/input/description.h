@@ -115,6 +115,9 @@ struct ShapeEntity : Entity {
     std::optional<Entity> areaLight;  // of AreaLightSource, in force at the shape
     // Of MediumInterface, into Description::media; -1: vacuum.
     int insideMedium = -1, outsideMedium = -1;
+    // Of a curve: directives that followed and differ in points, widths and the like alone. Hair
+    // comes as one directive a strand, and makes one shape.
+    std::vector<Entity> strands;
 };
 
 // Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the

@@ -48,6 +48,7 @@ class Hasher {
         Number(shape.reverseOrientation);
         Number(shape.material);
         if (shape.areaLight) Of(*shape.areaLight);
+        for (const Entity& strand : shape.strands) Of(strand);
         if (description.media.empty()) return;
         Number(shape.insideMedium);
         Number(shape.outsideMedium);

@@ -72,13 +72,19 @@ std::optional<float> IntersectQuadric(const ShapeUser& user, const Ray& ray) {
     return Intersect(std::get<Revolved>(geometry), ray);
 }
 
-void QuadricBounds(const RTCBoundsFunctionArguments* args) {
+std::optional<CurveHit> IntersectCurve(const ShapeUser& user, uint32_t primitive, const Ray& ray) {
+    return Intersect(std::get<Curves>(user.shapes->shapes[user.shape].geometry), primitive, ray);
+}
+
+void ShapeBoundsCallback(const RTCBoundsFunctionArguments* args) {
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
     const auto& geometry = user.shapes->shapes[user.shape].geometry;
     const Bounds3f b = std::visit(
-        []<typename G>(const G& g) {
+        [&]<typename G>(const G& g) {
             if constexpr (std::is_same_v<G, Mesh>)
                 return Bounds3f();  // meshes have bounds of Embree's own
+            else if constexpr (std::is_same_v<G, Curves>)
+                return g.WorldBounds(args->primID);
             else
                 return g.WorldBounds();
         },
@@ -106,6 +112,27 @@ void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args) {
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
     if (IntersectQuadric(user, RayOf(*ray))) ray->tfar = -kInfinity;
+}
+
+void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto hit = IntersectCurve(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                                    args->primID, RayOf(rayHit->ray));
+    if (!hit) return;
+    rayHit->ray.tfar = hit->t;
+    rayHit->hit.u = hit->u;
+    rayHit->hit.v = hit->v;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
+void OccludedCurveCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (IntersectCurve(user, args->primID, RayOf(*ray))) ray->tfar = -kInfinity;
 }
 
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
@@ -141,10 +168,13 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
                                    mesh->triangles.data(), 0, 3 * sizeof(uint32_t),
                                    mesh->triangles.size());
     } else {
-        rtcSetGeometryUserPrimitiveCount(geometry, 1);
-        rtcSetGeometryBoundsFunction(geometry, QuadricBounds, nullptr);
-        rtcSetGeometryIntersectFunction(geometry, IntersectQuadricCallback);
-        rtcSetGeometryOccludedFunction(geometry, OccludedQuadricCallback);
+        const bool isCurve = std::holds_alternative<Curves>(shape.geometry);
+        rtcSetGeometryUserPrimitiveCount(geometry, shape.PrimitiveCount());
+        rtcSetGeometryBoundsFunction(geometry, ShapeBoundsCallback, nullptr);
+        rtcSetGeometryIntersectFunction(
+            geometry, isCurve ? IntersectCurveCallback : IntersectQuadricCallback);
+        rtcSetGeometryOccludedFunction(geometry,
+                                       isCurve ? OccludedCurveCallback : OccludedQuadricCallback);
     }
     if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
     if (mesh && (shape.alpha || shape.shadowAlpha))

@@ -43,9 +43,11 @@ struct MovingUser {
 };
 
 // Callbacks of Embree, called with one ray at a time, as rays are traced one at a time. Those of
-// quadrics intersect spheres and disks; the filters say that a hit is cut out by alpha.
+// quadrics and curves intersect what is no mesh; the filters say that a hit is cut out by alpha.
 void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
 void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args);
+void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args);
+void OccludedCurveCallback(const RTCOccludedFunctionNArguments* args);
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterByCoverage(const RTCFilterFunctionNArguments* args);

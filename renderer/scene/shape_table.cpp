@@ -51,8 +51,9 @@ Ray IntoInstance(const Instance& instance, const Ray& ray) {
 }
 
 uint32_t Shape::PrimitiveCount() const {
-    const Mesh* mesh = std::get_if<Mesh>(&geometry);
-    return mesh ? uint32_t(mesh->triangles.size()) : 1;
+    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) return uint32_t(mesh->triangles.size());
+    const Curves* curves = std::get_if<Curves>(&geometry);
+    return curves ? curves->PrimitiveCount() : 1;
 }
 
 ShapeTable::ShapeTable(const Description& description, const TextureTable& textures,
@@ -159,8 +160,11 @@ void ShapeTable::InteractIn(const Instance* instance, const Ray& ray, const Hit&
             lull::Interact(*sphere, local, hit.t, needs, interaction);
         else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
             lull::Interact(*disk, local, hit.t, needs, interaction);
+        else if (const Revolved* revolved = std::get_if<Revolved>(&shape.geometry))
+            lull::Interact(*revolved, local, hit.t, needs, interaction);
         else
-            lull::Interact(std::get<Revolved>(shape.geometry), local, hit.t, needs, interaction);
+            lull::Interact(std::get<Curves>(shape.geometry), hit.primitive, local,
+                           {hit.t, hit.b1, hit.b2}, interaction);
     }
     if ((needs & (kNeedsSecondUv | kNeedsColor)) && !std::holds_alternative<Mesh>(shape.geometry)) {
         interaction->uv1 = interaction->uv;

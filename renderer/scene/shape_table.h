@@ -6,6 +6,7 @@
 
 #include "renderer/scene/animated_transform.h"
 #include "renderer/scene/material.h"
+#include "renderer/scene/shapes/curves.h"
 #include "renderer/scene/shapes/mesh.h"
 #include "renderer/scene/shapes/quadric.h"
 #include "renderer/scene/shapes/revolved.h"
@@ -24,7 +25,7 @@ struct Coverage {
 };
 
 struct Shape {
-    std::variant<Mesh, Sphere, Disk, Revolved> geometry;
+    std::variant<Mesh, Sphere, Disk, Revolved, Curves> geometry;
     int material = -1;
     int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
     std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)
@@ -47,7 +48,7 @@ struct Instance {
 
 struct Hit {
     float t;
-    float b1, b2;  // triangles: weights of the second and third vertex
+    float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v
     int shape;
     uint32_t primitive;
     int instance;  // -1: the shape stands in the world itself

@@ -6,7 +6,10 @@
 #include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/scene/lens_file.h"
 #include "renderer/scene/materials/fourier_file.h"
+#include "renderer/scene/medium_table.h"
+#include "renderer/scene/shape_table.h"
 #include "stopping/learning/observers.h"
 #include "stopping/learning/search.h"
 #include "stopping/network/keras_config.h"
@@ -55,6 +58,28 @@ void FuzzBsdf(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     try {
         LoadFourierTable(path);
+    } catch (const Error&) {
+    }
+}
+
+void FuzzLens(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        LoadLens(path, {});
+    } catch (const Error&) {
+    }
+}
+
+// What the parameters of a scene are read into, without the structure that rays are traced in.
+void FuzzScene(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    Warnings warnings;
+    try {
+        const Description d = ParsePbrt(path, {.substitute = true}, warnings);
+        const TextureTable textures(d, true, warnings);
+        const MaterialTable materials(d, textures, true, warnings);
+        const ShapeTable shapes(d, textures, true, warnings);
+        const MediumTable media(d, warnings);
     } catch (const Error&) {
     }
 }
@@ -134,6 +159,8 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"gltf", FuzzGltf},
             {"ply", FuzzPly},
             {"bsdf", FuzzBsdf},
+            {"lens", FuzzLens},
+            {"scene", FuzzScene},
             {"model", FuzzModel},
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds},

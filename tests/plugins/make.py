@@ -92,6 +92,22 @@ def grid_medium():
 BOX = '''Shape "trianglemesh" "integer indices" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]
   "point P" [-1 -1 .02 1 -1 .02 1 1 .02 -1 1 .02 -1 -1 1.98 1 -1 1.98 1 1 1.98 -1 1 1.98]
 '''
+
+
+def fur(strands, length, width):
+    """Lets strands grow out of a ball of radius 0.6 above the floor, bent to one side."""
+    rng = random.Random(2)
+    text = ''
+    for _ in range(strands):
+        z, phi = rng.uniform(-.9, 1), rng.uniform(0, 2 * math.pi)
+        out = [math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi), z]
+        bend = [rng.gauss(.5, .3), rng.gauss(0, .3), rng.gauss(-.5, .3)]
+        points = ' '.join(f'{.6 * o + length * t * o + length * t * t * b + (.9 if axis == 2 else 0):.3f}'
+                          for t in (0, 1 / 3, 2 / 3, 1) for axis, (o, b) in enumerate(zip(out, bend)))
+        text += f'Shape "curve" "point P" [{points}] "float width0" {width} "float width1" {width / 4}\n'
+    return text
+
+
 LAMP = '''AttributeBegin
 AreaLightSource "diffuse" "rgb L" [9 8 7]
 Translate 1.6 -1.5 2.6
@@ -107,6 +123,19 @@ SHAPES = {
                          'Translate 0 0 .8'),
     'heightfield': shape('''Shape "heightfield" "integer nu" 4 "integer nv" 3
   "float Pz" [.1 .5 .2 .7  .6 .1 .9 .3  .2 .8 .4 .1]''', 'Scale 2.4 2 1\nTranslate -.5 -.5 .1'),
+    'curve': shape('''Shape "curve" "point P" [-1.2 0 .2  -.9 .3 1.9  -.2 -.6 1.6  -.5 .1 .3] "float width0" .3 "float width1" .1
+Shape "curve" "string type" "cylinder" "string basis" "bspline" "integer splitdepth" 2 "float width" .25
+  "point P" [-.6 -.5 -.6  -.2 -.4 .4  .2 .2 1.4  .5 -.3 1.2  .2 -.8 .5  .5 -.9 -.9]
+Shape "curve" "string type" "ribbon" "integer degree" 2 "integer splitdepth" 0 "float width0" .5 "float width1" 0
+  "point P" [.9 -.5 .1  1.3 .2 .9  .7 0 1.7  .1 -.2 2.4  -.6 .3 1.9] "normal N" [0 -1 0  .4 -1 .3  1 -.3 .2]
+Shape "curve" "string type" "ribbon" "string basis" "bspline" "integer degree" 2 "float width" .2
+  "point P" [1 -.9 .1  1 -.4 .6  .2 -1 .7  -.9 -.8 .2  -1.5 -1 0] "normal N" [.3 -1 .1  0 -1 .9  .2 -.2 1  -.3 -.5 1]''',
+                   'Rotate 10 .2 1 .3\nScale 1.1 1.1 1.1'),
+    # Widths and sides are those before the transform.
+    'curve-stretched': shape('''Shape "curve" "point P" [-.8 0 .2  -.9 .3 1.3  -.2 -.6 1.1  -.5 .1 .3] "float width" .3
+Shape "curve" "string type" "cylinder" "point P" [0 0 .1  .1 .3 1.5  .6 -.6 1.2  .4 .1 .3] "float width" .3
+Shape "curve" "string type" "ribbon" "point P" [.9 0 .2  1 -.4 1.3  .2 -.6 1.1  -.6 -.7 .3] "float width" .2
+  "normal N" [.3 -1 0  -.1 -1 .9]''', 'Scale -1 1.5 1.2'),
     'nurbs': shape('''Shape "nurbs" "integer nu" 4 "integer nv" 4 "integer uorder" 4 "integer vorder" 3
   "float uknots" [0 0 0 0 1 1 1 1] "float vknots" [0 0 0 .5 1 1 1]
   "point P" [-1 -1 .2  -.3 -1 .9  .3 -1 .1  1 -1 .6  -1 -.3 1  -.3 -.3 .2  .3 -.3 1.6  1 -.3 .3
@@ -117,6 +146,12 @@ SCENES = {
 Camera "orthographic" "float screenwindow" [-2 2 -1.6 1.9] "float lensradius" .3 "float focaldistance" 5.8'''),
     'camera-environment': scene(SKY + FLOOR + 'Translate 0 1.6 1\nShape "sphere" "float radius" .8', '''LookAt 0 0 1  1 2 .7  0 0 1
 Camera "environment"'''),
+    # Wide open, so that light is lost towards the corners.
+    'camera-realistic': scene(SKY + FLOOR + 'Translate .9 -1.2 .6\nShape "sphere" "float radius" .6', '''LookAt 0 -5 2.2  0 0 0.4  0 0 1
+Camera "realistic" "string lensfile" "lens.dat" "float aperturediameter" 17 "float focusdistance" 4''', samples=2048),
+    'camera-realistic-exposed': scene(SKY + FLOOR + 'Translate .9 -1.2 .6\nShape "sphere" "float radius" .6', '''LookAt 0 -5 2.2  0 0 0.4  0 0 1
+Camera "realistic" "string lensfile" "lens.dat" "float aperturediameter" 6 "bool simpleweighting" "false"
+  "float focusdistance" 5 "float shutteropen" .1 "float shutterclose" .6''', samples=2048),
     'texture-bilerp': texture('bilerp', '"rgb v00" [1 0 0] "rgb v01" [0 1 0] "rgb v10" [0 0 1] "rgb v11" [1 1 1]'),
     'texture-uv': texture('uv', '"float uscale" 3 "float vscale" 2 "float udelta" .3'),
     'texture-dots': texture('dots', '"float uscale" 7 "float vscale" 5 "rgb inside" [1 .2 .1] "rgb outside" [.1 .3 .9]'),
@@ -163,6 +198,12 @@ Rotate 70 0 1 0
 Shape "cylinder" "float radius" .3 "float zmin" 0 "float zmax" 3
 AttributeEnd
 '''),
+    # Hair on what it is for: the offset across it comes from the curve.
+    'material-hair-curves': scene(SKY + FLOOR + f'''AttributeBegin
+Material "hair" "rgb color" [.6 .35 .2] "float beta_m" .35
+{fur(150, .5, .06)}AttributeEnd
+Translate 0 0 .9
+Shape "sphere" "float radius" .6''', depth=8),
     'material-fourier': material('Material "fourier" "string bsdffile" "layered.bsdf"'),
     'medium-homogeneous': scene('''MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [.1 .2 .4] "rgb sigma_s" [1.2 .9 .5] "float g" .4
 ''' + SKY + LAMP + FLOOR + '''AttributeBegin
@@ -300,6 +341,17 @@ def write_bsdf(path, nodes):
                    struct.pack(f'<{len(places)}i{len(coefficients)}f', *places, *coefficients))
 
 
+LENS = '''# Two achromats about a stop, about 42 mm: radius, thickness, index, diameter, in millimetres
+  48    5    1.52  24
+ -60    1.5  1.62  24
+-170    4    1     24
+   0    4    0     18
+ 170    1.5  1.62  22
+  60    5    1.52  22
+ -48    30   1     22
+'''
+
+
 def write_scenes():
     folder = os.path.join(HERE, 'scenes')
     os.makedirs(folder, exist_ok=True)
@@ -307,6 +359,8 @@ def write_scenes():
         with open(os.path.join(folder, name + '.pbrt'), 'w') as file:
             file.write(text)
     write_bsdf(os.path.join(folder, 'layered.bsdf'), 16)
+    with open(os.path.join(folder, 'lens.dat'), 'w') as file:
+        file.write(LENS)
     # Sides are powers of two: others pbrt-v3 resamples.
     write_png(os.path.join(folder, 'beam.png'),
               [[(x * 8, 40 + y * 13, (x // 4 + y // 4) % 2 * 200 + 30) for x in range(32)]

@@ -184,6 +184,33 @@ void PbrtBuilder::LightSource() {
 
 void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.reverseOrientation; }
 
+namespace {
+
+// Says whether a curve makes one shape with that before it.
+bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
+    const auto same = [&](const auto& read) {
+        return read(last.parameters) == read(next.parameters);
+    };
+    return last.name == "curve" && next.name == "curve" && !last.areaLight && !next.areaLight &&
+           last.material == next.material && last.reverseOrientation == next.reverseOrientation &&
+           last.insideMedium == next.insideMedium && last.outsideMedium == next.outsideMedium &&
+           last.worldFromObject == next.worldFromObject &&
+           same([](const Parameters& p) { return p.GetString("type", "flat"); }) &&
+           same([](const Parameters& p) {
+               return std::pair(p.GetInt("splitdepth", -1), p.GetFloat("splitdepth", 3));
+           });
+}
+
+// Adds a shape, or makes it a strand of the last one.
+void AddShape(ShapeEntity shape, std::vector<ShapeEntity>* shapes) {
+    if (!shapes->empty() && IsStrandOf(shapes->back(), shape))
+        shapes->back().strands.push_back(std::move(static_cast<Entity&>(shape)));
+    else
+        shapes->push_back(std::move(shape));
+}
+
+}  // namespace
+
 void PbrtBuilder::Shape() {
     auto shape = ReadAs<ShapeEntity>();
     shape.worldFromObject = state.ctm.at[0];
@@ -197,13 +224,13 @@ void PbrtBuilder::Shape() {
     }
     if (currentObject < 0) {
         if (state.areaLight) shape.areaLight = *state.areaLight;
-        description.shapes.push_back(std::move(shape));
+        AddShape(std::move(shape), &description.shapes);
         return;
     }
     if (state.areaLight)
         warnings.Add(loc, "area light ignored in an object definition",
                      "shapes of instanced objects cannot emit light");
-    description.objects[currentObject].shapes.push_back(std::move(shape));
+    AddShape(std::move(shape), &description.objects[currentObject].shapes);
 }
 
 void PbrtBuilder::Texture() {

@@ -4,7 +4,9 @@
 
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/scene/shapes/curve_reader.h"
 #include "renderer/scene/shapes/patches.h"
+#include "renderer/scene/shapes/placement.h"
 
 namespace lull {
 namespace {
@@ -89,8 +91,6 @@ MeshData SubdividedMesh(const ShapeEntity& entity) {
                          levels, entity.loc);
 }
 
-bool Mirrors(const Mat4d& m) { return m.topLeftCorner<3, 3>().determinant() < 0; }
-
 // Reads what only glTF's meshes have, four numbers a vertex and two of the second texture
 // coordinates: "color", "tangent", "uv1".
 void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* mesh) {
@@ -132,29 +132,6 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     });
     mesh.p.push_back(Vec3f::Zero());  // the accelerator reads past the last vertex
     return mesh;
-}
-
-// Takes the scale out of a transform, for the sizes of the shape to be multiplied by: sampling
-// takes a shape's area and the cone that it subtends from its sizes. A transform that stretches is
-// left as it is, which emitting shapes must not have.
-float TakeScale(const ShapeEntity& entity, Mat4d* m) {
-    auto linear = m->topLeftCorner<3, 3>();
-    const double scale = linear.col(0).norm();
-    if ((linear.transpose() * linear).isApprox(scale * scale * Eigen::Matrix3d::Identity(), 1e-4)) {
-        linear /= scale;
-        return float(scale);
-    }
-    if (entity.areaLight)
-        throw Error(entity.loc, fmt::format("a light of shape \"{}\" under a transform that "
-                                            "stretches it is not modelled; a mesh is",
-                                            entity.name));
-    return 1;
-}
-
-QuadricPlacement PlacementOf(const ShapeEntity& entity, float* scale) {
-    Mat4d m = entity.worldFromObject;
-    *scale = TakeScale(entity, &m);
-    return {m, m.inverse(), entity.reverseOrientation, entity.reverseOrientation != Mirrors(m)};
 }
 
 float PhiMaxOf(const Parameters& params) {
@@ -280,10 +257,12 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
         shape.geometry = PlaceMesh(HeightfieldMesh(entity), entity, warnings);
     } else if (entity.name == "nurbs") {
         shape.geometry = PlaceMesh(NurbsMesh(entity), entity, warnings);
+    } else if (entity.name == "curve") {
+        shape.geometry = ReadCurves(entity, warnings);
     } else {
         const std::string message = fmt::format(
             "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, heightfield, nurbs, "
-            "sphere, disk, cylinder, cone, paraboloid and hyperboloid are",
+            "sphere, disk, cylinder, cone, paraboloid, hyperboloid and curve are",
             entity.name);
         if (!substitute) throw Error(entity.loc, message);
         warnings.Add(entity.loc, message + "; it is left out");
