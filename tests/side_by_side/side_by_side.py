@@ -1,209 +1,250 @@
-#!/usr/bin/env python3
-"""Renders a glTF file with lull and with Cycles and says by how much they differ. Not part of CI.
+#!/usr/bin/python3
+"""Renders scenes with lull and with Cycles, and says by how much they differ and who is faster.
 
-    tests/side_by_side/side_by_side.py LULL [MODEL.glb] [--spp 256] [--size 200] [--keep FOLDER]
+    apt-get install blender python3-numpy python3-openimageio
+    cmake --build --preset release --target lull pbrt_to_gltf
+    tests/side_by_side/side_by_side.py build/release OUT SCENE.pbrt|MODEL.glb...
 
-LULL is the program; without a model a Cornell box of Lambertian surfaces is rendered, which it
-writes itself. Needs Blender (Debian: blender). Both render with the same camera, lights and bounces,
-without denoising, clamping, a light threshold or adaptive sampling, with two threads. As imported,
-Blender's Principled surfaces are Disney's diffuse ones; a second render of Cycles has Lambertian ones
-in their place wherever a material has neither metal nor highlights, as lull has by the specification.
+Both render the same glTF file, which is made from a pbrt-v3 scene, and the same environment: same
+camera, light, bounces and filter, without denoising, clamping, thresholds of light or a limit of
+caustics. Images and measurements stay in the folder OUT; what is there already is not rendered
+again, so that --spp, --reference and the list of scenes can grow. Not part of CI.
 
-Prints the means of both images, their ratio, the mean absolute difference of pixels averaged over
-blocks of 10x10 pixels, and the samples that each took in a second of processor time.
+Seconds are those of processors, without loading, which is what the shortest render takes less its
+samples at the speed of the references.
 """
 
 import argparse
 import json
 import os
-import resource
-import struct
 import subprocess
 import sys
-import tempfile
 
-BOUNCES = 12
-
-
-def cornell():
-    """Returns a Cornell box as the bytes of a .glb file."""
-    data, root = b'', {
-        'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': []}], 'nodes': [],
-        'extensionsUsed': ['KHR_materials_specular', 'KHR_materials_emissive_strength'],
-        'meshes': [], 'accessors': [], 'bufferViews': [], 'materials': []}
-
-    def add(kind, entry):
-        root[kind].append(entry)
-        return len(root[kind]) - 1
-
-    def accessor(values, code, component, kind, count, **more):
-        nonlocal data
-        data += bytes(-len(data) % 4)
-        view = add('bufferViews', {'buffer': 0, 'byteOffset': len(data),
-                                   'byteLength': struct.calcsize(code) * len(values)})
-        data += struct.pack('<%d%s' % (len(values), code), *values)
-        return add('accessors', {'bufferView': view, 'componentType': component, 'type': kind,
-                                 'count': count, **more})
-
-    def material(color, **more):
-        return add('materials', {
-            'doubleSided': True,
-            'pbrMetallicRoughness': {'baseColorFactor': [*color, 1], 'metallicFactor': 0},
-            'extensions': {'KHR_materials_specular': {'specularFactor': 0},
-                           **more.pop('extensions', {})}, **more})
-
-    def mesh(points, triangles, surface, **node):
-        flat = [c for p in points for c in p]
-        position = accessor(flat, 'f', 5126, 'VEC3', len(points),
-                            min=[min(flat[i::3]) for i in range(3)],
-                            max=[max(flat[i::3]) for i in range(3)])
-        indices = accessor([i for t in triangles for i in t], 'H', 5123, 'SCALAR',
-                           3 * len(triangles))
-        made = add('meshes', {'primitives': [{'attributes': {'POSITION': position},
-                                              'indices': indices, 'material': surface}]})
-        root['scenes'][0]['nodes'].append(add('nodes', {'mesh': made, **node}))
-
-    quad = [(0, 1, 2), (0, 2, 3)]
-    box = [(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1),
-           (1, 1, -1)]
-    sides = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5),
-             (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7)]
-    white, red = material((.76, .74, .7)), material((.68, .17, .1))
-    blue = material((.09, .36, .42))
-    lamp = material((.8, .8, .8), emissiveFactor=[1, .75, .5],
-                    extensions={'KHR_materials_emissive_strength': {'emissiveStrength': 26}})
-    mesh([(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1)], quad, white)
-    mesh([(-1, 2, -1), (-1, 2, 1), (1, 2, 1), (1, 2, -1)], quad, white)
-    mesh([(-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)], quad, white)
-    mesh([(-1, 0, -1), (-1, 0, 1), (-1, 2, 1), (-1, 2, -1)], quad, red)
-    mesh([(1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)], quad, blue)
-    mesh([(-.28, 1.99, -.22), (.28, 1.99, -.22), (.28, 1.99, .22), (-.28, 1.99, .22)], quad, lamp)
-    mesh(box, sides, white, translation=[-.36, 0, -.34], scale=[.29, 1.2, .29],
-         rotation=[0, .174, 0, .985])
-    mesh(box, sides, white, translation=[.36, 0, .3], scale=[.3, .5, .3],
-         rotation=[0, -.148, 0, .989])
-    root['cameras'] = [{'type': 'perspective', 'perspective': {
-        'yfov': .499, 'aspectRatio': 1, 'znear': .1}}]
-    root['scenes'][0]['nodes'].append(
-        add('nodes', {'camera': 0, 'translation': [0, 1, 4.9]}))
-    data += bytes(-len(data) % 4)
-    root['buffers'] = [{'byteLength': len(data)}]
-    text = json.dumps(root).encode()
-    text += b' ' * (-len(text) % 4)
-    return (b'glTF' + struct.pack('<II', 2, 28 + len(text) + len(data)) +
-            struct.pack('<I', len(text)) + b'JSON' + text + struct.pack('<I', len(data)) +
-            b'BIN\0' + data)
-
-
-# Runs inside Blender: renders the model with Cycles, once as imported and once with Lambertian
-# surfaces, and compares the images.
-INSIDE = '''
-import bpy, json, sys, time
 import numpy as np
-o = json.loads(sys.argv[-1])
-bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_scene.gltf(filepath=o['model'])
-scene = bpy.context.scene
-if scene.world is None:
-    scene.world = bpy.data.worlds.new('none')
-scene.world.use_nodes = False
-scene.world.color = (0, 0, 0)
-scene.camera = next(x for x in scene.objects if x.type == 'CAMERA')
-r, c = scene.render, scene.cycles
-r.engine = 'CYCLES'
-r.resolution_x, r.resolution_y, r.resolution_percentage = o['width'], o['height'], 100
-r.threads_mode, r.threads = 'FIXED', 2
-r.image_settings.file_format, r.image_settings.color_depth = 'OPEN_EXR', '32'
-c.samples, c.use_adaptive_sampling, c.use_denoising = o['spp'], False, False
-c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = o['bounces']
-c.transparent_max_bounces = 64
-c.sample_clamp_direct = c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
-c.pixel_filter_type, c.filter_width = 'BOX', 1
+import OpenImageIO as oiio
 
-def render(name):
-    r.filepath = o['folder'] + '/' + name + '.exr'
-    start = time.process_time()
-    bpy.ops.render.render(write_still=True)
-    return time.process_time() - start
+HERE = os.path.dirname(os.path.abspath(__file__))
+WEIGHTS = np.array([0.212671, 0.715160, 0.072169])  # of linear R, G and B in the luminance
+PROGRAMS = ('lull', 'cycles')
 
-def lambertian():
-    for m in bpy.data.materials:
-        if not m.use_nodes:
-            continue
-        p = next((n for n in m.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
-        if p is None or p.inputs['Metallic'].default_value or p.inputs['Specular'].default_value:
-            continue
-        links, nodes = m.node_tree.links, m.node_tree.nodes
-        d, e, a = (nodes.new(k) for k in
-                   ('ShaderNodeBsdfDiffuse', 'ShaderNodeEmission', 'ShaderNodeAddShader'))
-        d.inputs['Color'].default_value = p.inputs['Base Color'].default_value
-        for link in list(p.inputs['Base Color'].links):
-            links.new(link.from_socket, d.inputs['Color'])
-        e.inputs['Color'].default_value = p.inputs['Emission'].default_value
-        e.inputs['Strength'].default_value = p.inputs['Emission Strength'].default_value
-        links.new(d.outputs[0], a.inputs[0])
-        links.new(e.outputs[0], a.inputs[1])
-        for link in list(p.outputs[0].links):
-            links.new(a.outputs[0], link.to_socket)
 
-def pixels(name):
-    image = bpy.data.images.load(o['folder'] + '/' + name + '.exr')
-    image.colorspace_settings.name = 'Non-Color'
-    return np.array(image.pixels[:], 'f').reshape(image.size[1], image.size[0], -1)[:, :, :3]
+def read(path):
+    """Returns the RGB of an EXR, and the samples per pixel in [0, 1] of all or as they are."""
+    image = oiio.ImageBuf(path)
+    if image.has_error:
+        sys.exit(image.geterror())
+    names = [name.split('.', 1)[-1] for name in image.spec().channelnames]
+    pixels = np.asarray(image.get_pixels(oiio.FLOAT), np.float64)
+    named = {name: pixels[:, :, i] for i, name in enumerate(names)}
+    rgb = np.stack([named[n] if n in named else named['Combined.' + n] for n in 'RGB'], 2)
+    return rgb, named.get('spp', named.get('Debug Sample Count.X'))
+
+
+def lightness(rgb):
+    """Returns CIE 1976 lightness, 0 to 100, of what a display shows of linear RGB."""
+    y = np.clip(rgb, 0, 1) @ WEIGHTS
+    return 116 * np.where(y > 0.008856, np.cbrt(y), 7.787 * y + 16 / 116) - 16
+
+
+class Scene:
+    """Holds what is known of one scene: its files, and for each render the processor seconds."""
+
+    def __init__(self, path, o):
+        self.path, self.o = os.path.abspath(path), o
+        parts = self.path.split(os.sep)
+        stem = os.path.splitext(parts[-1])[0]
+        self.name = parts[-2] if stem == 'scene' else stem
+        self.folder = os.path.join(os.path.abspath(o.out), self.name)
+        os.makedirs(self.folder, exist_ok=True)
+        self.log = os.path.join(self.folder, 'seconds.json')
+        self.seconds = json.load(open(self.log)) if os.path.exists(self.log) else {}
+        self.model, self.environment = self.path, o.environment and os.path.abspath(o.environment)
+        if path.endswith('.pbrt'):
+            self.model = os.path.join(self.folder, self.name + '.glb')
+            sky = os.path.join(self.folder, 'environment.exr')
+            if not os.path.exists(self.model):
+                subprocess.run([os.path.join(o.build, 'tests/side_by_side/pbrt_to_gltf'), path,
+                                self.model, sky], check=True, stdout=subprocess.DEVNULL)
+            self.environment = sky if os.path.exists(sky) else None
+
+    def file(self, name):
+        return os.path.join(self.folder, name + '.exr')
+
+    def note(self, name, seconds):
+        self.seconds[name] = seconds
+        with open(self.log, 'w') as f:
+            json.dump(self.seconds, f, indent=1)
+
+    def lull(self, name, *how):
+        """Renders with lull unless that has been done."""
+        if name in self.seconds:
+            return
+        command = [os.path.join(self.o.build, 'renderer/lull'), 'render', self.model, '-o',
+                   self.file(name), '--resolution', '%dx%d' % (self.o.width, self.o.height),
+                   '--block', str(self.o.block), '--threads', '2', '--quiet', '--max-depth',
+                   str(self.o.bounces + 1), *how]
+        if self.environment:
+            command += ['--environment', self.environment]
+        run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        _, status, used = os.wait4(run.pid, 0)
+        if status != 0:
+            sys.exit('failed: ' + ' '.join(command))
+        self.note(name, used.ru_utime + used.ru_stime)
+
+    def cycles(self, runs):
+        """Renders with Cycles, in one Blender, what has not been done of (name, spp, seed,
+        adaptive, materials)."""
+        keys = ('name', 'spp', 'seed', 'adaptive', 'materials')
+        runs = [dict(zip(keys, run)) for run in runs if run[0] not in self.seconds]
+        if not runs:
+            return
+        options = {'model': self.model, 'environment': self.environment, 'width': self.o.width,
+                   'height': self.o.height, 'bounces': self.o.bounces, 'folder': self.folder,
+                   'runs': runs}
+        command = ['blender', '-b', '-noaudio', '-t', '2', '--python-exit-code', '1', '--python',
+                   os.path.join(HERE, 'in_blender.py'), '--', json.dumps(options)]
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        tail = []
+        for line in run.stdout:
+            tail = tail[-30:] + [line]
+            if line.startswith('RESULT '):
+                result = json.loads(line[7:])
+                self.note(result['name'], result['seconds'])
+        if run.wait() != 0:
+            sys.exit(''.join(tail))
+
+    def render(self):
+        o = self.o
+        # Short renders of the two take turns, as the machine's speed changes with what others do.
+        for spp in o.spp:
+            self.lull('lull-%d' % spp, '--spp', str(spp))
+            self.cycles([('cycles-%d' % spp, spp, 1, 0, 'specification')])
+        if o.reference:
+            for seed in (11, 12):
+                self.lull('lull-reference-%d' % seed, '--spp', str(o.reference), '--seed',
+                          str(seed))
+            self.cycles([('cycles-reference-%d' % seed, o.reference, seed, 0, 'specification')
+                         for seed in (11, 12)] +
+                        [('imported', max(o.spp), 2, 0, 'imported')])
+        if o.stop:
+            self.lull('lull-stop', '--cap', str(o.cap))
+            self.cycles([('cycles-stop', o.cap, 1, 0.01, 'specification')])
+
+    def reference(self, program):
+        """Returns the mean of both halves of the reference, and the mean square of its own error in
+        lightness, which the difference of the halves shows."""
+        a, b = (read(self.file('%s-reference-%d' % (program, seed)))[0] for seed in (11, 12))
+        return (a + b) / 2, ((lightness(a) - lightness(b)) ** 2).mean() / 4
+
+    def per_sample(self, program):
+        """Returns processor seconds for one sample per pixel, and for all that is none."""
+        least, most = min(self.o.spp), self.o.reference
+        low = self.seconds['%s-%d' % (program, least)]
+        high = sum(self.seconds['%s-reference-%d' % (program, seed)] for seed in (11, 12)) / 2
+        slope = (high - low) / (most - least)
+        return slope, low - least * slope
+
+    def error(self, program, name):
+        """Returns the RMSE of lightness against the program's own reference, without what that
+        misses itself."""
+        reference, own = self.reference(program)
+        square = ((lightness(read(self.file(name))[0]) - lightness(reference)) ** 2).mean()
+        return max(0, square - own) ** 0.5
+
 
 def blocks(image, n=10):
     h, w = image.shape[0] // n * n, image.shape[1] // n * n
-    return image[:h, :w].reshape(h // n, n, w // n, n, 3).mean((1, 3))
+    return image[:h, :w].reshape(h // n, n, w // n, n, -1).mean((1, 3))
 
-seconds = {'lull': o['seconds'], 'cycles': render('cycles')}
-lambertian()
-seconds['cycles-lambert'] = render('cycles-lambert')
-count = o['width'] * o['height'] * o['spp']
-mine = pixels('lull')
-print('RESULT %-15s %9s %9s %9s %11s %11s %13s' %
-      ('', 'R', 'G', 'B', 'ratio', 'blocks', 'samples/s'))
-for name in ('lull', 'cycles', 'cycles-lambert'):
-    theirs = pixels(name)
-    ratio = theirs.mean() / mine.mean()
-    apart = abs(blocks(theirs) - blocks(mine)).mean() / mine.mean()
-    print('RESULT %-15s %9.5f %9.5f %9.5f %11.4f %10.2f%% %13.0f' %
-          (name, *theirs.mean((0, 1)), ratio, 100 * apart, count / seconds[name]))
-'''
+
+def print_agreement(scenes):
+    print('Means of the references, Cycles over lull:\n')
+    print('| scene | R | G | B | standard error | blocks | of that noise | as imported |')
+    print('|---|---|---|---|---|---|---|---|')
+    for s in scenes:
+        halves = {p: [read(s.file('%s-reference-%d' % (p, seed)))[0] for seed in (11, 12)]
+                  for p in PROGRAMS}
+        lull, cycles = (sum(halves[p]) / 2 for p in PROGRAMS)
+        ratio = cycles.mean((0, 1)) / lull.mean((0, 1))
+        # Of independent pixels whose values the halves show to scatter so much.
+        noise = [((halves[p][0] - halves[p][1]).mean(2) / 2).std() / lull.mean() for p in PROGRAMS]
+        error = np.hypot(*noise) / np.sqrt(lull.shape[0] * lull.shape[1])
+        apart = abs(blocks(cycles) - blocks(lull)).mean() / lull.mean()
+        chance = np.hypot(*[abs(blocks(halves[p][0]) - blocks(halves[p][1])).mean() / 2
+                            for p in PROGRAMS]) / lull.mean()
+        imported = read(s.file('imported'))[0].mean() / lull.mean()
+        print('| %s | %.4f | %.4f | %.4f | %.4f | %.2f %% | %.2f %% | %.3f |' %
+              (s.name, *ratio, error, 100 * apart, 100 * chance, imported))
+
+
+def print_speed(scenes, o):
+    print('\nSamples a second and core, and RMSE of L against processor seconds:\n')
+    print('| scene | program | samples/s | ' + ' | '.join('%d spp' % n for n in o.spp) + ' |')
+    print('|---|---|---' + '|---' * len(o.spp) + '|')
+    for s in scenes:
+        for program in PROGRAMS:
+            slope, _ = s.per_sample(program)
+            cells = ['%.2f in %.2f s' % (s.error(program, '%s-%d' % (program, n)), n * slope)
+                     for n in o.spp]
+            print('| %s | %s | %.0f | %s |' % (s.name, program, o.width * o.height / slope,
+                                               ' | '.join(cells)))
+
+
+def print_stops(scenes, o):
+    print("\nEach one's own stopping rule, lull's default and Cycles' threshold of 0.01:\n")
+    print('| scene | program | mean spp | seconds | RMSE of L | worst block |')
+    print('|---|---|---|---|---|---|')
+    for s in scenes:
+        for program in PROGRAMS:
+            name = program + '-stop'
+            rgb, spp = read(s.file(name))
+            mean = spp.mean() * (o.cap if program == 'cycles' else 1)
+            reference, _ = s.reference(program)
+            square = (lightness(rgb) - lightness(reference)) ** 2
+            print('| %s | %s | %.0f | %.1f | %.2f | %.2f |' %
+                  (s.name, program, mean, s.seconds[name] - s.per_sample(program)[1],
+                   s.error(program, name), blocks(square[:, :, None], o.block).max() ** 0.5))
+
+
+def save_pair(s):
+    """Writes lull's and Cycles' reference side by side as FOLDER/pair.png."""
+    pair = np.concatenate([s.reference(p)[0] for p in PROGRAMS], 1).clip(0, 1)
+    srgb = np.where(pair <= 0.0031308, 12.92 * pair, 1.055 * pair ** (1 / 2.4) - 0.055)
+    image = oiio.ImageBuf(oiio.ImageSpec(srgb.shape[1], srgb.shape[0], 3, oiio.UINT8))
+    image.set_pixels(oiio.ROI(), np.ascontiguousarray(srgb, np.float32))
+    image.write(os.path.join(s.folder, 'pair.png'))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('lull')
-    parser.add_argument('model', nargs='?')
-    parser.add_argument('--spp', type=int, default=256)
-    parser.add_argument('--size', type=int, default=200, help='height of the images in pixels')
-    parser.add_argument('--aspect', type=float, default=1, help='of the camera of the model')
-    parser.add_argument('--keep', help='folder for the images')
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('build', help='the build folder')
+    parser.add_argument('out', help='folder for images and measurements')
+    parser.add_argument('scenes', nargs='+', help='pbrt-v3 scenes or .glb models')
+    parser.add_argument('--size', default='160x160', help='of the images (160x160)')
+    parser.add_argument('--block', type=int, default=40, help="pixels a side of lull's blocks (40)")
+    parser.add_argument('--spp', default='16,64,256', help='samples per pixel (16,64,256)')
+    parser.add_argument('--reference', type=int, default=1024,
+                        help='spp of each half of a reference (1024); 0: none, and no tables')
+    parser.add_argument('--no-stop', dest='stop', action='store_false',
+                        help='leave out the stopping rules')
+    parser.add_argument('--cap', type=int, default=4096, help='of the stopping rules (4096)')
+    parser.add_argument('--bounces', type=int, default=12)
+    parser.add_argument('--environment', help='surrounds a .glb model')
     o = parser.parse_args()
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = os.path.abspath(o.keep or temporary)
-        os.makedirs(folder, exist_ok=True)
-        model = os.path.abspath(o.model) if o.model else folder + '/cornell.glb'
-        if not o.model:
-            with open(model, 'wb') as f:
-                f.write(cornell())
-        width = round(o.size * o.aspect)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        subprocess.run([o.lull, 'render', model, '-o', folder + '/lull.exr', '--spp', str(o.spp),
-                        '--resolution', '%dx%d' % (width, o.size), '--threads', '2', '--quiet',
-                        '--max-depth', str(BOUNCES + 1)], check=True, stdout=subprocess.DEVNULL)
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        script = folder + '/inside.py'
-        with open(script, 'w') as f:
-            f.write(INSIDE)
-        options = {'model': model, 'folder': folder, 'spp': o.spp, 'bounces': BOUNCES,
-                   'width': width, 'height': o.size, 'seconds': seconds}
-        run = subprocess.run(['blender', '-b', '-noaudio', '--python-exit-code', '1', '--python',
-                              script, '--', json.dumps(options)], capture_output=True, text=True)
-        if run.returncode != 0:
-            sys.exit(run.stdout[-2000:] + run.stderr[-2000:])
-        print('\n'.join(line[7:] for line in run.stdout.splitlines()
-                        if line.startswith('RESULT ')))
+    o.width, o.height = (int(n) for n in o.size.split('x'))
+    o.spp = sorted(int(n) for n in o.spp.split(','))
+    scenes = [Scene(path, o) for path in o.scenes]
+    for scene in scenes:
+        scene.render()
+    if not o.reference:
+        return
+    print_agreement(scenes)
+    print_speed(scenes, o)
+    if o.stop:
+        print_stops(scenes, o)
+    for scene in scenes:
+        save_pair(scene)
 
 
 main()

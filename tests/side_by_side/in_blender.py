@@ -1,0 +1,209 @@
+"""Renders a glTF file with Cycles. Runs inside Blender, for side_by_side.py, which says how it is
+called: its last argument is a JSON object of model, environment (or null), width, height, bounces,
+folder and runs. A run has a name, spp, seed, adaptive (Cycles' threshold, or 0) and materials:
+"imported" as Blender's importer makes them, or "specification" as appendix B of glTF 2.0 has them.
+
+Writes FOLDER/NAME.exr, multi-layer, and prints "RESULT {name, seconds}" with the processor seconds.
+"""
+
+import json
+import struct
+import sys
+import time
+
+import bpy
+import numpy
+
+numpy.bool = bool  # which Blender 3.4's importer asks a later NumPy for
+
+
+def read_materials(path):
+    """Returns the materials of a .glb file by the names that Blender gives them."""
+    with open(path, 'rb') as f:
+        size = struct.unpack('<12x2I', f.read(20))[0]
+        root = json.loads(f.read(size))
+    return {m.get('name', 'Material_%d' % i): m for i, m in enumerate(root.get('materials', []))}
+
+
+def surface_of(described):
+    """Returns metallic, roughness, transmission and the reflectance of the interface at normal
+    incidence and at grazing angles."""
+    more, pbr = described.get('extensions', {}), described.get('pbrMetallicRoughness', {})
+    transmission = more.get('KHR_materials_transmission', {}).get('transmissionFactor', 0)
+    interface = more.get('KHR_materials_specular', {})
+    specular = interface.get('specularFactor', 1) * max(interface.get('specularColorFactor', [1]))
+    ior = more.get('KHR_materials_ior', {}).get('ior', 1.5)
+    f0 = specular * ((ior - 1) / (ior + 1)) ** 2
+    return (pbr.get('metallicFactor', 1), pbr.get('roughnessFactor', 1), transmission, f0,
+            specular)
+
+
+def reflected(tree, roughness, f0, f90):
+    """Makes nodes for the share of light that a rough interface reflects in all, by the cosine of
+    the view (Karis 2014, "Physically Based Shading on Mobile"). Returns their output."""
+    def math_node(operation, a, b, c=None):
+        node = tree.nodes.new('ShaderNodeMath')
+        node.operation = operation
+        for socket, value in zip(node.inputs, (a, b, c)):
+            if isinstance(value, (int, float)):
+                socket.default_value = value
+            elif value is not None:
+                tree.links.new(value, socket)
+        return node.outputs[0]
+
+    x, y, z, w = (roughness * a + b for a, b in
+                  ((-1, 1), (-0.0275, 0.0425), (-0.572, 1.04), (0.022, -0.04)))
+    facing = tree.nodes.new('ShaderNodeLayerWeight')
+    facing.inputs['Blend'].default_value = 0.5
+    cosine = math_node('SUBTRACT', 1.0, facing.outputs['Facing'])
+    steep = math_node('MINIMUM', math_node('POWER', 2 ** -9.28, cosine), x * x)
+    term = math_node('MULTIPLY_ADD', steep, x, y)
+    return math_node('MULTIPLY_ADD', term, 1.04 * (f90 - f0), f0 * z + f90 * w)
+
+
+def follow_specification(material, described):
+    """Rebuilds what Blender 3.4's Principled BSDF does otherwise than the specification: its base is
+    Disney's diffuse and is not darkened by what the interface above it reflects, and it emits on
+    both sides."""
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    principled = next((n for n in nodes if n.type == 'BSDF_PRINCIPLED'), None)
+    if principled is None:
+        return
+    metallic, roughness, transmission, f0, f90 = surface_of(described)
+    targets = [link.to_socket for link in principled.outputs[0].links]
+
+    def take(name, socket):
+        """Moves an input of the Principled BSDF to another socket, and leaves black."""
+        source = principled.inputs[name]
+        for link in list(source.links):
+            links.new(link.from_socket, socket)
+            links.remove(link)
+        socket.default_value = source.default_value
+        source.default_value = (0, 0, 0, 1)
+
+    shaders = []
+    if metallic == 0 and transmission == 0:
+        diffuse, below = nodes.new('ShaderNodeBsdfDiffuse'), nodes.new('ShaderNodeMixShader')
+        take('Base Color', diffuse.inputs['Color'])
+        for link in principled.inputs['Normal'].links:
+            links.new(link.from_socket, diffuse.inputs['Normal'])
+        links.new(diffuse.outputs[0], below.inputs[1])
+        below.inputs[0].default_value = 0
+        if f0 > 0:
+            links.new(reflected(material.node_tree, roughness, f0, f90), below.inputs[0])
+            for link in list(principled.inputs['Specular'].links):
+                links.remove(link)
+            principled.inputs['Specular'].default_value = f0 / 0.08
+            shaders.append(principled.outputs[0])
+        shaders.append(below.outputs[0])
+    else:
+        shaders.append(principled.outputs[0])
+    strength = principled.inputs['Emission Strength'].default_value
+    if max(described.get('emissiveFactor', [0])) > 0:
+        emission = nodes.new('ShaderNodeEmission')
+        take('Emission', emission.inputs['Color'])
+        emission.inputs['Strength'].default_value = strength
+        if not described.get('doubleSided', False):
+            geometry, front = nodes.new('ShaderNodeNewGeometry'), nodes.new('ShaderNodeMath')
+            front.operation = 'MULTIPLY_ADD'  # strength, at the back 0
+            front.inputs[1].default_value, front.inputs[2].default_value = -strength, strength
+            links.new(geometry.outputs['Backfacing'], front.inputs[0])
+            links.new(front.outputs[0], emission.inputs['Strength'])
+        shaders.append(emission.outputs[0])
+    total = shaders[0]
+    for shader in shaders[1:]:
+        both = nodes.new('ShaderNodeAddShader')
+        links.new(total, both.inputs[0])
+        links.new(shader, both.inputs[1])
+        total = both.outputs[0]
+    alpha = principled.inputs['Alpha']
+    if alpha.links or alpha.default_value < 1:
+        mix, through = nodes.new('ShaderNodeMixShader'), nodes.new('ShaderNodeBsdfTransparent')
+        mix.inputs[0].default_value = alpha.default_value
+        for link in list(alpha.links):
+            links.new(link.from_socket, mix.inputs[0])
+            links.remove(link)
+        alpha.default_value = 1
+        links.new(through.outputs[0], mix.inputs[1])
+        links.new(total, mix.inputs[2])
+        total = mix.outputs[0]
+    for target in targets:
+        links.new(total, target)
+
+
+def load(o):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=o['model'])
+    scene = bpy.context.scene
+    scene.camera = next(x for x in scene.objects if x.type == 'CAMERA')
+    for light in bpy.data.lights:  # glTF's have no size, Blender's new ones do
+        light.shadow_soft_size = 0
+        if light.type == 'SUN':
+            light.angle = 0
+    for x in scene.objects:  # where smooth normals and coarse triangles disagree
+        if x.type == 'MESH':
+            x.cycles.shadow_terminator_geometry_offset = 0
+    for material in bpy.data.materials:  # an absorption of nothing
+        if material.use_nodes:
+            for node in [n for n in material.node_tree.nodes if n.type == 'VOLUME_ABSORPTION']:
+                material.node_tree.nodes.remove(node)
+    surround(scene, o['environment'])
+    return scene
+
+
+def surround(scene, environment):
+    scene.world = scene.world or bpy.data.worlds.new('world')
+    scene.world.use_nodes = True
+    nodes, links = scene.world.node_tree.nodes, scene.world.node_tree.links
+    background = next(n for n in nodes if n.type == 'BACKGROUND')
+    background.inputs['Color'].default_value = (0, 0, 0, 1)
+    background.inputs['Strength'].default_value = 1
+    if environment:
+        image = nodes.new('ShaderNodeTexEnvironment')
+        image.image = bpy.data.images.load(environment)
+        image.image.colorspace_settings.name = 'Linear'
+        links.new(image.outputs['Color'], background.inputs['Color'])
+
+
+def set_up(scene, o):
+    r, c = scene.render, scene.cycles
+    r.engine = 'CYCLES'
+    r.resolution_x, r.resolution_y, r.resolution_percentage = o['width'], o['height'], 100
+    r.threads_mode, r.threads = 'FIXED', 2
+    r.image_settings.file_format = 'OPEN_EXR_MULTILAYER'
+    r.image_settings.color_depth = '32'
+    r.film_transparent = False
+    c.device, c.use_denoising, c.film_exposure = 'CPU', False, 1
+    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = o['bounces']
+    c.transparent_max_bounces = 64
+    c.sample_clamp_direct = c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
+    c.caustics_reflective = c.caustics_refractive = True
+    c.pixel_filter_type, c.filter_width = 'BOX', 1
+    scene.view_layers[0].cycles.pass_debug_sample_count = True
+
+
+def main():
+    o = json.loads(sys.argv[-1])
+    described = read_materials(o['model'])
+    scene, loaded = None, None
+    for run in o['runs']:
+        if loaded != run['materials']:
+            scene, loaded = load(o), run['materials']
+            set_up(scene, o)
+            if loaded == 'specification':
+                for material in bpy.data.materials:
+                    if material.name in described and material.use_nodes:
+                        follow_specification(material, described[material.name])
+        c = scene.cycles
+        c.samples, c.seed = run['spp'], run['seed']
+        c.use_adaptive_sampling = run['adaptive'] > 0
+        if run['adaptive'] > 0:
+            c.adaptive_threshold, c.adaptive_min_samples = run['adaptive'], 0
+        scene.render.filepath = '%s/%s.exr' % (o['folder'], run['name'])
+        start = time.process_time()
+        bpy.ops.render.render(write_still=True)
+        seconds = time.process_time() - start
+        print('RESULT ' + json.dumps({'name': run['name'], 'seconds': seconds}), flush=True)
+
+
+main()

@@ -1,0 +1,31 @@
+// Carries what surrounds the shapes of a pbrt-v3 scene into glTF: the view, lights, environment.
+#pragma once
+
+#include <string>
+
+#include "renderer/base/error.h"
+#include "renderer/input/description.h"
+#include "tests/side_by_side/glb_file.h"
+
+namespace lull {
+
+// Returns the rotation of the scene's world into glTF's, whose y points up; it mirrors where the
+// world is left-handed, as pbrt's is, so that the camera sees the same.
+Mat4d GltfFromWorld(const Description& description);
+
+// Adds the camera, with what of the image it sees. Throws Error for others than perspective ones;
+// a lens is left out with a warning.
+void AddCamera(const Description& description, const Mat4d& gltfFromWorld, GlbFile* file,
+               Warnings& warnings);
+
+// Adds point, spot and distant lights; others are left out with a warning. The falloff of spots is
+// glTF's.
+void AddLights(const Description& description, const Mat4d& gltfFromWorld, GlbFile* file,
+               Warnings& warnings);
+
+// Writes the sum of the infinite lights as a latitude-longitude image for `--environment`. Returns
+// whether there are any; nothing is written where not.
+bool WriteEnvironment(const Description& description, const Mat4d& gltfFromWorld,
+                      const std::string& path);
+
+}  // namespace lull
