@@ -1,50 +1,9 @@
 #include "renderer/bsdf/fourier_lobe.h"
 
-#include <optional>
-#include <span>
+#include "renderer/base/spline.h"
 
 namespace lull {
 namespace {
-
-// Holds the four nodes that a Catmull-Rom spline through unevenly spaced nodes reads at a point,
-// and their weights (pbrt 3rd ed., 8.6.1). Nodes beyond the ends have weight 0.
-struct SplineWeights {
-    int first;
-    std::array<float, 4> w;
-};
-
-// Returns the interval of nodes that x is in.
-int IntervalOf(std::span<const float> nodes, float x) {
-    const auto above = std::upper_bound(nodes.begin(), nodes.end(), x);
-    return std::clamp(int(above - nodes.begin()) - 1, 0, int(nodes.size()) - 2);
-}
-
-std::optional<SplineWeights> WeightsAt(std::span<const float> nodes, float x) {
-    if (!(x >= nodes.front() && x <= nodes.back())) return {};
-    const int k = IntervalOf(nodes, x), n = int(nodes.size());
-    const float x0 = nodes[k], x1 = nodes[k + 1], width = x1 - x0;
-    const float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
-    SplineWeights s{k - 1, {0, 2 * t3 - 3 * t2 + 1, 3 * t2 - 2 * t3, 0}};
-    // The slopes at both ends are differences of the neighbours, one-sided at the ends of all.
-    const float atStart = t3 - 2 * t2 + t, atEnd = t3 - t2;
-    if (k > 0) {
-        const float slope = atStart * width / (x1 - nodes[k - 1]);
-        s.w[0] -= slope;
-        s.w[2] += slope;
-    } else {
-        s.w[1] -= atStart;
-        s.w[2] += atStart;
-    }
-    if (k + 2 < n) {
-        const float slope = atEnd * width / (nodes[k + 2] - x0);
-        s.w[1] -= slope;
-        s.w[3] += slope;
-    } else {
-        s.w[1] -= atEnd;
-        s.w[2] += atEnd;
-    }
-    return s;
-}
 
 // Lists the series, up to 16, whose weighted sum the table has at a pair of cosines.
 struct WeightedSeries {
@@ -75,17 +34,7 @@ struct WeightedSeries {
     }
 };
 
-// Interpolates a table of one value an entry between rows, at column i.
-template <typename At>
-float BetweenRows(const SplineWeights& o, const At& at, int i) {
-    float sum = 0;
-    for (int b = 0; b < 4; ++b)
-        if (o.w[b] != 0) sum += o.w[b] * at(o.first + b, i);
-    return sum;
-}
-
-// Samples mu of i from the spline of first coefficients in the row of wo, inverting its integral by
-// Newton's method with bisection (pbrt 3rd ed., 14.1.5).
+// Samples mu of i from the spline of first coefficients in the row of wo.
 float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
     const int n = int(table.mu.size());
     const auto cdf = [&](int i) {
@@ -96,31 +45,7 @@ float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
         return BetweenRows(
             o, [&](int row, int k) { return table.Mean(row, k); }, i);
     };
-    u *= cdf(n - 1);
-    int low = 0, high = n - 1;
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        (cdf(middle) <= u ? low : high) = middle;
-    }
-    const float x0 = table.mu[low], x1 = table.mu[low + 1], width = x1 - x0;
-    const float f0 = value(low), f1 = value(low + 1);
-    const float d0 = low > 0 ? width * (f1 - value(low - 1)) / (x1 - table.mu[low - 1]) : f1 - f0;
-    const float d1 =
-        low + 2 < n ? width * (value(low + 2) - f0) / (table.mu[low + 2] - x0) : f1 - f0;
-    const float target = (u - cdf(low)) / width;
-    float a = 0, b = 1, t = 0.5f;
-    for (int step = 0; step < 50; ++step) {
-        const float integral =
-            t * (f0 + t * (0.5f * d0 + t * ((-2 * d0 - d1) / 3 + f1 - f0 +
-                                            t * (0.25f * (d0 + d1) + 0.5f * (f0 - f1)))));
-        const float f =
-            f0 + t * (d0 + t * (-2 * d0 - d1 + 3 * (f1 - f0) + t * (d0 + d1 + 2 * (f0 - f1))));
-        if (std::abs(integral - target) < 1e-6f || b - a < 1e-6f) break;
-        (integral < target ? a : b) = t;
-        t -= (integral - target) / f;
-        if (!(t > a && t < b)) t = 0.5f * (a + b);
-    }
-    return x0 + t * width;
+    return SampleSpline(table.mu, value, cdf, u);
 }
 
 // Samples the azimuth from a cosine series with coefficients a[0, order).

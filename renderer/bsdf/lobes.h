@@ -20,6 +20,7 @@
 #include "renderer/bsdf/layered_lobes.h"
 #include "renderer/bsdf/lobe_basics.h"
 #include "renderer/bsdf/microfacet_lobes.h"
+#include "renderer/bsdf/subsurface_lobe.h"
 
 namespace lull {
 
@@ -182,7 +183,7 @@ using Lobe =
                  SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
                  HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
-                 ThinTransmission, ThinSpecular>;
+                 ThinTransmission, ThinSpecular, DiffuseExit>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
@@ -223,10 +224,11 @@ auto VisitLobe(const Lobe& lobe, F&& f) {
         case 19: return f(*std::get_if<19>(&lobe));
         case 20: return f(*std::get_if<20>(&lobe));
         case 21: return f(*std::get_if<21>(&lobe));
-        default: return f(*std::get_if<22>(&lobe));
+        case 22: return f(*std::get_if<22>(&lobe));
+        default: return f(*std::get_if<23>(&lobe));
             // clang-format on
     }
-    static_assert(std::variant_size_v<Lobe> == 23, "one case a kind");
+    static_assert(std::variant_size_v<Lobe> == 24, "one case a kind");
 }
 
 inline bool IsSpecular(const Lobe& lobe) {

@@ -16,6 +16,7 @@ enum SurfaceNeeds : uint8_t {
     kIsInterface = 16,            // nothing at all: paths go straight on, as no surface scatters
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color
+    kScattersBelow = 128,         // nothing, but what is let in leaves elsewhere: subsurface
 };
 
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {

@@ -14,6 +14,7 @@
 #include "renderer/scene/materials/normal_map.h"
 #include "renderer/scene/materials/plastic.h"
 #include "renderer/scene/materials/substrate.h"
+#include "renderer/scene/materials/subsurface.h"
 #include "renderer/scene/materials/translucent.h"
 #include "renderer/scene/materials/uber.h"
 
@@ -23,7 +24,7 @@ namespace {
 // Lists every kind; what a kind has to provide is in materials/material_inputs.h.
 using MaterialKind =
     std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
-                 Disney, Hair, Fourier, MetallicRoughness>;
+                 Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface>;
 
 }  // namespace
 
@@ -175,6 +176,13 @@ Material MakeMaterial(const Description& description, const MaterialEntity& enti
         Refuse(entity, "a mix of a material and \"none\" is not modelled", substitute, warnings);
         return finish(Matte(in));
     }
+    if (std::holds_alternative<Mix>(*kind) && (m.needs & kScattersBelow)) {
+        Refuse(entity,
+               "a mix with a material that scatters below its surface is not modelled; light that "
+               "goes in does not come out in pbrt-v3 either",
+               substitute, warnings);
+        return finish(Matte(in));
+    }
     if (m.maxLobes > Bsdf::kMaxLobes) {
         Refuse(entity,
                "material \"" + entity.name + "\" can have more than " +
@@ -251,6 +259,19 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
              MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials, hit},
              &bsdf);
     return bsdf;
+}
+
+std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& textures,
+                                                        const SurfaceInteraction& hit) const {
+    const MaterialInputs in{textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy}, materials, &hit};
+    return std::visit(
+        [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
+            if constexpr (requires { kind.Profile(in); })
+                return kind.Profile(in);
+            else
+                return {};
+        },
+        materials[hit.material].kind);
 }
 
 }  // namespace lull

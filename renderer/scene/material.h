@@ -10,6 +10,7 @@
 namespace lull {
 
 struct Material;  // variant of all kinds, in material.cpp
+class SubsurfaceProfile;
 
 // Owns the materials of a scene, one for each of Description::materials. Immutable once made.
 class MaterialTable {
@@ -27,6 +28,11 @@ class MaterialTable {
     // Evaluates textures and bump map and makes the lobes. Bump mapping turns hit.ns (and, on its
     // side, not hit.n), as pbrt-v3's Material::Bump does.
     Bsdf MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const;
+
+    // Evaluates how light that is let in spreads below the surface, of a material whose needs have
+    // kScattersBelow. Returns nothing where it goes on as it is.
+    std::optional<SubsurfaceProfile> Profile(const TextureTable& textures,
+                                             const SurfaceInteraction& hit) const;
 
   private:
     std::vector<Material> materials;

@@ -49,8 +49,10 @@ inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
     return sum;
 }
 
-// Continues the path with a BSDF sample. Returns false where it ends.
-inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path) {
+// Continues the path with a BSDF sample. Returns false where it ends. `isTransmission`, if given,
+// receives whether it goes through the surface.
+inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path,
+                    bool* isTransmission = nullptr) {
     const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
     if (!sample) return false;
     path->beta *= sample->f * (std::abs(sample->wi.dot(hit.ns)) / sample->pdf);
@@ -62,6 +64,7 @@ inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sa
         path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
     }
     path->ray = hit.SpawnRay(sample->wi);
+    if (isTransmission) *isTransmission = sample->isTransmission;
     return true;
 }
 

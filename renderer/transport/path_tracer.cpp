@@ -3,6 +3,7 @@
 #include "renderer/base/color.h"
 #include "renderer/scene/footprint.h"
 #include "renderer/transport/path_state.h"
+#include "renderer/transport/subsurface.h"
 #include "renderer/transport/volume_path_tracer.h"
 
 namespace lull {
@@ -92,6 +93,25 @@ Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
     return L;
 }
 
+// Continues the path, which the surface has let in, from where it leaves the solid; adds the light
+// that arrives there directly. Returns false where it ends.
+[[gnu::noinline]] bool ScatterBelow(const Scene& scene, Estimator estimator, Sampler& sampler,
+                                    const SurfaceInteraction& hit, const Bsdf& bsdf, float time,
+                                    Path* path, Rgb* L) {
+    const auto profile = scene.materials.Profile(scene.textures, hit);
+    if (!profile) return true;
+    const auto exit = SampleSubsurface(scene, sampler, hit, bsdf, *profile, time);
+    if (!exit) return false;
+    path->beta *= exit->weight;
+    const Bsdf out = ExitBsdf(*exit, profile->eta);
+    if (scene.lights.Count() > 0) {
+        path->choice = scene.lights.Choice(exit->hit, out);
+        *L += path->beta *
+              SampleDirectLight(scene, estimator, sampler, exit->hit, out, path->choice, time);
+    }
+    return Scatter(out, exit->hit, sampler, path);
+}
+
 // Carries the ray on behind an interface. As with pbrt-v3's path integrator, which blocks shadow
 // rays there, lights behind it are seen only by rays for which emission counts in full.
 void GoThrough(const SurfaceInteraction& hit, Path* path) {
@@ -143,7 +163,11 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ra
                  SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice, time);
         }
 
-        if (!Scatter(bsdf, hit, sampler, &path)) break;
+        bool isTransmission;
+        if (!Scatter(bsdf, hit, sampler, &path, &isTransmission)) break;
+        if ((needs & kScattersBelow) && isTransmission &&
+            !ScatterBelow(scene, estimator, sampler, hit, bsdf, time, &path, &L))
+            break;
         if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }
     return L;

@@ -3,6 +3,7 @@
 #include "renderer/scene/footprint.h"
 #include "renderer/scene/phase.h"
 #include "renderer/transport/path_state.h"
+#include "renderer/transport/subsurface.h"
 
 namespace lull {
 namespace {
@@ -184,6 +185,32 @@ Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
     return L;
 }
 
+// Continues the path, which the surface has let in, from where it leaves the solid; adds the light
+// that arrives there directly. Returns false where it ends.
+[[gnu::noinline]] bool ScatterBelow(const Scene& scene, Estimator estimator, Sampler& sampler,
+                                    const Vertex& v, Path* path, int* medium, Rgb* L) {
+    const auto profile = scene.materials.Profile(scene.textures, *v.hit);
+    if (!profile) return true;
+    const auto exit = SampleSubsurface(scene, sampler, *v.hit, *v.bsdf, *profile, v.time);
+    if (!exit) return false;
+    path->beta *= exit->weight;
+    const Bsdf out = ExitBsdf(*exit, profile->eta);
+    const Vertex last{.hit = &exit->hit,
+                      .bsdf = &out,
+                      .shape = exit->shape,
+                      .p = exit->hit.p,
+                      .wo = exit->hit.wo,
+                      .medium = v.medium,
+                      .time = v.time};
+    if (scene.lights.Count() > 0) {
+        path->choice = scene.lights.Choice(last.p);
+        *L += path->beta * SampleDirectLight(scene, estimator, sampler, last, path->choice);
+    }
+    if (!Scatter(out, exit->hit, sampler, path)) return false;
+    *medium = last.MediumTowards(scene.media, path->ray.d);
+    return true;
+}
+
 // Continues the path from a point in a medium.
 void ScatterInMedium(const Vertex& v, Sampler& sampler, Path* path) {
     const Vec3f wi = SampleHenyeyGreenstein(v.wo, v.g, sampler.Get2D());
@@ -263,8 +290,12 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
                            .medium = medium,
                            .time = time};
             if (bsdf.LobeCount(LobeSet::NonSpecular) > 0) direct(v);
-            if (!Scatter(bsdf, hit, sampler, &path)) break;
+            bool isTransmission;
+            if (!Scatter(bsdf, hit, sampler, &path, &isTransmission)) break;
             medium = v.MediumTowards(scene.media, path.ray.d);
+            if ((needs & kScattersBelow) && isTransmission &&
+                !ScatterBelow(scene, estimator, sampler, v, &path, &medium, &L))
+                break;
         }
         if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }

@@ -189,6 +189,8 @@ Shape "sphere" "float radius" .5'''),
     'material-disney': material('''Material "disney" "rgb color" [.8 .4 .2] "float metallic" .3 "float roughness" .35 "float speculartint" .4
   "float anisotropic" .6 "float sheen" .7 "float sheentint" .3 "float clearcoat" .8 "float clearcoatgloss" .6'''),
     'material-disney-glass': material('Material "disney" "rgb color" [.9 .8 .7] "float spectrans" .8 "float roughness" .4 "float eta" 1.4'),
+    'material-disney-below': material('''Material "disney" "rgb color" [.9 .6 .4] "rgb scatterdistance" [.6 .3 .15] "float roughness" .4
+  "float eta" 1.4 "float clearcoat" .3'''),
     'material-disney-thin': material('''Material "disney" "bool thin" "true" "rgb color" [.6 .8 .5] "float difftrans" 1.2 "float flatness" .5
   "float clearcoat" .5 "float roughness" .3'''),
     'material-hair': material('Material "hair" "float eumelanin" .4 "float beta_m" .4 "float beta_n" .5 "float alpha" 3', '''AttributeBegin
@@ -204,6 +206,21 @@ Material "hair" "rgb color" [.6 .35 .2] "float beta_m" .35
 {fur(150, .5, .06)}AttributeEnd
 Translate 0 0 .9
 Shape "sphere" "float radius" .6''', depth=8),
+    'material-subsurface': material('Material "subsurface" "string name" "Skin1" "float scale" 12 "float eta" 1.4'),
+    'material-subsurface-rough': material('''Material "subsurface" "rgb sigma_a" [.3 .8 2] "rgb sigma_s" [9 8 6] "float g" .3
+  "float uroughness" .3 "float vroughness" .2 "rgb Kr" [.9 .8 .7]'''),
+    'material-kdsubsurface': scene(LAMP + '''LightSource "point" "point from" [-2 -3 4] "rgb I" [16 14 12]
+''' + FLOOR + '''AttributeBegin
+Texture "kd" "spectrum" "checkerboard" "float uscale" 6 "float vscale" 4
+  "rgb tex1" [.9 .6 .4] "rgb tex2" [.3 .5 .8]
+Material "kdsubsurface" "texture Kd" "kd" "rgb mfp" [.3 .15 .08]
+MediumInterface "" "fog"
+Translate 0 0 1
+''' + BOX.replace('.02', '-.96').replace('1.98', '.5').replace('"point P"', '"float uv" [0 0 1 0 1 1 0 1 0 1 1 1 1 0 0 0] "point P"') + '''AttributeEnd
+''', camera='''MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [.02 .02 .02] "rgb sigma_s" [.06 .06 .06]
+MediumInterface "" "fog"
+LookAt 0 -5 2.2  0 0 0.4  0 0 1
+Camera "perspective" "float fov" 38''', integrator='"volpath"', depth=8),
     'material-fourier': material('Material "fourier" "string bsdffile" "layered.bsdf"'),
     'medium-homogeneous': scene('''MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [.1 .2 .4] "rgb sigma_s" [1.2 .9 .5] "float g" .4
 ''' + SKY + LAMP + FLOOR + '''AttributeBegin

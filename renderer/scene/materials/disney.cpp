@@ -47,7 +47,10 @@ void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
             add(diffuse * (1 - flat) * (1 - transmitted) * c, Part::Base);
             add(diffuse * flat * (1 - transmitted) * c, Part::FakeSubsurface);
         } else {
-            add(diffuse * c, Part::Base);
+            if (Profile(in))
+                bsdf->Add(SpecularTransmission{Rgb(1, 1, 1), index});
+            else
+                add(diffuse * c, Part::Base);
         }
         add(diffuse * c, Part::RetroReflection);
         if (const float weight = in(sheen); weight > 0)
@@ -77,6 +80,14 @@ void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
             bsdf->Add(DisneyTransmission{t, distribution(roughness), index});
     }
     if (thin) bsdf->Add(LambertianTransmission{Rgb((transmitted * c).max(0.f))});
+}
+
+std::optional<SubsurfaceProfile> Disney::Profile(const MaterialInputs& in) const {
+    if (thin || IsAlwaysBlack(scatterDistance)) return {};
+    const Rgb distance = in.Color(scatterDistance);
+    const float diffuse = (1 - in(metallic)) * (1 - in(specTrans));
+    if (!(diffuse > 0) || IsBlack(distance)) return {};
+    return SubsurfaceProfile(BurleyProfile(diffuse * in.Color(color), distance), in(eta));
 }
 
 }  // namespace lull

@@ -1,7 +1,7 @@
-// Represents Disney's principled material (Burley 2012 and 2015), less scattering beneath the
-// surface.
+// Represents Disney's principled material (Burley 2012 and 2015).
 #pragma once
 
+#include "renderer/scene/diffusion_profile.h"
 #include "renderer/scene/materials/material_inputs.h"
 
 namespace lull {
@@ -17,17 +17,18 @@ struct Disney {
 
     explicit Disney(const MaterialReader& in);
 
-    // Returns what is not modelled of it, "" where all is.
-    std::string Problem(const MaterialReader&) const {
-        return IsAlwaysBlack(scatterDistance)
-                   ? ""
-                   : "\"scatterdistance\" of a disney material is not modelled";
+    SurfaceNeeds ExtraNeeds() const {
+        return thin || IsAlwaysBlack(scatterDistance) ? kNeedsNothing
+                                                      : kScattersBelow | kNeedsTangents;
     }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+    // Returns nothing where the diffuse part does not scatter below the surface.
+    std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
 
     template <typename F>
     void VisitTextures(F&& f) const {
         f(color);
+        f(scatterDistance);
         for (const FloatTexture* t :
              {&metallic, &eta, &rough, &specularTint, &anisotropic, &sheen, &sheenTint, &clearcoat,
               &clearcoatGloss, &specTrans, &flatness, &diffTrans})

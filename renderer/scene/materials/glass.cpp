@@ -9,21 +9,24 @@ Glass::Glass(const MaterialReader& in)
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)) {}
 
 void Glass::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const float index = in(eta);
-    const Rgb r = in.Color(kr), t = in.Color(kt);
-    bsdf->SetEta(index);
+    AddDielectricLobes(in.Color(kr), in.Color(kt), in(eta), roughness, in, bsdf);
+}
+
+void AddDielectricLobes(const Rgb& r, const Rgb& t, float eta, const Roughness& roughness,
+                        const MaterialInputs& in, Bsdf* bsdf) {
+    bsdf->SetEta(eta);
     if (IsBlack(r) && IsBlack(t)) return;
 
     bool isSmooth;
     const TrowbridgeReitz distribution = roughness.Evaluate(in, &isSmooth);
     if (isSmooth) {
-        bsdf->Add(FresnelSpecular{r, t, index});
+        bsdf->Add(FresnelSpecular{r, t, eta});
         return;
     }
     if (!IsBlack(r))
         bsdf->Add(
-            MicrofacetReflection<DielectricInterface>{r, distribution, DielectricInterface{index}});
-    if (!IsBlack(t)) bsdf->Add(MicrofacetTransmission{t, distribution, index});
+            MicrofacetReflection<DielectricInterface>{r, distribution, DielectricInterface{eta}});
+    if (!IsBlack(t)) bsdf->Add(MicrofacetTransmission{t, distribution, eta});
 }
 
 }  // namespace lull

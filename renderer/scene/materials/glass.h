@@ -26,4 +26,8 @@ struct Glass {
     int MaxLobes() const { return !IsAlwaysBlack(kr) + !IsAlwaysBlack(kt); }
 };
 
+// Adds the lobes of a dielectric of index `eta`, smooth or rough, and sets the index.
+void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta, const Roughness&,
+                        const MaterialInputs&, Bsdf*);
+
 }  // namespace lull

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/input/spectrum.h"
+#include "renderer/scene/diffusion_profile.h"
 #include "tests/renderer/scene/material_scene.h"
 
 namespace lull::test {
@@ -30,6 +31,47 @@ TEST(Matte, BlackHasNoLobe) {
     MaterialScene b;
     AddRgb(&b.AddMaterial("matte"), "Kd", Rgb(0, -1, 0));
     EXPECT_EQ(b.MakeBsdf(0).LobeCount(LobeSet::All), 0);
+}
+
+TEST(Subsurface, Defaults) {
+    for (const char* kind : {"subsurface", "kdsubsurface"}) {
+        MaterialScene b;
+        b.AddMaterial(kind);
+        const Bsdf bsdf = b.MakeBsdf(0);
+        ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+        EXPECT_EQ(LobeAt<FresnelSpecular>(bsdf, 0).eta, 1.33f);
+        EXPECT_EQ(bsdf.Eta(), 1.33f);
+        EXPECT_TRUE(b.messages.empty());
+    }
+}
+
+// The profile that parameters make is that of the coefficients which they stand for.
+TEST(Subsurface, Parameters) {
+    MaterialScene b;
+    MaterialEntity& named = b.AddMaterial("subsurface");
+    named.parameters.Add(
+        {ParameterType::String, "name", At(3), std::vector<std::string>{"Marble"}});
+    AddFloat(&named, "scale", 2);
+    AddFloat(&named, "g", 0.5f);  // measured coefficients are reduced ones
+    MaterialEntity& given = b.AddMaterial("subsurface");
+    AddRgb(&given, "sigma_a", Rgb(0.0021f, 0.0041f, 0.0071f));
+    AddRgb(&given, "sigma_s", Rgb(2.19f, 2.62f, 3.00f));
+    AddFloat(&given, "scale", 2);
+    MaterialEntity& kd = b.AddMaterial("kdsubsurface");
+    AddRgb(&kd, "Kd", Rgb(0.2f, 0.4f, 0.6f));
+    AddRgb(&kd, "mfp", Rgb(1, 2, 0.5f));
+    const MaterialTable table = b.Make();
+    EXPECT_TRUE(b.messages.empty());
+    const auto profile = [&](int i) { return *table.Profile(b.textures, MaterialScene::Hit(i)); };
+    for (const float r : {0.01f, 0.1f, 0.5f, 2.f})
+        EXPECT_TRUE(profile(0)(r).isApprox(profile(1)(r), 1e-5f)) << r;
+    const DiffusionTable tabulated(0, 1.33f);
+    Rgb albedo;
+    for (int c = 0; c < 3; ++c) albedo[c] = AlbedoOfScattering(tabulated, 0.2f * float(c + 1));
+    const Rgb sigmaT(1, 0.5f, 2);
+    const DiffusionProfile expected(tabulated, (1 - albedo) * sigmaT, albedo * sigmaT);
+    for (const float r : {0.01f, 0.1f, 0.5f, 2.f})
+        EXPECT_TRUE(profile(2)(r).isApprox(expected(r), 1e-5f)) << r;
 }
 
 TEST(Plastic, Defaults) {
@@ -236,17 +278,22 @@ TEST(Disney, AddsWhatItsWeightsAskFor) {
     ExpectGrey(LobeAt<LambertianTransmission>(bsdf, 7).t, 0.25f * 0.64f);
 }
 
-TEST(Disney, RefusesScatteringBeneathTheSurface) {
+TEST(Disney, ScattersBelowTheSurfaceInsteadOfDiffusely) {
     MaterialScene b;
-    AddGrey(&b.AddMaterial("disney"), "scatterdistance", 0.1f);
-    try {
-        b.Make();
-        ADD_FAILURE();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("scene.pbrt:10: \"scatterdistance\""),
-                  std::string::npos)
-            << error.what();
-    }
+    MaterialEntity& m = b.AddMaterial("disney");
+    AddGrey(&m, "scatterdistance", 0.1f);
+    AddFloat(&m, "eta", 1.3f);
+    AddGrey(&b.AddMaterial("disney"), "scatterdistance", 0);
+    const MaterialTable table = b.Make();
+    EXPECT_TRUE(table.Needs(0) & kScattersBelow);
+    EXPECT_FALSE(table.Needs(1) & kScattersBelow);
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    EXPECT_EQ(LobeAt<SpecularTransmission>(table.MakeBsdf(b.textures, &hit), 0).eta, 1.3f);
+    const auto profile = table.Profile(b.textures, hit);
+    ASSERT_TRUE(profile);
+    EXPECT_EQ(profile->eta, 1.3f);
+    const BurleyProfile expected(Rgb(0.5f, 0.5f, 0.5f), Rgb(0.1f, 0.1f, 0.1f));
+    EXPECT_EQ((*profile)(0.2f).x(), expected(0.2f).x());
 }
 
 TEST(Hair, ReadsWhatItAbsorbs) {

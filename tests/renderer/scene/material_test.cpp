@@ -81,7 +81,7 @@ TEST(Mix, RefusesUnknownOperands) {
 }
 
 TEST(Materials, UnknownKindsAreRefused) {
-    for (const char* kind : {"kdsubsurface", "subsurface", "Matte"}) {
+    for (const char* kind : {"velvet", "kd subsurface", "Matte"}) {
         MaterialScene b;
         b.AddMaterial("matte");
         b.AddMaterial(kind);
@@ -92,19 +92,40 @@ TEST(Materials, UnknownKindsAreRefused) {
 
 TEST(Materials, SubstitutionIsCounted) {
     MaterialScene b;
-    AddFloat(&b.AddMaterial("kdsubsurface"), "beta_m", 0.3f);
-    AddGrey(&b.AddMaterial("kdsubsurface"), "Kd", 0.2f);
-    b.AddMaterial("subsurface");
+    AddFloat(&b.AddMaterial("velvet"), "beta_m", 0.3f);
+    AddGrey(&b.AddMaterial("velvet"), "Kd", 0.2f);
+    b.AddMaterial("silk");
     const MaterialTable table = b.Make(true);
     EXPECT_EQ(b.warnings.Total(), 3);
     ASSERT_EQ(b.messages.size(), 2u);
     EXPECT_EQ(b.messages[0],
-              "scene.pbrt:10: warning: material \"kdsubsurface\" is not modelled; a matte material "
+              "scene.pbrt:10: warning: material \"velvet\" is not modelled; a matte material "
               "stands in");
     SurfaceInteraction hit = MaterialScene::Hit(0);
     ExpectGrey(LobeAt<LambertianReflection>(table.MakeBsdf(b.textures, &hit), 0).r, 0.5f);
     hit = MaterialScene::Hit(1);
     ExpectGrey(LobeAt<LambertianReflection>(table.MakeBsdf(b.textures, &hit), 0).r, 0.2f);
+}
+
+TEST(Materials, SubsurfaceIsChecked) {
+    const auto error = [](const char* kind, const char* name, float value) {
+        MaterialScene b;
+        AddFloat(&b.AddMaterial(kind), name, value);
+        return ErrorOf(&b);
+    };
+    EXPECT_EQ(error("subsurface", "eta", 0.5f),
+              "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
+              "between -0.99 and 0.99; they are 0.5 and 0");
+    EXPECT_NE(error("kdsubsurface", "g", 1).find("they are 1.33 and 1"), std::string::npos);
+    EXPECT_EQ(error("kdsubsurface", "scale", -1),
+              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative");
+    MaterialScene b;
+    b.AddMaterial("matte");
+    b.AddMaterial("subsurface");
+    MaterialEntity& mix = b.AddMaterial("mix");
+    mix.operands = {0, 1};
+    EXPECT_NE(ErrorOf(&b).find("scene.pbrt:30: a mix with a material that scatters below"),
+              std::string::npos);
 }
 
 TEST(Materials, UnusedParametersAreReported) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/bsdf/fresnel_moments.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/output/test_files.h"
@@ -254,6 +255,36 @@ double SquaredError(const Scene& scene, const PixelStatistics& reference, Sample
             sum += (pixels.mean[i] - reference.mean[i]).square().sum();
     }
     return sum;
+}
+
+// A plane over a translucent solid under an even sky: what the surface reflects, and of the rest
+// the share that the solid lets out.
+TEST(Subsurface, ReturnsItsAlbedoUnderAnEvenSky) {
+    constexpr float kEta = 1.4f;
+    const auto reflectance = [](float eta) {
+        double sum = 0;
+        for (int i = 0; i < 10000; ++i) {
+            const float c = (float(i) + 0.5f) / 10000;
+            sum += double(FresnelDielectric(c, eta) * 2 * c) / 10000;
+        }
+        return sum;
+    };
+    // Directions out of the solid are weighted by a fit of the reflectance from the inside.
+    const double out = (1 - reflectance(kEta)) / (1 - 2 * FresnelMoment1(1 / double(kEta)));
+    const double straight = FresnelDielectric(1, kEta);
+    const double expected = straight + (1 - straight) * 0.6 * out;
+    const auto scene = MakeScene(
+        std::string(kSky) +
+            "Material \"kdsubsurface\" \"rgb Kd\" [.6 .6 .6] \"rgb mfp\" [.3 .1 .2] \"float eta\" "
+            "1.4\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
+            "[-90 -90 0 90 -90 0 90 90 0 -90 90 0]",
+        "", 8, kClose, 1);
+    for (const Estimator estimator : kEstimators) {
+        const Total total = Measure(*scene, estimator, 2000);
+        // 0.1 % is too far away to be looked for.
+        EXPECT_NEAR(total.mean, expected, 5 * total.standardError + 0.002 * expected);
+        EXPECT_LT(total.standardError, 0.01);
+    }
 }
 
 TEST(Sobol, ErrsLessThanRandom) {

@@ -1,0 +1,96 @@
+// Models light that enters a translucent solid and leaves it elsewhere, as pbrt-v3 does: by
+// tabulated photon beam diffusion (Habel, Christensen, Jarosz 2013; pbrt 3rd ed., 15.5) or by two
+// exponentials (Burley 2015).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Holds the profile of a semi-infinite solid under a beam that comes in along the normal, over the
+// albedo of a scattering and the distance in mean free paths (of sigma_t = 1).
+struct DiffusionTable {
+    static constexpr int kAlbedos = 100, kRadii = 64;
+
+    std::array<float, kAlbedos> albedo;
+    std::array<float, kRadii> radius;
+    std::array<float, kAlbedos> effectiveAlbedo;  // the integral of each albedo's profile
+    // Rows of kRadii: the profile times 2 pi r, and its integral from 0 to each radius.
+    std::vector<float> profile, cdf;
+
+    // `g` in (-1, 1) is the mean cosine of a scattering, `eta` >= 1 the index of the solid.
+    DiffusionTable(float g, float eta);
+};
+
+// Represents the profile of a solid of certain coefficients, a channel each.
+class DiffusionProfile {
+  public:
+    // `sigmaA`, `sigmaS` >= 0 are the coefficients of absorption and scattering, 1/length. The
+    // table must outlive the profile.
+    DiffusionProfile(const DiffusionTable& table, const Rgb& sigmaA, const Rgb& sigmaS);
+
+    // Returns the light that leaves at distance r from where it has entered, 1/area.
+    Rgb operator()(float r) const;
+
+    // Chooses a distance for a channel; nothing where it scatters nothing. Pdf is the density over
+    // the area, of all directions.
+    std::optional<float> Sample(int channel, float u) const;
+    float Pdf(int channel, float r) const;
+
+  private:
+    const DiffusionTable* table;
+    Rgb sigmaT, albedo;
+};
+
+// Represents what Burley 2015, "Extending the Disney BRDF to a BSDF with Integrated Subsurface
+// Scattering", fits to measured and simulated profiles.
+class BurleyProfile {
+  public:
+    // `albedo` is what the profile integrates to, `distance` >= 0 the mean free path, both 1 per
+    // channel; a channel whose distance is 0 scatters nothing.
+    BurleyProfile(const Rgb& albedo, const Rgb& distance)
+        : albedo(albedo), distance(0.2f * distance) {}
+
+    Rgb operator()(float r) const;
+    std::optional<float> Sample(int channel, float u) const;
+    float Pdf(int channel, float r) const;
+
+  private:
+    Rgb albedo, distance;
+};
+
+// Represents either.
+class SubsurfaceProfile {
+  public:
+    SubsurfaceProfile(const DiffusionProfile& profile, float eta) : eta(eta), kind(profile) {}
+    SubsurfaceProfile(const BurleyProfile& profile, float eta) : eta(eta), kind(profile) {}
+
+    // Returns the light that leaves at distance r from where it has entered, 1/area.
+    Rgb operator()(float r) const {
+        return std::visit([&](const auto& k) { return k(r); }, kind);
+    }
+    // Chooses a distance for a channel; nothing where it scatters nothing.
+    std::optional<float> Sample(int channel, float u) const {
+        return std::visit([&](const auto& k) { return k.Sample(channel, u); }, kind);
+    }
+    // Returns the density over the area, of all directions, with which Sample finds r.
+    float Pdf(int channel, float r) const {
+        return std::visit([&](const auto& k) { return k.Pdf(channel, r); }, kind);
+    }
+
+    float eta;  // index of the solid
+
+  private:
+    std::variant<DiffusionProfile, BurleyProfile> kind;
+};
+
+// Returns the albedo of a scattering, in [0, 1], at which a solid seen under even light has the
+// albedo `effective`, as near as it can.
+float AlbedoOfScattering(const DiffusionTable& table, float effective);
+
+}  // namespace lull

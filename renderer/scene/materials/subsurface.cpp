@@ -1,0 +1,83 @@
+#include "renderer/scene/materials/subsurface.h"
+
+#include <fmt/format.h>
+
+#include "renderer/scene/media/presets.h"
+
+namespace lull {
+namespace {
+
+constexpr float kMostEta = 4, kMostG = 0.99f;
+
+bool IsTabulated(float eta, float g) {
+    return eta >= 1 && eta <= kMostEta && std::abs(g) <= kMostG;
+}
+
+// Measured media are given by their reduced coefficients, for which g is 0.
+float MeanCosine(const MaterialReader& in) {
+    const float g = in.entity.parameters.GetFloat("g", 0);
+    Rgb sigmaA, sigmaS;
+    return FindMediumPreset(in.entity.parameters.GetString("name", ""), &sigmaA, &sigmaS) ? 0 : g;
+}
+
+Rgb PresetOr(const MaterialReader& in, bool scattering, const Rgb& otherwise) {
+    Rgb sigmaA = otherwise, sigmaS = otherwise;
+    FindMediumPreset(in.entity.parameters.GetString("name", ""), &sigmaA, &sigmaS);
+    return scattering ? sigmaS : sigmaA;
+}
+
+}  // namespace
+
+TranslucentSolid::TranslucentSolid(const MaterialReader& in, float g)
+    : kr(in.Spectrum("Kr", 1)),
+      kt(in.Spectrum("Kt", 1)),
+      roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)),
+      eta(in.entity.parameters.GetFloat("eta", 1.33f)),
+      g(g),
+      scale(in.entity.parameters.GetFloat("scale", 1)) {
+    if (IsTabulated(eta, g)) table = std::make_shared<const DiffusionTable>(g, eta);
+}
+
+std::string TranslucentSolid::Problem(const MaterialReader& in) const {
+    if (!IsTabulated(eta, g))
+        return fmt::format(
+            "\"eta\" of material \"{}\" has to lie between 1 and {}, \"g\" between "
+            "-{} and {}; they are {} and {}",
+            in.entity.name, kMostEta, kMostG, kMostG, eta, g);
+    if (!(scale >= 0 && scale < kInfinity))
+        return fmt::format("\"scale\" of material \"{}\" is {}; it cannot be negative",
+                           in.entity.name, scale);
+    return {};
+}
+
+void TranslucentSolid::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
+    AddDielectricLobes(in.Color(kr), in.Color(kt), eta, roughness, in, bsdf);
+}
+
+Subsurface::Subsurface(const MaterialReader& in)
+    : TranslucentSolid(in, MeanCosine(in)),
+      sigmaA(in.textures.GetSpectrum(in.entity, "sigma_a",
+                                     PresetOr(in, false, Rgb(0.0011f, 0.0024f, 0.014f)))),
+      sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s",
+                                     PresetOr(in, true, Rgb(2.55f, 3.21f, 3.77f)))) {}
+
+SubsurfaceProfile Subsurface::Profile(const MaterialInputs& in) const {
+    return {DiffusionProfile(*table, scale * in.Color(sigmaA), scale * in.Color(sigmaS)), eta};
+}
+
+KdSubsurface::KdSubsurface(const MaterialReader& in)
+    : TranslucentSolid(in, in.entity.parameters.GetFloat("g", 0)),
+      kd(in.Spectrum("Kd", 0.5f)),
+      meanFreePath(in.Spectrum("mfp", 1)) {}
+
+SubsurfaceProfile KdSubsurface::Profile(const MaterialInputs& in) const {
+    // Less than that float could not square the inverse of.
+    constexpr float kLeastPath = 1e-15f;
+    const Rgb sigmaT = 1 / (scale * in.Color(meanFreePath)).max(kLeastPath);
+    const Rgb effective = in.Color(kd);
+    Rgb albedo;
+    for (int c = 0; c < 3; ++c) albedo[c] = AlbedoOfScattering(*table, effective[c]);
+    return {DiffusionProfile(*table, (1 - albedo) * sigmaT, albedo * sigmaT), eta};
+}
+
+}  // namespace lull
