@@ -89,8 +89,7 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
 }
 
 void Convert(const std::string& scene, const std::string& output, const std::string& environment) {
-    Warnings warnings(
-        [](const std::string& message) { fmt::print(stderr, "{}\n", message); });
+    Warnings warnings([](const std::string& message) { fmt::print(stderr, "{}\n", message); });
     const Description description = ParsePbrt(scene, {.substitute = true}, warnings);
     const Mat4d gltfFromWorld = GltfFromWorld(description);
     GlbFile file;

@@ -87,7 +87,7 @@ typedef struct lull_settings {
  * there is nothing between: channels of a pixel, pixels of a row, rows from the top down. */
 typedef struct lull_picture {
     int width, height;
-    int format; /* a lull_format */
+    int format;       /* a lull_format */
     const void* mean; /* of all samples so far: the first channel of the pixel at the top left */
     const void* half; /* the same of one fixed half of the samples; NULL where there is none */
     ptrdiff_t row_stride, pixel_stride, channel_stride;
