@@ -275,7 +275,7 @@ TEST(Curves, StrandsMakeOneShape) {
         "WorldBegin\n" + strand + strand + strand + "Translate 1 0 0\n" + strand +
         "Material \"hair\"\n" + strand + strand +
         "Shape \"curve\" \"string type\" \"cylinder\" \"point P\" [0 0 0 0 0 1 0 "
-        "0 2 0 0 3]\nObjectBegin \"o\"\n" +
+        "0 2 0 0 3] \"float width\" .1\nObjectBegin \"o\"\n" +
         strand + strand + "ObjectEnd\nObjectInstance \"o\"\nWorldEnd\n";
     Warnings warnings;
     const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);

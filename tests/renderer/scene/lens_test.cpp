@@ -86,10 +86,11 @@ TEST(RealisticCamera, WeighsByTheLightThatPasses) {
     const double middle = mean(camera, {50, 50}), corner = mean(camera, {1, 1});
     // A disk of 17 mm seen at about 45 mm, for two seconds.
     EXPECT_NEAR(middle, 2 * kPi * Sqr(8.5 / 45), 0.06);
-    EXPECT_LT(corner, 0.5 * middle);
-    EXPECT_GT(corner, 0.05 * middle);
-    // The two ways of weighting differ by a factor alone. A disk fills pi / 4 of its bounds.
-    EXPECT_NEAR(mean(simple, {50, 50}), kPi / 4, 0.02);
+    EXPECT_LT(corner, 0.85 * middle);
+    EXPECT_GT(corner, 0.6 * middle);
+    // The two ways of weighting differ by a factor alone. A disk fills pi / 4 of its bounds, which
+    // have a margin, and cos^4 is 0.97 or so.
+    EXPECT_NEAR(mean(simple, {50, 50}), kPi / 4, 0.07);
     EXPECT_NEAR(mean(simple, {1, 1}) / mean(simple, {50, 50}), corner / middle, 0.02);
 }
 
