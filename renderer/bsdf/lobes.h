@@ -157,8 +157,9 @@ struct FresnelBlend {
         const Rgb f = Rgb(scale) * (diffuse + glossy);
         if (!SameHemisphere(wo, wi)) return {f, 0};
         const float glossyPdf = 0.5f * d / (cosO + distribution.Stretch(wo));
-        // Even shares in one product, which rounds as pbrt-v3's estimator always has.
-        if (glossyShare == 0.5f) return {f, 0.5f * (cosI * kInvPi + glossyPdf)};
+        // Even shares are rounded as pbrt-v3's estimator always has: once, where the machine takes
+        // product and sum in one. A product that both lines shared would be rounded by itself.
+        if (glossyShare == 0.5f) return {f, cosI * (0.5f * kInvPi) + 0.5f * glossyPdf};
         return {f, (1 - glossyShare) * (cosI * kInvPi) + glossyShare * glossyPdf};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
