@@ -6,14 +6,13 @@
 #include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/constant.h"
 #include "renderer/scene/textures/dots.h"
-#include "renderer/scene/textures/fbm.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/marble.h"
 #include "renderer/scene/textures/mix.h"
+#include "renderer/scene/textures/octaves.h"
 #include "renderer/scene/textures/scale.h"
 #include "renderer/scene/textures/uv.h"
 #include "renderer/scene/textures/windy.h"
-#include "renderer/scene/textures/wrinkled.h"
 
 namespace lull {
 
@@ -60,20 +59,31 @@ TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* node
 }
 
 constexpr Kind<FloatTextureNode> kFloatKinds[] = {
-    {"constant", AddNode<MakeConstant<float>>}, {"scale", AddNode<MakeScale<float>>},
-    {"mix", AddNode<MakeMix<float>>},           {"imagemap", AddNode<MakeImageMap<float>>},
-    {"fbm", AddNode<MakeFbm<float>>},           {"checkerboard", AddNode<MakeCheckerboard<float>>},
-    {"bilerp", AddNode<MakeBilerp<float>>},     {"dots", AddNode<MakeDots<float>>},
-    {"windy", AddNode<MakeWindy<float>>},       {"wrinkled", AddNode<MakeWrinkled<float>>},
+    {"constant", AddNode<MakeConstant<float>>},
+    {"scale", AddNode<MakeScale<float>>},
+    {"mix", AddNode<MakeMix<float>>},
+    {"imagemap", AddNode<MakeImageMap<float>>},
+    {"fbm", AddNode<MakeOctaves<float, FractionalBrownianMotion>>},
+    {"checkerboard", AddNode<MakeCheckerboard<float>>},
+    {"bilerp", AddNode<MakeBilerp<float>>},
+    {"dots", AddNode<MakeDots<float>>},
+    {"windy", AddNode<MakeWindy<float>>},
+    {"wrinkled", AddNode<MakeOctaves<float, Turbulence>>},
 };
 
 constexpr Kind<SpectrumTextureNode> kSpectrumKinds[] = {
-    {"constant", AddNode<MakeConstant<Rgb>>}, {"scale", AddNode<MakeScale<Rgb>>},
-    {"mix", AddNode<MakeMix<Rgb>>},           {"imagemap", AddNode<MakeImageMap<Rgb>>},
-    {"fbm", AddNode<MakeFbm<Rgb>>},           {"checkerboard", AddNode<MakeCheckerboard<Rgb>>},
-    {"marble", AddNode<MakeMarble>},          {"uv", AddNode<MakeUvColors>},
-    {"bilerp", AddNode<MakeBilerp<Rgb>>},     {"dots", AddNode<MakeDots<Rgb>>},
-    {"windy", AddNode<MakeWindy<Rgb>>},       {"wrinkled", AddNode<MakeWrinkled<Rgb>>},
+    {"constant", AddNode<MakeConstant<Rgb>>},
+    {"scale", AddNode<MakeScale<Rgb>>},
+    {"mix", AddNode<MakeMix<Rgb>>},
+    {"imagemap", AddNode<MakeImageMap<Rgb>>},
+    {"fbm", AddNode<MakeOctaves<Rgb, FractionalBrownianMotion>>},
+    {"checkerboard", AddNode<MakeCheckerboard<Rgb>>},
+    {"marble", AddNode<MakeMarble>},
+    {"uv", AddNode<MakeUvColors>},
+    {"bilerp", AddNode<MakeBilerp<Rgb>>},
+    {"dots", AddNode<MakeDots<Rgb>>},
+    {"windy", AddNode<MakeWindy<Rgb>>},
+    {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},
 };
 
 // Makes one texture, or what stands for one of a kind that is not modelled.

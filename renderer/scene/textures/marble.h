@@ -1,7 +1,7 @@
 // Draws veins of marble: a sine along y, disturbed by noise, coloured by a spline.
 #pragma once
 
-#include "renderer/scene/textures/fbm.h"
+#include "renderer/scene/textures/octaves.h"
 
 namespace lull {
 

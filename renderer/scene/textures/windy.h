@@ -1,7 +1,7 @@
 // Ripples like water under wind: waves whose height another, coarser noise sets.
 #pragma once
 
-#include "renderer/scene/textures/fbm.h"
+#include "renderer/scene/textures/octaves.h"
 
 namespace lull {
 

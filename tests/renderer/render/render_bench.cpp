@@ -12,12 +12,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <thread>
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
+#include "tests/renderer/bench_scenes.h"
 
 namespace lull {
 namespace {
@@ -113,27 +113,13 @@ void BenchLastBlock(benchmark::State& state, const std::string& file) {
                  {.cap = 60, .tileSize = int(state.range(0))});
 }
 
-std::vector<std::string> SceneFiles() {
-    std::vector<std::string> files;
-    if (const char* list = std::getenv("LULL_BENCH_SCENES")) {
-        std::istringstream in(list);
-        for (std::string file; std::getline(in, file, ':');) files.push_back(file);
-        return files;
-    }
-    for (const auto& folder : std::filesystem::directory_iterator(LULL_SCENES_DIR))
-        if (const auto file = folder.path() / "scene.pbrt"; std::filesystem::exists(file))
-            files.push_back(file.string());
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 int RegisterAll() {
     auto registerOne = [](const std::string& name, auto bench) {
         return benchmark::RegisterBenchmark(name.c_str(), bench)
             ->UseRealTime()
             ->Unit(benchmark::kMillisecond);
     };
-    for (const std::string& file : SceneFiles()) {
+    for (const std::string& file : BenchScenes()) {
         const std::filesystem::path path(file);
         const std::string name = path.parent_path().filename() / path.stem();
         registerOne(name + "/start", [file](benchmark::State& state) { BenchStart(state, file); });

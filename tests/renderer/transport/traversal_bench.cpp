@@ -23,11 +23,11 @@
 #include <filesystem>
 #include <map>
 #include <span>
-#include <sstream>
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
 #include "renderer/transport/path_tracer.h"
+#include "tests/renderer/bench_scenes.h"
 #include "tests/renderer/transport/recording_accelerator.h"
 
 namespace lull {
@@ -220,20 +220,6 @@ void ReportSort(benchmark::State& state, const std::string& file) {
     state.counters["of render"] = m.sort.seconds / m.render.seconds;
 }
 
-std::vector<std::string> SceneFiles() {
-    std::vector<std::string> files;
-    if (const char* list = std::getenv("LULL_BENCH_SCENES")) {
-        std::istringstream in(list);
-        for (std::string file; std::getline(in, file, ':');) files.push_back(file);
-        return files;
-    }
-    for (const auto& folder : std::filesystem::directory_iterator(LULL_SCENES_DIR))
-        if (const auto file = folder.path() / "scene.pbrt"; std::filesystem::exists(file))
-            files.push_back(file.string());
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 int RegisterAll() {
     // The times were taken beforehand, all variants in turn: a benchmark only reports its own.
     auto registerOne = [](const std::string& name, auto report) {
@@ -242,7 +228,7 @@ int RegisterAll() {
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);
     };
-    for (const std::string& file : SceneFiles()) {
+    for (const std::string& file : BenchScenes()) {
         const std::string name = std::filesystem::path(file).parent_path().filename();
         registerOne(name + "/render", [=](auto& state) { ReportRender(state, file); });
         for (size_t i = 0; i < kOrders.size(); ++i)
