@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
 """Tests of the Python module: python_test.py FOLDER, where the module is."""
+import contextlib
+import io
+import pathlib
 import sys
 import threading
 import unittest
@@ -7,6 +10,8 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
+sys.path.append(str(pathlib.Path(__file__).parents[2] / "stopping/examples"))
+import drive_renderer  # noqa: E402
 import lull  # noqa: E402
 
 WIDTH, HEIGHT = 70, 60
@@ -153,6 +158,15 @@ class StopperTest(unittest.TestCase):
             thread.join()
         self.assertEqual(answers, [answers[0]] * 4)
         self.assertIsNotNone(answers[0])
+
+    def test_example_drives_a_renderer(self):
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            image, spp = drive_renderer.drive(width=200, height=100, caution=0.5)
+        self.assertEqual(spp.shape, (1, 2))
+        self.assertLess(2 * spp[0, 0], spp[0, 1])  # less noise on the left
+        self.assertLess(spp[0, 1], 10000)
+        self.assertIn("100% of 2 blocks have stopped", out.getvalue())
+        self.assertTrue(np.isfinite(image).all())
 
     def test_version(self):
         self.assertRegex(lull.__version__, r"^\d+\.\d+\.\d+$")

@@ -10,11 +10,11 @@
 namespace lull {
 namespace {
 
-// Runs a command in which PREFIX stands for the installed tree; expects that it succeeds.
-std::string Run(const TemporaryDirectory& directory, std::string command) {
+// Runs a command in which TREE stands for the installed tree; expects that it succeeds.
+std::string Do(const TemporaryDirectory& directory, std::string command) {
     const std::string prefix = directory.File("moved tree");
-    for (size_t at = 0; (at = command.find("PREFIX", at)) != std::string::npos;)
-        command.replace(at, 6, "'" + prefix + "'");
+    for (size_t at = 0; (at = command.find("TREE", at)) != std::string::npos;)
+        command.replace(at, 4, "'" + prefix + "'");
     const Outcome outcome = RunShell(directory, command);
     EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.out << outcome.err;
     return outcome.out;
@@ -25,8 +25,8 @@ std::string Run(const TemporaryDirectory& directory, std::string command) {
 struct InstalledTree : TemporaryDirectory {
     InstalledTree() {
         unsetenv("LULL_MODELS");
-        Run(*this, "'" LULL_CMAKE "' --install '" LULL_BUILD_DIR "' --prefix '" + File("tree") +
-                       "' >/dev/null && mv tree PREFIX");
+        Do(*this, "'" LULL_CMAKE "' --install '" LULL_BUILD_DIR "' --prefix '" + File("tree") +
+                      "' >/dev/null && mv tree TREE");
     }
     bool Has(const std::string& name) const {
         return std::filesystem::exists(path / "moved tree" / name);
@@ -39,7 +39,7 @@ std::string Complete(const InstalledTree& tree, const std::string& words, int la
                "set -e\n. 'moved tree/share/bash-completion/completions/lull'\nCOMP_WORDS=(" +
                    words + ")\nCOMP_CWORD=" + std::to_string(last) +
                    "\n_lull\necho \"${COMPREPLY[@]}\"\n");
-    return Run(tree, "bash complete.sh");
+    return Do(tree, "bash complete.sh");
 }
 
 // Returns the long options that a help text defines, each at the beginning of a line.
@@ -59,10 +59,10 @@ const char* const kCommands[] = {"render",   "info",    "dataset", "train", "eva
 
 TEST(Install, RunsWhereItIsMoved) {
     const InstalledTree tree;
-    EXPECT_EQ(Run(tree, "PREFIX/bin/lull --version"), "lull " LULL_VERSION "\n");
+    EXPECT_EQ(Do(tree, "TREE/bin/lull --version"), "lull " LULL_VERSION "\n");
     tree.Write("scene.pbrt", SceneText(kSphere));
     // The rule reads its model before anything is rendered.
-    Run(tree, "PREFIX/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
+    Do(tree, "TREE/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
     EXPECT_TRUE(std::filesystem::exists(tree.File("out.png")));
     for (const char* file :
          {"include/lull/stopping.h", "share/lull/models/entropy.h5", "share/lull/models/noise.h5",
@@ -114,7 +114,7 @@ std::string WritePictures(const TemporaryDirectory& directory, int count, int st
         for (size_t i = 0; i < sum.size(); ++i) {
             const float truth = 0.2f + 0.4f * float(i % 100) / 100;
             for (int c = 0; c < 3; ++c)
-                sum[i][c] += truth * float(step) + 0.3f * std::sqrt(float(step)) * gauss(generator);
+                sum[i][c] += truth * float(step) + 0.1f * std::sqrt(float(step)) * gauss(generator);
             mean[i] = sum[i] / float(k * step);
         }
         const std::string name = fmt::format("p{:02}.png", k);
@@ -126,14 +126,13 @@ std::string WritePictures(const TemporaryDirectory& directory, int count, int st
 
 TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
     const InstalledTree tree;
-    const std::string example = Run(tree, "echo PREFIX/share/doc/lull/examples");
-    Run(tree, "'" LULL_CMAKE
-              "' -S PREFIX/share/doc/lull/examples -B build -DCMAKE_PREFIX_PATH=PREFIX "
-              "-DCMAKE_CXX_COMPILER='" LULL_CXX
-              "' -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON >&2 && "
-              "'" LULL_CMAKE "' --build build >&2");
+    Do(tree, "'" LULL_CMAKE
+             "' -S TREE/share/doc/lull/examples -B build -DCMAKE_PREFIX_PATH=TREE "
+             "-DCMAKE_CXX_COMPILER='" LULL_CXX
+             "' -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON >&2 && "
+             "'" LULL_CMAKE "' --build build >&2");
     const std::string pictures = WritePictures(tree, 30, 60);
-    const std::string out = Run(tree, "build/judge_pngs 60" + pictures);
+    const std::string out = Do(tree, "build/judge_pngs 60" + pictures);
     EXPECT_TRUE(out.starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n")) << out;
     EXPECT_TRUE(out.ends_with(", 0 of 1 blocks go on\n")) << out;
     EXPECT_GT(std::ranges::count(out, '\n'), 5) << out;
@@ -145,6 +144,37 @@ TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
     const Outcome small = RunShell(tree, "build/judge_pngs 60 small.png");
     EXPECT_EQ(small.exitCode, 1);
     EXPECT_TRUE(Contains(small.err, "20x20")) << small.err;
+}
+
+// A package, made of what is built, unpacked and run: nothing of the system is changed.
+TEST(Install, DebianPackageHoldsAllThatItNeeds) {
+    const TemporaryDirectory directory;
+    const auto here = [&](const std::string& command) { return Do(directory, command); };
+    if (RunShell(directory, "command -v dpkg-deb && command -v dpkg-shlibdeps").exitCode != 0)
+        GTEST_SKIP() << "there is no dpkg-shlibdeps (dpkg-dev)";
+    here("'" LULL_CPACK "' -G DEB --config '" LULL_BUILD_DIR "/CPackConfig.cmake' -B . >&2");
+    const std::string fields = here("dpkg-deb -f lull_*.deb");
+    EXPECT_TRUE(Contains(fields, "Package: lull\n")) << fields;
+    EXPECT_TRUE(Contains(fields, "Version: " LULL_VERSION)) << fields;
+    for (const char* library : {"libc6 ", "libembree", "libopenimageio", "libhdf5-", "libtbb12"})
+        EXPECT_TRUE(Contains(fields, library)) << library << " in " << fields;
+    EXPECT_FALSE(Contains(fields, "liblull")) << fields;
+
+    here("dpkg-deb -x lull_*.deb 'moved tree' && test -r TREE/usr/share/doc/lull/copyright");
+    EXPECT_EQ(here("TREE/usr/bin/lull --version"), "lull " LULL_VERSION "\n");
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    here("TREE/usr/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
+    const std::string modules = "moved tree/usr/" LULL_PYTHON_DIR;
+    if (std::filesystem::exists(directory.path / modules)) {
+        EXPECT_TRUE(Contains(fields, "python3-numpy")) << fields;
+        directory.Write("use.py",
+                        "import sys, numpy, lull\n"
+                        "stopper = lull.Stopper(50, 40, model='entropy')\n"
+                        "answer = stopper.observe(numpy.zeros((40, 50, 3), numpy.float32), 40)\n"
+                        "print(lull.__version__, answer.stop)\n");
+        EXPECT_EQ(here("PYTHONPATH='" + modules + "' '" LULL_PYTHON "' use.py"),
+                  LULL_VERSION " False\n");
+    }
 }
 
 }  // namespace
