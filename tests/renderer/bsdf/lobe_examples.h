@@ -26,7 +26,6 @@ inline std::vector<NamedLobe> SpreadLobes() {
         {"Lambertian reflection", LambertianReflection{color}},
         {"Lambertian transmission", LambertianTransmission{color}},
         {"Oren-Nayar 20", OrenNayar(color, 20)},
-        {"diffuse exit", DiffuseExit{color, 1.4f}},
         {"Oren-Nayar 90", OrenNayar(color, 90)},
         {"Disney base", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::Base}},
         {"Disney subsurface", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::FakeSubsurface}},

@@ -278,7 +278,7 @@ TEST(Subsurface, ReturnsItsAlbedoUnderAnEvenSky) {
             "Material \"kdsubsurface\" \"rgb Kd\" [.6 .6 .6] \"rgb mfp\" [.3 .1 .2] \"float eta\" "
             "1.4\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
             "[-90 -90 0 90 -90 0 90 90 0 -90 90 0]",
-        "", 8, kClose, 1);
+        "", 8, "0 0 2.5  0 0 0  0 1 0", 1);
     for (const Estimator estimator : kEstimators) {
         const Total total = Measure(*scene, estimator, 2000);
         // 0.1 % is too far away to be looked for.
