@@ -1,0 +1,69 @@
+// Knows where light comes from, place by place: a binary tree over space, each leaf of which has a
+// quadtree over directions (Müller, Gross, Novák: Practical Path Guiding, CGF 36(4), 2017).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Maps unit directions to the unit square, solid angles to equal shares of its area: the height
+// over the xy plane, and the angle around z.
+Vec2f SquareFromDirection(const Vec3f& w);
+Vec3f DirectionFromSquare(const Vec2f& s);
+
+// Cuts a square into quadrants: 0 and 1 below in y, 2 and 3 above.
+struct QuadNode {
+    std::array<float, 4> share = {0.25f, 0.25f, 0.25f, 0.25f};  // of the square's light; sum 1
+    // From the first node of the tree on; 0: none, the quadrant is even.
+    std::array<uint16_t, 4> child = {};
+};
+
+struct GuideLeaf {
+    uint32_t firstNode = 0, nodeCount = 1;  // of its quadtree, the root first, children behind
+    uint32_t depth = 0;                     // in the tree over space
+    float fraction = 0;  // of the paths there that the guide directs; 0: has nothing to say
+};
+
+// Constant while paths are traced.
+class Guide {
+  public:
+    static constexpr int kMaxDepth = 48;  // of the tree over space
+
+    Guide() = default;
+    // Cuts the cube around the bounds, `depth` times, and directions into 4^quadDepth squares, all
+    // even.
+    Guide(const Bounds3f& bounds, int depth, int quadDepth);
+
+    // Returns the leaf at p; for points outside the bounds, one at the border.
+    uint32_t Find(const Vec3f& p) const;
+    const GuideLeaf& Leaf(uint32_t i) const { return leaves[i]; }
+
+    // Turns u in [0, 1)^2 into a unit direction by the density of the leaf; `pdf` receives it,
+    // 1/sr.
+    Vec3f Sample(const GuideLeaf& leaf, Vec2f u, float* pdf) const;
+    // Returns the density, 1/sr, of the unit direction.
+    float Pdf(const GuideLeaf& leaf, const Vec3f& w) const;
+
+    // Returns the smallest quadrant that holds the unit direction: 4 times its node, from the first
+    // of all trees on, plus its place there.
+    size_t Quadrant(const GuideLeaf& leaf, const Vec3f& w) const;
+    // Moves p within the size of its leaf, as u in [0, 1)^3 says.
+    Vec3f Jitter(const Vec3f& p, const GuideLeaf& leaf, const Vec3f& u) const;
+
+    size_t Bytes() const;
+
+    // The trees, for those who build, store and record. A node over space is the index of the first
+    // of its two children, or a leaf's with kIsLeaf set; axes x, y, z follow each other.
+    static constexpr uint32_t kIsLeaf = 0x80000000u;
+    Vec3f lower = Vec3f::Zero();  // of the cube
+    float side = 1;               // of the cube
+    std::vector<uint32_t> nodes;
+    std::vector<GuideLeaf> leaves;
+    std::vector<QuadNode> quads;
+};
+
+}  // namespace lull
