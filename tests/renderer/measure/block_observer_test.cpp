@@ -13,7 +13,7 @@ namespace {
 constexpr int kSide = 40;
 
 // Shows a block whose noise falls with the samples.
-struct NoisyBlock {
+struct FadingBlock {
     std::vector<float> mean, halfMean;
 
     BlockView At(int spp) {
@@ -43,7 +43,7 @@ std::vector<std::unique_ptr<Criterion>> FixedRules(std::initializer_list<int> sp
 }
 
 TEST(BlockObserver, KeepsTheBlockWhereRulesStopIt) {
-    NoisyBlock block;
+    FadingBlock block;
     BlockHistory history;
     BlockObserver observer(FixedRules({40, 80, 40}), {.snapshots = true, .goesOn = true}, &history);
     std::vector<float> at40, at80;
@@ -66,7 +66,7 @@ TEST(BlockObserver, KeepsTheBlockWhereRulesStopIt) {
 }
 
 TEST(BlockObserver, StopsWithTheLastRule) {
-    NoisyBlock block;
+    FadingBlock block;
     BlockHistory history;
     BlockObserver observer(FixedRules({60, 0, 40}), {}, &history);
     EXPECT_EQ(observer.Need(20), ViewNeed::Nothing);
@@ -78,7 +78,7 @@ TEST(BlockObserver, StopsWithTheLastRule) {
 }
 
 TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
-    NoisyBlock block;
+    FadingBlock block;
     BlockHistory history;
     std::vector<std::unique_ptr<Criterion>> rules;
     rules.push_back(MakeDammertz(0.05));
@@ -108,7 +108,7 @@ TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
 }
 
 TEST(BlockObserver, RecordsCurvesThatFall) {
-    NoisyBlock block;
+    FadingBlock block;
     BlockHistory history;
     BlockObserver observer(FixedRules({4000}), {.curves = true}, &history);
     for (int spp = 20; spp <= 4000; spp += 20) observer.Observe(block.At(spp));
@@ -121,7 +121,7 @@ TEST(BlockObserver, RecordsCurvesThatFall) {
 }
 
 TEST(BlockObserver, GoesOnAfterAnInterruption) {
-    NoisyBlock block;
+    FadingBlock block;
     const ObserverOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
     const auto rules = [] {
         auto made = FixedRules({40, 0});
@@ -152,7 +152,7 @@ TEST(BlockObserver, GoesOnAfterAnInterruption) {
 }
 
 TEST(BlockObserver, RefusesStatesThatAreNotItsOwn) {
-    NoisyBlock block;
+    FadingBlock block;
     BlockHistory history, other;
     BlockObserver observer(FixedRules({40}), {.snapshots = true}, &history);
     observer.Observe(block.At(20));

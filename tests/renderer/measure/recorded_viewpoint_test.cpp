@@ -9,9 +9,9 @@
 namespace lull {
 namespace {
 
-const PixelRect kRegion{{3, 5}, {93, 49}};  // blocks of 45x44 pixels
+const PixelRect kRoom{{3, 5}, {93, 49}};  // blocks of 45x44 pixels
 
-RenderOptions Options() {
+RenderOptions RoomOptions() {
     RenderOptions options;
     options.schedule = {.blockSize = 45, .passLength = 4, .cap = 16};
     options.threads = 2;
@@ -19,15 +19,15 @@ RenderOptions Options() {
 }
 
 ViewpointRecording Frame() {
-    return MakeViewpoint("room", Options().schedule, {{"scene", "a"}, {"cap", "16"}}, 2);
+    return MakeViewpoint("room", RoomOptions().schedule, {{"scene", "a"}, {"cap", "16"}}, 2);
 }
 
 // Records up to limits, and returns what there is then of the viewpoint.
 ViewpointRecording Record(const std::vector<int>& limits) {
-    Film film(kRegion);
+    Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
     const RenderResult result =
-        RecordBlocks(SyntheticSample, Options(), limits, &film, nullptr, &viewpoint);
+        RecordBlocks(SyntheticSample, RoomOptions(), limits, &film, nullptr, &viewpoint);
     EXPECT_FALSE(result.cancelled);
     return viewpoint;
 }
@@ -72,9 +72,9 @@ TEST(RecordBlocks, RecordsEachToThePassThatReachesItsLimit) {
 }
 
 TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
-    Film film(kRegion);
+    Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderOptions options = Options();
+    RenderOptions options = RoomOptions();
     RenderProgress last;
     options.onProgress = [&](const RenderProgress& progress) { last = progress; };
     RecordBlocks(SyntheticSample, options, {0, 6}, &film, nullptr, &viewpoint);
@@ -83,9 +83,9 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
 }
 
 TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
-    Film film(kRegion);
+    Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderOptions options = Options();
+    RenderOptions options = RoomOptions();
     options.threads = 1;
     std::optional<RenderState> state;
     int tiles = 0;
@@ -95,7 +95,7 @@ TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
         RecordBlocks(SyntheticSample, options, {16, 6}, &film, nullptr, &viewpoint).cancelled);
     EXPECT_TRUE(viewpoint.blocks.empty());
     ASSERT_TRUE(state);
-    RecordBlocks(SyntheticSample, Options(), {16, 6}, &film, &*state, &viewpoint);
+    RecordBlocks(SyntheticSample, RoomOptions(), {16, 6}, &film, &*state, &viewpoint);
     const ViewpointRecording whole = Record({16, 6});
     for (const int i : {0, 1}) {
         EXPECT_EQ(viewpoint.blocks.at(i).spp, whole.blocks.at(i).spp);
@@ -104,13 +104,13 @@ TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
 }
 
 TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
-    const std::vector<Block> blocks = MakeBlocks(kRegion, Options().schedule);
-    Study study = BeginStudy("room", kRegion, {4, 8, 16}, blocks, {{"scene", "a"}});
+    const std::vector<Block> blocks = MakeBlocks(kRoom, RoomOptions().schedule);
+    Study study = BeginStudy("room", kRoom, {4, 8, 16}, blocks, {{"scene", "a"}});
     EXPECT_EQ(study.width, 90);
     EXPECT_EQ(study.blocks[1].pixels, (PixelRect{{45, 0}, {90, 44}}));
-    Film film(kRegion);
+    Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderStudy(SyntheticSample, Options(), &film, nullptr, &study, &viewpoint);
+    RenderStudy(SyntheticSample, RoomOptions(), &film, nullptr, &study, &viewpoint);
     for (const StudyBlock& block : study.blocks) {
         ASSERT_EQ(block.pictures.size(), 3u);
         for (const DisplayPixels& picture : block.pictures) EXPECT_EQ(picture.size(), 45u * 44 * 3);
@@ -118,9 +118,9 @@ TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
     }
     EXPECT_EQ(viewpoint.blocks.at(1).values, Record({16, 16}).blocks.at(1).values);
 
-    Film again(kRegion);
-    Study alone = BeginStudy("room", kRegion, {4, 8, 16}, blocks, {{"scene", "a"}});
-    RenderStudy(SyntheticSample, Options(), &again, nullptr, &alone, nullptr);
+    Film again(kRoom);
+    Study alone = BeginStudy("room", kRoom, {4, 8, 16}, blocks, {{"scene", "a"}});
+    RenderStudy(SyntheticSample, RoomOptions(), &again, nullptr, &alone, nullptr);
     EXPECT_EQ(StudyId(alone), StudyId(study));
 }
 
