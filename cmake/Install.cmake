@@ -20,6 +20,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/lullConfig.cmake ${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
         DESTINATION ${lull_cmake})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(FILES renderer/pages/uPlot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        RENAME copyright.uPlot) # it is part of the program
 install(DIRECTORY stopping/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The manual page and the completion of bash, made of what the program says of itself. (Python runs
@@ -46,8 +48,8 @@ set(CPACK_PACKAGE_CONTACT "The authors of lull <lull@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer that knows when to stop")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
     "A path tracer for pbrt-v3 and glTF scenes that stops each part of a picture when people would
- see no more noise there; the library lull::stopping, for C, C++ and Python, tells other renderers
- when to.")
+see no more noise there; the library lull::stopping, for C, C++ and Python, tells other renderers
+when to.")
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

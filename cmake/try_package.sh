@@ -10,7 +10,7 @@ fi
 cd "$(mktemp -d)"
 trap 'rm -rf "$PWD"' EXIT
 apt-get install -y --no-install-recommends "$package"
-trap 'apt-get remove -y lull; rm -rf "$PWD"' EXIT
+trap 'apt-get purge -y lull; rm -rf "$PWD"' EXIT
 
 /usr/bin/lull --version
 man -w lull >/dev/null 2>&1 || test -r /usr/share/man/man1/lull.1.gz -o -r /usr/share/man/man1/lull.1
@@ -18,7 +18,7 @@ cp -r /usr/share/doc/lull/examples .
 [[ ! -e /usr/include/png.h ]] || { cmake -S examples -B build && cmake --build build; }
 /usr/bin/python3 -c 'import lull; print(lull.Stopper(200, 200).blocks)' || [[ ! -e /usr/lib/python3/dist-packages/lull* ]]
 
-apt-get remove -y lull
+apt-get purge -y lull
 trap 'rm -rf "$PWD"' EXIT
 for left in /usr/bin/lull /usr/include/lull /usr/share/lull /usr/lib/liblull_stopping.so; do
     [[ ! -e $left ]] || { echo "left behind: $left" >&2; exit 1; }
