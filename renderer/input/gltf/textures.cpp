@@ -140,6 +140,8 @@ std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexel
         const tinygltf::Sampler& sampler = document.model.samplers[size_t(texture.sampler)];
         write.String("wrap", WrapName(sampler.wrapS));
         write.String("wrapt", WrapName(sampler.wrapT));
+        if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST)
+            warnings.Add(loc, "magFilter NEAREST is left out; images are filtered bilinearly");
     }
     if (use.transform) {
         write.String("mapping", "uvaffine");

@@ -148,7 +148,7 @@ TEST(GltfLights, AreTakenFromPhotometricUnits) {
 TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     GltfFile file;
     file.root["images"] = {{{"uri", "a%20b.png"}}};
-    file.root["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}}};
+    file.root["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}, {"magFilter", 9728}}};
     file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
     file.root["materials"] = {
         {{"pbrMetallicRoughness",
@@ -167,7 +167,7 @@ TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     file.Node({{"mesh", file.Triangle({{"material", 0}})}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
-    EXPECT_EQ(warnings.Total(), 1);  // of sheen
+    EXPECT_EQ(warnings.Total(), 3);  // of sheen, and of how both textures are filtered
     ASSERT_EQ(d.materials.size(), 1u);
     const Parameters& m = d.materials[0].parameters;
     EXPECT_EQ(d.materials[0].name, "metallicroughness");
