@@ -4,8 +4,9 @@
 namespace lull {
 
 // Return the integral over cosines from 0 to 1 of F cos and F cos^2, F for light that comes from
-// the outside of a dielectric of index `eta` (below 1: from the inside of 1 / eta): polynomial fits
-// of d'Eon and Irving 2011, "A Quantized-Diffusion Model for Rendering Translucent Materials".
+// the inside of a dielectric of index `eta` (below 1: from the outside of one of 1 / eta):
+// polynomial fits of d'Eon and Irving 2011, "A Quantized-Diffusion Model for Rendering Translucent
+// Materials".
 inline double FresnelMoment1(double eta) {
     if (eta < 1)
         return 0.45966 +

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/bsdf/fresnel.h"
+#include "renderer/bsdf/fresnel_moments.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
@@ -20,6 +22,22 @@ double OverPlane(double low, double high, const F& f) {
         sum += 2 * std::numbers::pi * r * double(f(float(r))) * dr;
     }
     return sum;
+}
+
+// The fits are as good as this at the indices that solids have.
+TEST(FresnelMoments, AreNearTheIntegrals) {
+    for (const float eta : {1 / 1.8f, 1 / 1.33f, 1.f, 1.1f, 1.33f, 1.5f, 2.2f}) {
+        double first = 0, second = 0;
+        constexpr int kSteps = 10000;
+        for (int i = 0; i < kSteps; ++i) {
+            const float c = (float(i) + 0.5f) / kSteps;
+            const double f = double(FresnelDielectric(c, 1 / eta)) / kSteps;
+            first += f * double(c);
+            second += f * double(c) * double(c);
+        }
+        EXPECT_NEAR(FresnelMoment1(eta), first, 0.003) << eta;
+        EXPECT_NEAR(FresnelMoment2(eta), second, 0.003) << eta;
+    }
 }
 
 TEST(DiffusionProfile, IntegratesToTheEffectiveAlbedo) {

@@ -269,7 +269,7 @@ TEST(Subsurface, ReturnsItsAlbedoUnderAnEvenSky) {
         }
         return sum;
     };
-    // Directions out of the solid are weighted by a fit of the reflectance from the inside.
+    // Directions out of the solid are weighted by a fit of the reflectance.
     const double out = (1 - reflectance(kEta)) / (1 - 2 * FresnelMoment1(1 / double(kEta)));
     const double straight = FresnelDielectric(1, kEta);
     const double expected = straight + (1 - straight) * 0.6 * out;
