@@ -38,27 +38,45 @@ def surface_of(described):
             specular)
 
 
-def reflected(tree, roughness, f0, f90):
-    """Makes nodes for the share of light that a rough interface reflects in all, by the cosine of
-    the view (Karis 2014, "Physically Based Shading on Mobile"). Returns their output."""
-    def math_node(operation, a, b, c=None):
-        node = tree.nodes.new('ShaderNodeMath')
-        node.operation = operation
-        for socket, value in zip(node.inputs, (a, b, c)):
-            if isinstance(value, (int, float)):
-                socket.default_value = value
-            elif value is not None:
-                tree.links.new(value, socket)
-        return node.outputs[0]
+def math_node(tree, operation, *inputs):
+    """Makes a node of numbers and other nodes' outputs. Returns its output."""
+    node = tree.nodes.new('ShaderNodeMath')
+    node.operation = operation
+    for socket, value in zip(node.inputs, inputs):
+        if isinstance(value, (int, float)):
+            socket.default_value = value
+        else:
+            tree.links.new(value, socket)
+    return node.outputs[0]
 
-    x, y, z, w = (roughness * a + b for a, b in
-                  ((-1, 1), (-0.0275, 0.0425), (-0.572, 1.04), (0.022, -0.04)))
+
+def albedo_fit(roughness):
+    """Returns the numbers of a fit to the albedo of rough interfaces (Karis 2014, "Physically Based
+    Shading on Mobile")."""
+    return [roughness * a + b for a, b in
+            ((-1, 1), (-0.0275, 0.0425), (-0.572, 1.04), (0.022, -0.04))]
+
+
+def reflected(tree, roughness, f0, f90):
+    """Makes nodes for the share of light that a rough interface reflects in all under Schlick's
+    reflectance, by the cosine of the view. Returns their output."""
+    x, y, z, w = albedo_fit(roughness)
     facing = tree.nodes.new('ShaderNodeLayerWeight')
     facing.inputs['Blend'].default_value = 0.5
-    cosine = math_node('SUBTRACT', 1.0, facing.outputs['Facing'])
-    steep = math_node('MINIMUM', math_node('POWER', 2 ** -9.28, cosine), x * x)
-    term = math_node('MULTIPLY_ADD', steep, x, y)
-    return math_node('MULTIPLY_ADD', term, 1.04 * (f90 - f0), f0 * z + f90 * w)
+    cosine = math_node(tree, 'SUBTRACT', 1, facing.outputs['Facing'])
+    steep = math_node(tree, 'MINIMUM', math_node(tree, 'POWER', 2 ** -9.28, cosine), x * x)
+    term = math_node(tree, 'MULTIPLY_ADD', steep, x, y)
+    return math_node(tree, 'MULTIPLY_ADD', term, 1.04 * (f90 - f0), f0 * z + f90 * w)
+
+
+def glossy(tree, roughness, share):
+    """Makes a node that reflects that share of light. Returns its output."""
+    node = tree.nodes.new('ShaderNodeBsdfGlossy')
+    node.distribution = 'GGX'
+    node.inputs['Roughness'].default_value = roughness
+    _, _, z, w = albedo_fit(roughness)  # z + w: of an interface that reflects all
+    tree.links.new(math_node(tree, 'DIVIDE', share, z + w), node.inputs['Color'])
+    return node.outputs[0]
 
 
 def follow_specification(material, described):
@@ -90,10 +108,15 @@ def follow_specification(material, described):
         links.new(diffuse.outputs[0], below.inputs[1])
         below.inputs[0].default_value = 0
         if f0 > 0:
-            links.new(reflected(material.node_tree, roughness, f0, f90), below.inputs[0])
-            for link in list(principled.inputs['Specular'].links):
-                links.remove(link)
-            principled.inputs['Specular'].default_value = f0 / 0.08
+            share = reflected(material.node_tree, roughness, f0, f90)
+            links.new(share, below.inputs[0])
+            shaders.append(glossy(material.node_tree, roughness, share))
+            for link in diffuse.inputs['Normal'].links:
+                links.new(link.from_socket, shaders[0].node.inputs['Normal'])
+        for link in list(principled.inputs['Specular'].links):
+            links.remove(link)
+        principled.inputs['Specular'].default_value = 0
+        if principled.inputs['Clearcoat'].default_value > 0:
             shaders.append(principled.outputs[0])
         shaders.append(below.outputs[0])
     else:

@@ -91,6 +91,8 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
 void Convert(const std::string& scene, const std::string& output, const std::string& environment) {
     Warnings warnings([](const std::string& message) { fmt::print(stderr, "{}\n", message); });
     const Description description = ParsePbrt(scene, {.substitute = true}, warnings);
+    if (!description.motions.empty() || description.movingCameraFromWorld)
+        warnings.Add({}, "what moves stands where it starts");
     const Mat4d gltfFromWorld = GltfFromWorld(description);
     GlbFile file;
     file.root["scene"] = 0;
