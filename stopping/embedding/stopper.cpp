@@ -96,11 +96,11 @@ Stopper::Stopper(const lull_settings& settings) {
     const int count = int(grid.blocks.size());
     factory = MakeFactory(settings, count);
     identity = IdentityOf(settings, factory, grid);
+    const auto first = MakeJudge(0).criterion;
+    firstLook = NextLook(*first, 1);
+    needsHalf = firstLook > 0 && first->Need(firstLook) == ViewNeed::MeanAndHalf;
     for (int i = 0; i < count; ++i) judges.push_back(MakeJudge(i));
     locks = std::vector<std::mutex>(judges.size());
-    const Criterion& first = *judges.front().criterion;
-    const int look = NextLook(first, 1);
-    needsHalf = look > 0 && first.Need(look) == ViewNeed::MeanAndHalf;
 }
 
 const lull_rect& Stopper::RectOf(int block) const {
@@ -112,10 +112,10 @@ const lull_rect& Stopper::RectOf(int block) const {
 
 Stopper::Judge Stopper::MakeJudge(int block) const {
     const lull_rect& rect = grid.blocks[size_t(block)];
-    double pixels = 0;
-    for (const lull_rect& r : grid.blocks) pixels += double(r.width) * r.height;
+    const lull_rect& last = grid.blocks.back();
+    const double pixels = double(last.x + last.width) * (last.y + last.height);
     Judge judge{.criterion = factory.make({block, rect.width * double(rect.height) / pixels})};
-    judge.answer.next_spp = NextLook(*judge.criterion, 1);
+    judge.answer.next_spp = firstLook;
     judge.answer.probability = factory.trend.kind == RuleTrend::Probability ? 1 : -1;
     judge.answer.visible_noise = -1;
     judge.answer.votes_needed = factory.trend.votes;

@@ -47,6 +47,7 @@ class Stopper {
     CriterionFactory factory;
     BlockGrid grid;
     std::vector<std::byte> identity;  // of its saved states
+    int firstLook = 0;                // the least spp that is looked at; 0: none
     bool needsHalf = false;
     std::vector<Judge> judges;
     mutable std::vector<std::mutex> locks;  // one for each block

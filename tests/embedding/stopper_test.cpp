@@ -211,6 +211,14 @@ TEST(Stopper, CutsPicturesIntoBlocksThatCanBeJudged) {
     }
 }
 
+TEST(Stopper, TakesLargePictures) {
+    lull_settings settings = SettingsOf(65536, 8192, "entropy");
+    settings.block = 64;
+    const StopperHandle stopper = MakeStopper(settings);
+    EXPECT_EQ(lull_stopper_block_count(stopper.get()), 1024 * 128);
+    EXPECT_EQ(lull_stopper_done(stopper.get()), 0);
+}
+
 // Half of the picture has no noise, and stops first; then its pixels are not read.
 TEST(Stopper, StopsEachBlockByItself) {
     lull_settings settings = SettingsOf(100, 50, "lnoise:1");
