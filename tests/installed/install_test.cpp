@@ -81,8 +81,8 @@ TEST(Install, ManualAndCompletionNameEveryOption) {
         const size_t begin = page.find(".SS lull " + command);
         ASSERT_NE(begin, std::string::npos);
         const std::string section = page.substr(begin, page.find("\n.SS ", begin + 1) - begin);
-        const std::string completed =
-            " " +
+        std::string completed = " ";
+        completed +=
             std::regex_replace(Complete(tree, "lull " + command + " -", 2), std::regex("\n"), " ");
         for (const std::string& option : options) {
             EXPECT_TRUE(Contains(section, std::regex_replace(option, std::regex("-"), "\\-")))
