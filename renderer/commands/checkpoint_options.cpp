@@ -9,6 +9,17 @@
 
 namespace lull {
 
+namespace {
+
+void TryToWrite(const std::string& file, const RenderIdentity& identity, const RenderState& state,
+                const Film& film, std::span<const std::byte> guide) try {
+    WriteCheckpoint(file, identity, state, film, guide);
+} catch (const Error& e) {
+    fmt::print(stderr, "\nlull: warning: no checkpoint: {}\n", e.what());
+}
+
+}  // namespace
+
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options) {
     auto* file = app.add_option("--checkpoint", options->file,
                                 "Keep what is needed to go on after an interruption")
@@ -31,28 +42,29 @@ void CheckCheckpoint(const CheckpointOptions& options) {
 }
 
 std::optional<RenderState> Resume(const CheckpointOptions& options, const RenderIdentity& identity,
-                                  Film* film) {
+                                  Film* film, std::vector<std::byte>* guide) {
     if (!options.resume) return {};
     if (!std::filesystem::exists(options.file)) {
         fmt::print(stderr, "lull: there is no {} yet: from the start\n", options.file);
         return {};
     }
-    RenderState state = ReadCheckpoint(options.file, identity, film);
+    RenderState state = ReadCheckpoint(options.file, identity, film, guide);
     fmt::print(stderr, "lull: going on from {}\n", options.file);
     return state;
 }
 
 void WriteCheckpoints(const CheckpointOptions& options, const RenderIdentity& identity,
-                      const Film& film, RenderOptions* render) {
+                      const Film& film, RenderOptions* render, std::span<const std::byte> guide) {
     if (options.file.empty()) return;
     render->checkpointInterval = options.interval;
-    render->onCheckpoint = [&](const RenderState& state) {
-        try {
-            WriteCheckpoint(options.file, identity, state, film);
-        } catch (const Error& e) {
-            fmt::print(stderr, "\nlull: warning: no checkpoint: {}\n", e.what());
-        }
+    render->onCheckpoint = [&options, &identity, &film, guide](const RenderState& state) {
+        TryToWrite(options.file, identity, state, film, guide);
     };
+}
+
+void WriteLearningCheckpoint(const CheckpointOptions& options, const RenderIdentity& identity,
+                             std::span<const std::byte> guide) {
+    TryToWrite(options.file, identity, {}, Film(PixelRect()), guide);
 }
 
 }  // namespace lull

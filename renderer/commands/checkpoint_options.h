@@ -23,11 +23,17 @@ void CheckCheckpoint(const CheckpointOptions&);
 
 // Fills the film and returns the state to go on from; nothing, and a word on stderr, where there
 // is no file yet. Throws as ReadCheckpoint() does.
-std::optional<RenderState> Resume(const CheckpointOptions&, const RenderIdentity&, Film*);
+std::optional<RenderState> Resume(const CheckpointOptions&, const RenderIdentity&, Film*,
+                                  std::vector<std::byte>* guide = nullptr);
 
 // Lets a render of `film` write its checkpoints. One that cannot be written is a warning on stderr:
-// the last good one stays, and so does the render. All arguments must outlive the render.
+// the last good one stays, and so does the render. `guide` is what was learned. All arguments must
+// outlive the render.
 void WriteCheckpoints(const CheckpointOptions&, const RenderIdentity&, const Film& film,
-                      RenderOptions* render);
+                      RenderOptions* render, std::span<const std::byte> guide = {});
+
+// Writes the checkpoint of a render that is still learning; a warning on stderr if it cannot be.
+void WriteLearningCheckpoint(const CheckpointOptions&, const RenderIdentity&,
+                             std::span<const std::byte> guide);
 
 }  // namespace lull

@@ -6,12 +6,14 @@
 
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/guide_options.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/shortfall.h"
 #include "renderer/ranks/job.h"
+#include "renderer/render/learning_state.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -21,6 +23,7 @@ namespace {
 struct Options {
     RenderSettings render;
     ClockOptions clock;
+    GuideOptions guide;
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
@@ -80,6 +83,7 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--report", o->report,
                    "Write what happened to each block: .html to look at, else JSON")
         ->type_name("R.html|R.json");
+    AddGuideOptions(app, &o->guide);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
     app.footer(kFooter);
@@ -171,6 +175,16 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
     };
 }
 
+// Lets learning write checkpoints, where they are wanted.
+std::function<void(std::span<const std::byte>)> KeepsLearning(const CheckpointOptions& options,
+                                                              const RenderIdentity& identity,
+                                                              bool leads) {
+    if (options.file.empty() || !leads) return {};
+    return [&](std::span<const std::byte> guide) {
+        WriteLearningCheckpoint(options, identity, guide);
+    };
+}
+
 ExitCode RunRender(Options options, Job* job) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
     RenderSettings& settings = options.render;
@@ -197,6 +211,8 @@ ExitCode RunRender(Options options, Job* job) {
     provenance.checksum = factory.checksum;
     provenance.clock = options.clock.Text();
     provenance.logRatios = factory.logRatios;
+    provenance.guide = options.guide.mode;
+    provenance.guideMegabytes = options.guide.megabytes;
     const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
     if (!settings.checkpoint.file.empty() || job->Count() > 1) {
@@ -205,11 +221,30 @@ ExitCode RunRender(Options options, Job* job) {
     }
     Film film(region);
     std::optional<RenderState> interrupted;
-    if (leads) interrupted = Resume(settings.checkpoint, identity, &film);
+    std::vector<std::byte> guide;  // what was learned, for checkpoints
+    if (leads) interrupted = Resume(settings.checkpoint, identity, &film, &guide);
+
+    CatchInterrupts();
+    const std::optional<Learning> learning =
+        LearnGuide(options.guide, {.scene = *scene,
+                                   .region = region,
+                                   .settings = settings,
+                                   .sampler = provenance.sampler,
+                                   .ranks = job->Count(),
+                                   .clock = clock,
+                                   .keep = KeepsLearning(settings.checkpoint, identity, leads),
+                                   .kept = guide});
+    if (!learning) {
+        fmt::print(stderr, "interrupted while learning\n");
+        return kInterrupted;
+    }
+    provenance.guideFigures = learning->figures;
+    if (options.guide.mode != GuideMode::Off && !settings.checkpoint.file.empty())
+        guide = SaveLearning(*learning);
+    if (interrupted && interrupted->blocks.empty()) interrupted.reset();
 
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
     ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
-    CatchInterrupts();
     RenderOptions renderOptions = MakeRenderOptions(settings, provenance.sampler, &printer);
     renderOptions.makeCriterion = MakeCriteria(factory, withCurves, &histories);
     renderOptions.trend = factory.trend;
@@ -217,11 +252,13 @@ ExitCode RunRender(Options options, Job* job) {
         renderOptions.secondsLeft = [&, reserve = SecondsToWrite(region.Area())] {
             return clock() - reserve;
         };
-    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions);
+    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide);
     renderOptions.peers = job->ThePeers();
     job->Begin(TextOf(identity));
-    const RenderResult result = Render(SamplesOf(*scene, settings.estimator), renderOptions, &film,
-                                       interrupted ? &*interrupted : nullptr);
+    const SampleSource source = learning->figures.isUsed ? SamplesOf(*scene, learning->guide)
+                                                         : SamplesOf(*scene, settings.estimator);
+    const RenderResult result =
+        Render(source, renderOptions, &film, interrupted ? &*interrupted : nullptr);
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);

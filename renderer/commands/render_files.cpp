@@ -49,6 +49,9 @@ ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<
     if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
     if (scene.film.exposure != 0) exr.attributes["exposure"] = scene.film.exposure;
     if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
+    if (provenance.guide != GuideMode::Off)
+        exr.attributes["guide"] = fmt::format("{}: {}", NameOf(provenance.guide),
+                                              provenance.guideFigures.isUsed ? "used" : "not used");
     return exr;
 }
 

@@ -49,6 +49,21 @@ void AddShortfall(const Provenance& provenance, const RenderResult& result, Json
     }
 }
 
+Json GuideJson(const Provenance& p) {
+    const GuideFigures& f = p.guideFigures;
+    Json json = {{"mode", NameOf(p.guide)}, {"memory", p.guideMegabytes},
+                 {"used", f.isUsed},        {"why", f.why},
+                 {"rounds", f.rounds},      {"spp", f.samples},
+                 {"seconds", f.seconds},    {"bytes", f.bytes},
+                 {"leaves", f.leaves}};
+    if (p.guide == GuideMode::Auto && f.rounds > 0) {
+        json["variance"] = f.variance;
+        json["varianceError"] = f.varianceError;
+        json["vertices"] = f.vertices;
+    }
+    return json;
+}
+
 Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
     const Savings savings = ComputeSavings(result, provenance.schedule.cap);
     return {{"blocks", result.blocks.size()},
@@ -102,6 +117,7 @@ Json ProvenanceJson(const Provenance& p) {
                  {"resolution", {p.resolution.x(), p.resolution.y()}},
                  {"crop", RectJson(p.crop)}};
     if (!p.clock.empty()) json["clock"] = p.clock;
+    if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
     return json;
 }
 

@@ -118,41 +118,53 @@ void CheckIdentity(const std::vector<std::string>& lines, const RenderIdentity& 
         const size_t equals = std::min(line.find('='), line.size());
         found[line.substr(0, equals)] = line.substr(std::min(equals + 1, line.size()));
     }
-    for (const auto& [key, value] : wanted)
-        if (!found.contains(key) || found.at(key) != value)
+    const auto valueIn = [](const RenderIdentity& identity, const std::string& key) {
+        const auto at = identity.find(key);
+        return at == identity.end() ? "none" : at->second;
+    };
+    RenderIdentity all = wanted;
+    all.insert(found.begin(), found.end());
+    for (const auto& [key, value] : all)
+        if (found.contains(key) != wanted.contains(key) || valueIn(found, key) != value)
             throw Error(fmt::format(
                 "it belongs to a render with another {} ({} there, {} here); go on with the same, "
                 "or remove the file to begin anew",
-                key, found.contains(key) ? found.at(key) : "none", value));
+                key, valueIn(found, key), valueIn(wanted, key)));
 }
 
 }  // namespace
 
 RenderIdentity IdentityOf(const Provenance& p, const std::string& sceneHash) {
     const PixelRect& crop = p.crop;
-    return {{"version", p.version},
-            {"scene", sceneHash},
-            {"resolution", fmt::format("{}x{}", p.resolution.x(), p.resolution.y())},
-            {"crop",
-             fmt::format("{},{},{},{}", crop.min.x(), crop.max.x(), crop.min.y(), crop.max.y())},
-            {"sampler", NameOf(p.sampler)},
-            {"estimator", NameOf(p.estimator)},
-            {"seed", fmt::to_string(p.seed)},
-            {"maxdepth", fmt::to_string(p.maxDepth)},
-            {"substitute", p.substitute ? "yes" : "no"},
-            {"stop", p.criterion},
-            {"model", p.checksum.empty() ? "none" : p.checksum},
-            {"block", fmt::to_string(p.schedule.blockSize)},
-            {"pass", fmt::to_string(p.schedule.passLength)},
-            {"cap", fmt::to_string(p.schedule.cap)}};
+    RenderIdentity identity{
+        {"version", p.version},
+        {"scene", sceneHash},
+        {"resolution", fmt::format("{}x{}", p.resolution.x(), p.resolution.y())},
+        {"crop",
+         fmt::format("{},{},{},{}", crop.min.x(), crop.max.x(), crop.min.y(), crop.max.y())},
+        {"sampler", NameOf(p.sampler)},
+        {"estimator", NameOf(p.estimator)},
+        {"seed", fmt::to_string(p.seed)},
+        {"maxdepth", fmt::to_string(p.maxDepth)},
+        {"substitute", p.substitute ? "yes" : "no"},
+        {"stop", p.criterion},
+        {"model", p.checksum.empty() ? "none" : p.checksum},
+        {"block", fmt::to_string(p.schedule.blockSize)},
+        {"pass", fmt::to_string(p.schedule.passLength)},
+        {"cap", fmt::to_string(p.schedule.cap)}};
+    if (p.guide != GuideMode::Off)
+        identity["guide"] = fmt::format("{} of {} MB", NameOf(p.guide), p.guideMegabytes);
+    return identity;
 }
 
 void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
-                     const RenderState& state, const Film& film) try {
+                     const RenderState& state, const Film& film,
+                     std::span<const std::byte> guide) try {
     Hdf5Group root = Hdf5Group::CreateInMemory();
     root.SetString("format", kFormat);
     root.SetStrings("identity", Lines(identity));
     root.AddArray<double>("seconds", std::array<int64_t, 1>{1}, std::array{state.seconds});
+    if (!guide.empty()) root.AddArray<std::byte>("guide", std::array{int64_t(guide.size())}, guide);
     for (size_t i = 0; i < state.blocks.size(); ++i) {
         Hdf5Group group = root.MakeGroup(GroupName(i));
         const auto addBytes = [&](const char* name, const std::vector<std::byte>& bytes) {
@@ -172,14 +184,16 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
     throw Error(path + ": " + e.what());
 }
 
-RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity,
-                           Film* film) try {
+RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
+                           std::vector<std::byte>* guide) try {
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
         throw Error("it is no checkpoint of this version of the program");
     CheckIdentity(root.Strings("identity"), identity);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
+    if (guide && root.HasArray("guide"))
+        *guide = root.Array<std::byte>("guide", root.Shape("guide"));
     for (size_t i = 0; root.HasGroup(GroupName(i)); ++i) {
         const Hdf5Group group = root.Group(GroupName(i));
         const auto bytes = [&](const char* name) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/render/learning.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/path_tracer.h"
 
@@ -24,6 +25,9 @@ struct Provenance {
     Vec2i resolution = {0, 0};
     PixelRect crop;
     std::string clock = {};  // that ends the render, in words; empty: none
+    GuideMode guide = GuideMode::Off;
+    int guideMegabytes = 0;
+    GuideFigures guideFigures = {};  // of what was learned; not part of the identity
 };
 
 std::string NameOf(SamplerKind);

@@ -2,6 +2,8 @@
 
 #include "renderer/base/color.h"
 #include "renderer/scene/footprint.h"
+#include "renderer/transport/guided_path.h"
+#include "renderer/transport/guided_path_tracer.h"
 #include "renderer/transport/path_state.h"
 #include "renderer/transport/subsurface.h"
 #include "renderer/transport/volume_path_tracer.h"
@@ -24,8 +26,10 @@ bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSam
 
 // Returns the light that sampling light `index` brings to the hit, weighted against BSDF sampling.
 // `pmf` is the probability of having chosen the light.
+template <typename Guiding>
 Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteraction& hit,
-                const Bsdf& bsdf, int index, float pmf, const Vec2f& u, float time) {
+                const Bsdf& bsdf, const Guiding& guiding, int index, float pmf, const Vec2f& u,
+                float time) {
     const auto light = scene.lights.Sample(index, hit.p, u);
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
@@ -38,8 +42,10 @@ Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteractio
             ? bsdf.Evaluate(hit.wo, light->wi, LobeSet::NonSpecular)
             : bsdf.WithoutShares().Evaluate(hit.wo, light->wi, LobeSet::NonSpecular);
     if (IsBlack(value.f)) return Rgb::Zero();
-    const float weight =
-        light->isDelta ? 1 : PowerHeuristic(hasOwnRay ? light->pdf : light->pdf * pmf, value.pdf);
+    const float weight = light->isDelta ? 1
+                         : hasOwnRay
+                             ? PowerHeuristic(light->pdf, value.pdf)
+                             : PowerHeuristic(light->pdf * pmf, guiding.Pdf(value.pdf, light->wi));
     const Rgb L =
         value.f * light->L * (std::abs(light->wi.dot(hit.ns)) * weight / (light->pdf * pmf));
     if (IsBlack(L) || !IsVisible(scene, hit, *light, time)) return Rgb::Zero();
@@ -81,13 +87,14 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
 }
 
 // Samples direct light as the estimator says: chooses one light of the table `choice`.
+template <typename Guiding>
 Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
-                      const SurfaceInteraction& hit, const Bsdf& bsdf, const LightChoice& choice,
-                      float time) {
+                      const SurfaceInteraction& hit, const Bsdf& bsdf, const Guiding& guiding,
+                      const LightChoice& choice, float time) {
     float pmf;
     const int index = choice.Sample(sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
-    Rgb L = SampleLight(scene, estimator, hit, bsdf, index, pmf, sampler.Get2D(), time);
+    Rgb L = SampleLight(scene, estimator, hit, bsdf, guiding, index, pmf, sampler.Get2D(), time);
     if (estimator == Estimator::PbrtV3)
         L += SampleBsdfForLight(scene, hit, bsdf, index, pmf, sampler.Get2D(), time);
     return L;
@@ -106,8 +113,8 @@ Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     if (scene.lights.Count() > 0) {
         path->choice = scene.lights.Choice(exit->hit, out);
-        *L += path->beta *
-              SampleDirectLight(scene, estimator, sampler, exit->hit, out, path->choice, time);
+        *L += path->beta * SampleDirectLight(scene, estimator, sampler, exit->hit, out, Unguided(),
+                                             path->choice, time);
     }
     return Scatter(out, exit->hit, sampler, path);
 }
@@ -120,10 +127,9 @@ void GoThrough(const SurfaceInteraction& hit, Path* path) {
     path->wentThrough = true;
 }
 
-}  // namespace
-
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
-             const Vec2f& film, const Vec2f& lens, float time) {
+template <typename Guiding>
+Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+          const Vec2f& film, const Vec2f& lens, float time, Guiding& guiding) {
     Rgb L = Rgb::Zero();
     Path path{.ray = ray};
     for (int bounces = 0;; ++bounces) {
@@ -157,24 +163,28 @@ Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ra
         // Sample the light that arrives directly from lights.
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
+        guiding.Enter(hit, bsdf, !(needs & kScattersBelow));
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
             path.choice = scene.lights.Choice(hit, bsdf);
-            L += path.beta *
-                 SampleDirectLight(scene, estimator, sampler, hit, bsdf, path.choice, time);
+            L += path.beta * SampleDirectLight(scene, estimator, sampler, hit, bsdf, guiding,
+                                               path.choice, time);
         }
 
         bool isTransmission;
-        if (!Scatter(bsdf, hit, sampler, &path, &isTransmission)) break;
+        if (!guiding.Scatter(bsdf, hit, L, sampler, &path, &isTransmission)) break;
         if ((needs & kScattersBelow) && isTransmission &&
             !ScatterBelow(scene, estimator, sampler, hit, bsdf, time, &path, &L))
             break;
-        if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
+        if (bounces > 3 && !guiding.SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }
+    guiding.End(L);
     return L;
 }
 
-PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index) {
+// Takes a sample; `radiance(ray, film, lens, time)` is that of its path.
+template <typename Radiance>
+PathSample TakeSample(const Scene& scene, Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                      const Radiance& radiance) {
     sampler.StartSample(pixel, index);
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
@@ -183,12 +193,39 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
     float cameraWeight;
     const Ray ray = scene.camera.GenerateRay(film, lens, time, &cameraWeight);
     if (cameraWeight == 0) return {Rgb::Zero(), false};
-    Rgb L = scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, ray, film, lens, time)
-                               : Radiance(scene, estimator, sampler, ray, film, lens, time);
+    Rgb L = radiance(ray, film, lens, time);
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
     return {L * (cameraWeight * filter.weight * scene.film.scale), false};
+}
+
+}  // namespace
+
+Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+             const Vec2f& film, const Vec2f& lens, float time) {
+    Unguided unguided;
+    return Trace(scene, estimator, sampler, ray, film, lens, time, unguided);
+}
+
+PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
+                        const Vec2i& pixel, uint32_t index) {
+    const auto radiance = [&](const Ray& ray, const Vec2f& film, const Vec2f& lens, float time) {
+        return scene.isVolumetric ? VolumeRadiance(scene, estimator, sampler, ray, film, lens, time)
+                                  : Radiance(scene, estimator, sampler, ray, film, lens, time);
+    };
+    return TakeSample(scene, sampler, pixel, index, radiance);
+}
+
+PathSample RenderGuidedSample(const Scene& scene, const Guide& guide, Sampler& sampler,
+                              const Vec2i& pixel, uint32_t index, const GuidedPathUse& use) {
+    const auto radiance = [&](const Ray& ray, const Vec2f& film, const Vec2f& lens, float time) {
+        Guided guided(guide, use.record, use.usual);
+        const Rgb L = Trace(scene, Estimator::Combined, sampler, ray, film, lens, time, guided);
+        if (use.vertices) *use.vertices = guided.Vertices();
+        return L;
+    };
+    return TakeSample(scene, sampler, pixel, index, radiance);
 }
 
 }  // namespace lull

@@ -49,6 +49,15 @@ TEST_F(RanksTest, ComeToTheSameBits) {
     }
 }
 
+// Each learns by itself.
+TEST_F(RanksTest, LearnTheSame) {
+    const std::string render = std::string(kRender) + "--spp 32 --guide on ";
+    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
+    const Outcome outcome = Run(Ranks(2) + render + "-o some.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSame("one", "some");
+}
+
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     const std::string render = std::string(kRender) + "--cap 800 --stop lnoise:0.2 ";
     ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);

@@ -1,0 +1,177 @@
+#include "renderer/render/learning.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "renderer/base/color.h"
+#include "renderer/render/guide_trial.h"
+#include "renderer/transport/guided_path_tracer.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kFirstRound = 4;  // samples per pixel; each round has twice the last one's
+constexpr int64_t kPathsEnough = 16 << 20;  // after so many, more do not make a better guide
+
+uint64_t SeedOf(uint64_t seed, int round) {
+    uint64_t h = (seed + 1) * 0x9e3779b97f4a7c15ull + uint64_t(round + 2) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 31)) * 0x94d049bb133111ebull;
+    return h ^ (h >> 29);
+}
+
+// Cells that the first round has to record in.
+constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
+
+// What a vertex costs with a guide over without, and what the product of variance and work has to
+// fall below for auto to guide (renderer/GUIDING.md).
+constexpr double kVertexCost = 1.25, kWorthwhile = 0.9;
+
+int RoundSamples(int round) { return kFirstRound << round; }
+int SamplesUntil(int round) { return kFirstRound * ((1 << round) - 1); }
+
+// Returns the samples per pixel that learning may take. What auto finds not to pay costs little.
+int Budget(const LearningOptions& options) {
+    return options.mode == GuideMode::Auto ? std::min(options.cap / 32, 64)
+                                           : std::min(options.cap / 4, 512);
+}
+
+// Says whether there is to be another round after `round` of them.
+bool GoesOn(const LearningOptions& options, const PixelRect& region, int round) {
+    if (SamplesUntil(round) * region.Area() >= kPathsEnough) return false;
+    return SamplesUntil(round + 1) <= Budget(options) && !(options.isEnough && options.isEnough());
+}
+
+RenderOptions MakeRenderOptions(const LearningOptions& options, int round, int spp) {
+    RenderOptions render;
+    render.schedule.cap = render.schedule.passLength = spp;
+    render.sampler = options.sampler;
+    render.seed = SeedOf(options.seed, round);
+    render.threads = options.threads;
+    render.isCancelled = options.isCancelled;
+    return render;
+}
+
+// Returns the mean luminance of a sample; nothing where it was cancelled.
+std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
+                                    const LearningOptions& options) {
+    Film film(region);
+    if (Render(SamplesOf(scene, Estimator::Combined), MakeRenderOptions(options, -1, 1), &film)
+            .cancelled)
+        return {};
+    double sum = 0;
+    for (const FilmPixel& pixel : film.Pixels()) sum += double(Luminance(pixel.Mean()));
+    return sum / double(std::max<int64_t>(1, region.Area()));
+}
+
+// Renders a round and records it. Returns false if it was cancelled.
+bool RunRound(const Scene& scene, const PixelRect& region, const LearningOptions& options,
+              Learning* learning) {
+    GuideState& state = learning->state;
+    const float usual = float(learning->usual);
+    const SampleSource source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return RenderGuidedSample(scene, state.guide, sampler, pixel, index,
+                                  {.record = &state.record, .usual = usual});
+    };
+    Film film(region);
+    const RenderOptions render =
+        MakeRenderOptions(options, learning->round, RoundSamples(learning->round));
+    return !Render(source, render, &film).cancelled;
+}
+
+RefineOptions MakeRefineOptions(const LearningOptions& options, int round) {
+    // The old state and the new are there at the same time.
+    return {.maxBytes = (size_t(options.megabytes) << 20) / 2, .knowsFractions = round > 0};
+}
+
+// Adds what goes by until the end of its scope.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double* seconds) : seconds(seconds) {}
+    ~Stopwatch() { *seconds += std::chrono::duration<double>(Clock::now() - start).count(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double* seconds;
+    const Clock::time_point start = Clock::now();
+};
+
+bool Finish(bool isUsed, const std::string& why, Learning* learning) {
+    learning->figures.isUsed = isUsed;
+    learning->figures.why = why;
+    if (!isUsed) learning->guide = {};
+    learning->state = {};
+    learning->isDone = true;
+    return true;
+}
+
+}  // namespace
+
+std::string NameOf(GuideMode mode) {
+    return mode == GuideMode::Off ? "off" : mode == GuideMode::Auto ? "auto" : "on";
+}
+
+std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator) {
+    if (estimator != Estimator::Combined) return "the estimator is pbrt-v3's";
+    if (scene.isVolumetric) return "the scene has participating media";
+    if (scene.maxDepth < 2) return "paths have one bounce at most";
+    if (scene.lights.Count() == 0) return "the scene has no light";
+    return {};
+}
+
+bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& options,
+           Learning* learning, const std::function<void(const Learning&)>& onRound) {
+    if (learning->isDone) return true;
+    const bool isAuto = options.mode == GuideMode::Auto;
+    const Stopwatch stopwatch(&learning->figures.seconds);
+    if (isAuto && Budget(options) < 2 * kFirstRound)
+        return Finish(false, "there are too few samples for learning to pay", learning);
+    if (learning->round == 0) {
+        const std::optional<double> usual = MeanLuminance(scene, region, options);
+        if (!usual) return false;
+        learning->figures.samples = 1;
+        if (!(*usual > 0 && *usual < double(kInfinity)))
+            return Finish(false, "the first samples found no light", learning);
+        learning->usual = *usual;
+        learning->state.guide = Guide(scene.shapes.bounds, kFirstDepth, kFirstQuadDepth);
+        learning->state.record = GuideRecord(learning->state.guide);
+    }
+    for (bool goesOn = true; goesOn;) {
+        if (!RunRound(scene, region, options, learning)) return false;
+        const RefineOptions refine = MakeRefineOptions(options, learning->round);
+        learning->figures.samples += RoundSamples(learning->round);
+        learning->figures.rounds = ++learning->round;
+        goesOn = GoesOn(options, region, learning->round);
+        if (goesOn)
+            learning->state = Refine(learning->state, refine);
+        else
+            learning->guide = FreezeGuide(learning->state, refine);
+        if (goesOn && onRound) onRound(*learning);
+    }
+    learning->figures.bytes = int64_t(learning->guide.Bytes());
+    learning->figures.leaves = int(learning->guide.leaves.size());
+    if (!isAuto) return Finish(true, "as asked for", learning);
+
+    const auto trial =
+        TryGuide(scene, region, learning->guide, MakeRenderOptions(options, learning->round, 1));
+    if (!trial) return false;
+    learning->figures.samples += trial->samples;
+    learning->figures.variance = trial->variance;
+    learning->figures.varianceError = trial->error;
+    learning->figures.vertices = trial->vertices;
+    const double work = trial->vertices * kVertexCost;
+    const bool pays = (trial->variance + 2 * trial->error) * work < kWorthwhile;
+    return Finish(pays,
+                  fmt::format("variance times work is {} {:.2f} of what it is without",
+                              pays ? "at most" : "not surely below", kWorthwhile),
+                  learning);
+}
+
+SampleSource SamplesOf(const Scene& scene, const Guide& guide) {
+    return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return RenderGuidedSample(scene, guide, sampler, pixel, index);
+    };
+}
+
+}  // namespace lull
