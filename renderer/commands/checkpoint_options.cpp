@@ -11,11 +11,16 @@ namespace lull {
 
 namespace {
 
-void TryToWrite(const std::string& file, const RenderIdentity& identity, const RenderState& state,
-                const Film& film, std::span<const std::byte> guide) try {
+// Warns of a checkpoint that could not be written, and returns of what; "" if it was. What `said`
+// holds is not said again: a disk stays full for more than one attempt.
+std::string TryToWrite(const std::string& file, const RenderIdentity& identity,
+                       const RenderState& state, const Film& film, std::span<const std::byte> guide,
+                       const std::string& said) try {
     WriteCheckpoint(file, identity, state, film, guide);
+    return "";
 } catch (const Error& e) {
-    fmt::print(stderr, "\nlull: warning: no checkpoint: {}\n", e.what());
+    if (e.what() != said) fmt::print(stderr, "\nlull: warning: no checkpoint: {}\n", e.what());
+    return e.what();
 }
 
 }  // namespace
@@ -57,14 +62,15 @@ void WriteCheckpoints(const CheckpointOptions& options, const RenderIdentity& id
                       const Film& film, RenderOptions* render, std::span<const std::byte> guide) {
     if (options.file.empty()) return;
     render->checkpointInterval = options.interval;
-    render->onCheckpoint = [&options, &identity, &film, guide](const RenderState& state) {
-        TryToWrite(options.file, identity, state, film, guide);
+    render->onCheckpoint = [&options, &identity, &film, guide,
+                            said = std::string()](const RenderState& state) mutable {
+        said = TryToWrite(options.file, identity, state, film, guide, said);
     };
 }
 
 void WriteLearningCheckpoint(const CheckpointOptions& options, const RenderIdentity& identity,
                              std::span<const std::byte> guide) {
-    TryToWrite(options.file, identity, {}, Film(PixelRect()), guide);
+    TryToWrite(options.file, identity, {}, Film(PixelRect()), guide, "");
 }
 
 }  // namespace lull
