@@ -23,6 +23,9 @@ GltfMesh Grid(uint32_t columns, uint32_t rows, P&& p) {
     return mesh;
 }
 
+// Curves have no triangles: MakeGltfMesh leaves them out.
+GltfMesh Triangulate(const Curves&) { return {}; }
+
 Vec3f Turned(const Vec3f& p, float phi) { return Eigen::AngleAxisf(phi, Vec3f::UnitZ()) * p; }
 
 // Gives vertices without a normal that of their triangles together.
@@ -102,7 +105,7 @@ GltfMesh MakeGltfMesh(const Shape& shape, const Mat4d& m) {
             if constexpr (std::is_same_v<std::decay_t<decltype(geometry)>, Mesh>) {
                 // Normals of its own are as they are.
                 flipTriangles = geometry.flipNormals != (m.topLeftCorner<3, 3>().determinant() < 0);
-            } else {
+            } else if constexpr (!std::is_same_v<std::decay_t<decltype(geometry)>, Curves>) {
                 all = m * geometry.place.worldFromShape;
                 flipNormals = geometry.place.flipNormals;
             }

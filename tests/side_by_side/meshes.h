@@ -14,7 +14,7 @@ struct GltfMesh {
 };
 
 // Triangulates a shape and carries it by `m`, which may mirror. Spheres and disks become 64 by 32
-// and 64 patches; clipped spheres are taken as whole.
+// and 64 patches; clipped spheres are taken as whole. Nothing comes of curves.
 GltfMesh MakeGltfMesh(const Shape& shape, const Mat4d& m);
 
 }  // namespace lull

@@ -17,14 +17,16 @@ using nlohmann::json;
 
 // Adds a mesh of one primitive for each of these shapes; returns nothing where none is left.
 std::optional<int> AddMesh(const ShapeTable& table, std::span<const ShapeEntity> entities,
-                           int firstShape, const Mat4d& m, MaterialWriter* materials,
-                           GlbFile* file) {
+                           int firstShape, const Mat4d& m, MaterialWriter* materials, GlbFile* file,
+                           Warnings& warnings) {
     json primitives = json::array();
     for (size_t i = 0; i < entities.size(); ++i) {
         const Shape& shape = table.shapes[size_t(firstShape) + i];
         const int material = materials->Of(entities[i]);
         if (material < 0 || shape.IsInvisible()) continue;
         const GltfMesh mesh = MakeGltfMesh(shape, m);
+        if (std::holds_alternative<Curves>(shape.geometry))
+            warnings.Add(entities[i].loc, "a curve is left out");
         if (mesh.triangles.empty()) continue;
         json attributes = {{"POSITION", file->AddVectors(mesh.positions, true)}};
         if (!mesh.normals.empty()) attributes["NORMAL"] = file->AddVectors(mesh.normals, false);
@@ -65,7 +67,7 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
     MaterialWriter materials(description, file, &warnings);
     for (size_t i = 0; i < description.shapes.size(); ++i)
         if (const auto mesh = AddMesh(table, std::span(description.shapes).subspan(i, 1), int(i),
-                                      gltfFromWorld, &materials, file))
+                                      gltfFromWorld, &materials, file, warnings))
             Place(*mesh, json::object(), file);
 
     std::vector<std::optional<int>> meshes(description.objects.size());
@@ -78,12 +80,13 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
         const auto node = Decompose(m);
         if (!node) {
             const Mat4d all = gltfFromWorld * instance.worldFromInstance;
-            if (const auto mesh = AddMesh(table, shapes, first, all, &materials, file))
+            if (const auto mesh = AddMesh(table, shapes, first, all, &materials, file, warnings))
                 Place(*mesh, json::object(), file);
             continue;
         }
         if (!meshes[object])
-            meshes[object] = AddMesh(table, shapes, first, gltfFromWorld, &materials, file);
+            meshes[object] =
+                AddMesh(table, shapes, first, gltfFromWorld, &materials, file, warnings);
         if (meshes[object]) Place(*meshes[object], *node, file);
     }
 }
