@@ -35,21 +35,7 @@ Snapshot TakeSnapshot(const BlockView& view, bool withNoise) {
     return snapshot;
 }
 
-template <typename T>
-void PutVector(StateWriter& writer, const std::vector<T>& values) {
-    writer.Put(uint64_t(values.size()));
-    writer.PutAll(std::span(values));
-}
-
-template <typename T>
-std::vector<T> GetVector(StateReader& reader) {
-    const auto size = reader.Get<uint64_t>();
-    if (size > reader.Left() / sizeof(T))
-        throw std::runtime_error("the saved observations are damaged");
-    std::vector<T> values(size);
-    reader.GetAll(std::span(values));
-    return values;
-}
+constexpr const char* kDamaged = "the saved observations are damaged";
 
 }  // namespace
 
@@ -110,29 +96,29 @@ Decision BlockObserver::Observe(const BlockView& view) {
 std::vector<std::byte> BlockObserver::Save() const {
     StateWriter writer;
     writer.Put(observerTag);
-    PutVector(writer, history->stops);
+    writer.PutVector(history->stops);
     for (const std::unique_ptr<Criterion>& rule : rules)
-        PutVector(writer, rule ? rule->Save() : std::vector<std::byte>());
+        writer.PutVector(rule ? rule->Save() : std::vector<std::byte>());
     writer.Put(uint64_t(history->snapshots.size()));
     for (const auto& [spp, snapshot] : history->snapshots) {
         writer.Put(int32_t(spp));
-        PutVector(writer, snapshot.mean);
-        PutVector(writer, snapshot.noise);
+        writer.PutVector(snapshot.mean);
+        writer.PutVector(snapshot.noise);
     }
-    PutVector(writer, history->curves.spp);
-    PutVector(writer, history->curves.entropy);
-    PutVector(writer, history->curves.noise);
+    writer.PutVector(history->curves.spp);
+    writer.PutVector(history->curves.entropy);
+    writer.PutVector(history->curves.noise);
     return std::move(writer.bytes);
 }
 
 void BlockObserver::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
     reader.Expect(observerTag);
-    history->stops = GetVector<RuleStop>(reader);
+    history->stops = reader.GetVector<RuleStop>(kDamaged);
     if (history->stops.size() != rules.size())
         throw std::runtime_error("the saved observations are of other rules");
     for (size_t i = 0; i < rules.size(); ++i) {
-        const auto bytes = GetVector<std::byte>(reader);
+        const auto bytes = reader.GetVector<std::byte>(kDamaged);
         if (history->stops[i].spp > 0)
             rules[i].reset();
         else if (rules[i])
@@ -141,15 +127,15 @@ void BlockObserver::Restore(std::span<const std::byte> state) {
     history->snapshots.clear();
     for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
         Snapshot& snapshot = history->snapshots[reader.Get<int32_t>()];
-        snapshot.mean = GetVector<float>(reader);
-        snapshot.noise = GetVector<float>(reader);
+        snapshot.mean = reader.GetVector<float>(kDamaged);
+        snapshot.noise = reader.GetVector<float>(kDamaged);
     }
-    history->curves.spp = GetVector<int>(reader);
-    history->curves.entropy = GetVector<float>(reader);
-    history->curves.noise = GetVector<float>(reader);
+    history->curves.spp = reader.GetVector<int>(kDamaged);
+    history->curves.entropy = reader.GetVector<float>(kDamaged);
+    history->curves.noise = reader.GetVector<float>(kDamaged);
     if (history->curves.entropy.size() != history->curves.spp.size() ||
         history->curves.noise.size() != history->curves.spp.size())
-        throw std::runtime_error("the saved observations are damaged");
+        throw std::runtime_error(kDamaged);
     reader.Finish();
 }
 

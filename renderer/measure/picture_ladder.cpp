@@ -71,10 +71,7 @@ std::vector<std::byte> PictureLadder::Save() const {
     StateWriter writer;
     writer.Put(ladderTag);
     writer.Put(uint64_t(pictures->size()));
-    for (const DisplayPixels& picture : *pictures) {
-        writer.Put(uint64_t(picture.size()));
-        writer.PutAll(std::span(picture));
-    }
+    for (const DisplayPixels& picture : *pictures) writer.PutVector(picture);
     writer.Put(uint8_t(companion != nullptr));
     if (companion) writer.PutAll<std::byte>(companion->Save());
     return std::move(writer.bytes);
@@ -86,11 +83,8 @@ void PictureLadder::Restore(std::span<const std::byte> state) {
     pictures->clear();
     const auto count = reader.Get<uint64_t>();
     if (count > levels.size()) throw std::runtime_error("the saved pictures are of another ladder");
-    for (uint64_t i = 0; i < count; ++i) {
-        const auto size = reader.Get<uint64_t>();
-        if (size > reader.Left()) throw std::runtime_error("the saved pictures are damaged");
-        reader.GetAll(std::span(pictures->emplace_back(size)));
-    }
+    for (uint64_t i = 0; i < count; ++i)
+        pictures->push_back(reader.GetVector<uint8_t>("the saved pictures are damaged"));
     if (reader.Get<uint8_t>() != uint8_t(companion != nullptr))
         throw std::runtime_error("the saved pictures were made with another companion");
     if (companion)

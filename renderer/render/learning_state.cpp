@@ -10,29 +10,16 @@ namespace {
 
 constexpr uint32_t kTag = 0x31756c67;
 
-[[noreturn]] void Refuse() { throw std::runtime_error("its guide is damaged"); }
+constexpr const char* kDamaged = "its guide is damaged";
 
-template <typename T>
-void PutVector(const std::vector<T>& values, StateWriter* writer) {
-    writer->Put(uint64_t(values.size()));
-    writer->PutAll(std::span<const T>(values));
-}
-
-template <typename T>
-std::vector<T> GetVector(StateReader* reader) {
-    const auto size = reader->Get<uint64_t>();
-    if (size > reader->Left() / sizeof(T)) Refuse();
-    std::vector<T> values(size);
-    reader->GetAll(std::span<T>(values));
-    return values;
-}
+[[noreturn]] void Refuse() { throw std::runtime_error(kDamaged); }
 
 void PutGuide(const Guide& guide, StateWriter* writer) {
     writer->Put(
         std::array<float, 4>{guide.lower.x(), guide.lower.y(), guide.lower.z(), guide.side});
-    PutVector(guide.nodes, writer);
-    PutVector(guide.leaves, writer);
-    PutVector(guide.quads, writer);
+    writer->PutVector(guide.nodes);
+    writer->PutVector(guide.leaves);
+    writer->PutVector(guide.quads);
 }
 
 void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
@@ -82,16 +69,16 @@ Guide GetGuide(StateReader* reader) {
     const auto cube = reader->Get<std::array<float, 4>>();
     guide.lower = Vec3f(cube[0], cube[1], cube[2]);
     guide.side = cube[3];
-    guide.nodes = GetVector<uint32_t>(reader);
-    guide.leaves = GetVector<GuideLeaf>(reader);
-    guide.quads = GetVector<QuadNode>(reader);
+    guide.nodes = reader->GetVector<uint32_t>(kDamaged);
+    guide.leaves = reader->GetVector<GuideLeaf>(kDamaged);
+    guide.quads = reader->GetVector<QuadNode>(kDamaged);
     CheckGuide(guide);
     return guide;
 }
 
 void PutFigures(const GuideFigures& f, StateWriter* writer) {
     writer->Put(uint8_t(f.isUsed));
-    PutVector(std::vector<char>(f.why.begin(), f.why.end()), writer);
+    writer->PutVector(std::vector<char>(f.why.begin(), f.why.end()));
     writer->Put(std::array<int32_t, 3>{f.rounds, f.samples, f.leaves});
     writer->Put(f.bytes);
     writer->Put(std::array<double, 4>{f.seconds, f.variance, f.varianceError, f.vertices});
@@ -100,7 +87,7 @@ void PutFigures(const GuideFigures& f, StateWriter* writer) {
 GuideFigures GetFigures(StateReader* reader) {
     GuideFigures f;
     f.isUsed = reader->Get<uint8_t>() != 0;
-    const auto why = GetVector<char>(reader);
+    const auto why = reader->GetVector<char>(kDamaged);
     f.why.assign(why.begin(), why.end());
     const auto counts = reader->Get<std::array<int32_t, 3>>();
     f.rounds = counts[0];
@@ -126,8 +113,8 @@ std::vector<std::byte> SaveLearning(const Learning& learning) {
     PutFigures(learning.figures, &writer);
     PutGuide(learning.guide, &writer);
     PutGuide(learning.state.guide, &writer);
-    PutVector(learning.state.record.sums, &writer);
-    PutVector(learning.state.record.leaves, &writer);
+    writer.PutVector(learning.state.record.sums);
+    writer.PutVector(learning.state.record.leaves);
     return std::move(writer.bytes);
 }
 
@@ -142,8 +129,8 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     learning.guide = GetGuide(&reader);
     GuideState& state = learning.state;
     state.guide = GetGuide(&reader);
-    state.record.sums = GetVector<uint64_t>(&reader);
-    state.record.leaves = GetVector<GuideRecord::LeafSums>(&reader);
+    state.record.sums = reader.GetVector<uint64_t>(kDamaged);
+    state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
     reader.Finish();
     const bool fits = state.record.sums.size() == 4 * state.guide.quads.size() &&
                       state.record.leaves.size() == state.guide.leaves.size();

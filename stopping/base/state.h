@@ -25,6 +25,12 @@ class StateWriter {
         bytes.resize(size + values.size_bytes());
         std::memcpy(&bytes[size], values.data(), values.size_bytes());
     }
+    // Puts how many values there are before them.
+    template <typename T>
+    void PutVector(const std::vector<T>& values) {
+        Put(uint64_t(values.size()));
+        PutAll(std::span(values));
+    }
 
     std::vector<std::byte> bytes;
 };
@@ -48,6 +54,16 @@ class StateReader {
             throw std::runtime_error("the saved state of a stopping rule is cut short");
         if (!values.empty()) std::memcpy(values.data(), rest.data(), values.size_bytes());
         rest = rest.subspan(values.size_bytes());
+    }
+    // Reads what PutVector() has written. Throws std::runtime_error(damaged), and takes no memory,
+    // for more than the bytes can hold.
+    template <typename T>
+    std::vector<T> GetVector(const char* damaged) {
+        const auto size = Get<uint64_t>();
+        if (size > rest.size() / sizeof(T)) throw std::runtime_error(damaged);
+        std::vector<T> values(size);
+        GetAll(std::span(values));
+        return values;
     }
     // Returns how many bytes are left.
     size_t Left() const { return rest.size(); }

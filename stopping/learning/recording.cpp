@@ -123,12 +123,8 @@ std::vector<std::byte> Recorder::Save() const {
     writer.PutAll<int>(recording->spp);
     writer.PutAll<float>(recording->values);
     writer.Put(recording->cyclesStops);
-    for (const std::unique_ptr<Criterion>& criterion : cycles) {
-        const std::vector<std::byte> state =
-            criterion ? criterion->Save() : std::vector<std::byte>();
-        writer.Put(uint64_t(state.size()));
-        writer.PutAll(std::span(state));
-    }
+    for (const std::unique_ptr<Criterion>& criterion : cycles)
+        writer.PutVector(criterion ? criterion->Save() : std::vector<std::byte>());
     return std::move(writer.bytes);
 }
 
@@ -149,10 +145,7 @@ void Recorder::Restore(std::span<const std::byte> state) {
     recording->cyclesStops = reader.Get<decltype(recording->cyclesStops)>();
     StartCycles();
     for (size_t i = 0; i < cycles.size(); ++i) {
-        const auto size = reader.Get<uint64_t>();
-        if (size > reader.Left()) throw std::runtime_error("the saved recording is damaged");
-        std::vector<std::byte> bytes(size);
-        reader.GetAll(std::span(bytes));
+        const auto bytes = reader.GetVector<std::byte>("the saved recording is damaged");
         if (recording->cyclesStops[i] > 0)
             cycles[i].reset();
         else

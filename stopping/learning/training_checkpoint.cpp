@@ -51,10 +51,7 @@ void TrainingCheckpoint::Write() {
     if (path.empty()) return;
     StateWriter writer;
     writer.Put(checkpointTag);
-    for (const std::vector<std::byte>& state : states) {
-        writer.Put(uint64_t(state.size()));
-        writer.PutAll(std::span<const std::byte>(state));
-    }
+    for (const std::vector<std::byte>& state : states) writer.PutVector(state);
     try {
         write(path, writer.bytes);
     } catch (const std::runtime_error& error) {
