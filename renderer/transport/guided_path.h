@@ -68,7 +68,8 @@ class Guided {
             w = sample->wi;
             *isTransmission = sample->isTransmission;
             if (sample->isSpecular) {
-                ContinueSpecular(bsdf, hit, *sample, path);
+                Continue(bsdf, hit, *sample, sample->pdf * (1 - fraction), path);
+                density *= 1 - fraction;
                 return true;
             }
             f = sample->f;
@@ -93,12 +94,7 @@ class Guided {
     // Ends paths by what they would carry without a guide: directions with much light are sampled
     // so often that each path there carries little.
     bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
-        const float brightest = path->beta.maxCoeff() * density * path->etaScale;
-        if (brightest >= threshold) return true;
-        const float q = std::max(0.05f, 1 - brightest);
-        if (sampler.Get1D() < q) return false;
-        path->beta /= 1 - q;
-        return true;
+        return lull::SurvivesRoulette(threshold, sampler, path, density);
     }
 
     // Records the path, which has found L in all.
@@ -113,21 +109,6 @@ class Guided {
     int Vertices() const { return vertices; }
 
   private:
-    void ContinueSpecular(const Bsdf& bsdf, const SurfaceInteraction& hit, const BsdfSample& sample,
-                          Path* path) {
-        const float pdf = sample.pdf * (1 - fraction);
-        path->beta *= sample.f * (std::abs(sample.wi.dot(hit.ns)) / pdf);
-        density *= 1 - fraction;
-        path->seesLights = true;
-        path->pdf = pdf;
-        path->origin = hit.p;
-        if (sample.isTransmission) {
-            const float eta2 = Sqr(bsdf.Eta());
-            path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
-        }
-        path->ray = hit.SpawnRay(sample.wi);
-    }
-
     static constexpr int kMost = 32;  // of a path's vertices that are recorded
 
     const Guide& guide;

@@ -49,28 +49,36 @@ inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
     return sum;
 }
 
+// Continues the path with a sample of the BSDF that was chosen with density (specular: probability)
+// `pdf`.
+inline void Continue(const Bsdf& bsdf, const SurfaceInteraction& hit, const BsdfSample& sample,
+                     float pdf, Path* path) {
+    path->beta *= sample.f * (std::abs(sample.wi.dot(hit.ns)) / pdf);
+    path->seesLights = sample.isSpecular;
+    path->pdf = pdf;
+    path->origin = hit.p;
+    if (sample.isSpecular && sample.isTransmission) {
+        const float eta2 = Sqr(bsdf.Eta());
+        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+    }
+    path->ray = hit.SpawnRay(sample.wi);
+}
+
 // Continues the path with a BSDF sample. Returns false where it ends. `isTransmission`, if given,
 // receives whether it goes through the surface.
 inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path,
                     bool* isTransmission = nullptr) {
     const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
     if (!sample) return false;
-    path->beta *= sample->f * (std::abs(sample->wi.dot(hit.ns)) / sample->pdf);
-    path->seesLights = sample->isSpecular;
-    path->pdf = sample->pdf;
-    path->origin = hit.p;
-    if (sample->isSpecular && sample->isTransmission) {
-        const float eta2 = Sqr(bsdf.Eta());
-        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
-    }
-    path->ray = hit.SpawnRay(sample->wi);
+    Continue(bsdf, hit, *sample, sample->pdf, path);
     if (isTransmission) *isTransmission = sample->isTransmission;
     return true;
 }
 
-// Ends dim paths at random and makes up for it in the others. Returns false where it ends.
-inline bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
-    const float brightest = path->beta.maxCoeff() * path->etaScale;
+// Ends dim paths at random and makes up for it in the others. Returns false where it ends. The path
+// counts as `density` times as bright as it is.
+inline bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path, float density = 1) {
+    const float brightest = path->beta.maxCoeff() * density * path->etaScale;
     if (brightest >= threshold) return true;
     const float q = std::max(0.05f, 1 - brightest);
     if (sampler.Get1D() < q) return false;
