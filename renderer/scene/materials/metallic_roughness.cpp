@@ -3,7 +3,8 @@
 namespace lull {
 namespace {
 
-// Below this a microfacet distribution is as narrow as float resolves: a mirror does better.
+// Below this a microfacet distribution is as narrow as float resolves: a mirror does better. Point
+// lights would make fireflies of it, as very few paths find where it shows them.
 constexpr float kSmoothAlpha = 1e-3f;
 
 UvSlot<FloatTexture> FloatSlot(const MaterialReader& in, const std::string& name) {
@@ -97,8 +98,11 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float reflecting = together ? dielectric : dielectric - transmitting;
     const Rgb r0 = reflecting * f0 + metallic * color;
     const float r90 = reflecting * strength + metallic;
-    if (r90 > 0 || (coat > 0 && !IsBlack(base)))
-        bsdf->Add(LayeredReflection(base, r0, r90, alpha, above, coat));
+    if (isSmooth && r90 > 0) bsdf->Add(ThinSpecular{r0, r90, Rgb(Rgb::Zero()), above, coat});
+    const Rgb glossy = isSmooth ? Rgb(Rgb::Zero()) : r0;
+    const float glossy90 = isSmooth ? 0 : r90;
+    if (glossy90 > 0 || ((r90 > 0 || coat > 0) && !IsBlack(base)))
+        bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, above, coat));
     else if (!IsBlack(base))
         bsdf->Add(LambertianReflection{base});
 
@@ -127,9 +131,13 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         const float coatAlpha =
             AlphaOf(clearcoatRoughnessFactor *
                     (clearcoatRoughnessFactor > 0 ? Look(clearcoatRoughness, in) : 0));
-        bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
-                                                         TrowbridgeReitz(coatAlpha, coatAlpha),
-                                                         SchlickInterface{0.04f}});
+        if (coatAlpha < kSmoothAlpha)
+            bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),
+                                   InterfaceAbove{}, 0});
+        else
+            bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
+                                                             TrowbridgeReitz(coatAlpha, coatAlpha),
+                                                             SchlickInterface{0.04f}});
     }
 }
 

@@ -34,6 +34,28 @@ TEST(MetallicRoughness, SquaresRoughness) {
         0.09f);
 }
 
+TEST(MetallicRoughness, ReflectsAsMirrorWhereSmooth) {
+    const Bsdf metal = SceneWith({{"roughnessfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(metal.LobeCount(LobeSet::All), 1);
+    const auto& mirror = LobeAt<ThinSpecular>(metal, 0);
+    EXPECT_FLOAT_EQ(mirror.f0.g, 0.25f);
+    EXPECT_FLOAT_EQ(mirror.f90, 1);
+    EXPECT_TRUE(IsBlack(mirror.t));
+
+    const Bsdf varnish = SceneWith({{"metallicfactor", 0}, {"roughnessfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(varnish.LobeCount(LobeSet::All), 2);
+    EXPECT_NEAR(LobeAt<ThinSpecular>(varnish, 0).f0.r, 0.04f, 1e-6);
+    const auto& base = LobeAt<LayeredReflection>(varnish, 1);
+    EXPECT_TRUE(IsBlack(base.f0));
+    EXPECT_EQ(base.f90, 0);
+    EXPECT_GT(base.diffuse.r, 0.5f);  // divided by what is below the interface
+
+    const Bsdf coated = SceneWith({{"clearcoatfactor", 1}}).MakeBsdf(0);
+    ASSERT_EQ(coated.LobeCount(LobeSet::All), 2);
+    EXPECT_NEAR(LobeAt<ThinSpecular>(coated, 1).f0.r, 0.04f, 1e-6);
+    EXPECT_FLOAT_EQ(LobeAt<ThinSpecular>(coated, 1).f90, 1);
+}
+
 TEST(MetallicRoughness, WithoutHighlightsIsLambertian) {
     const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"specularfactor", 0}}).MakeBsdf(0);
     ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
