@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "renderer/commands/aov_options.h"
 #include "renderer/output/file_io.h"
 
 namespace lull {
@@ -15,8 +16,8 @@ namespace {
 // holds is not said again: a disk stays full for more than one attempt.
 std::string TryToWrite(const std::string& file, const RenderIdentity& identity,
                        const RenderState& state, const Film& film, std::span<const std::byte> guide,
-                       const std::string& said) try {
-    WriteCheckpoint(file, identity, state, film, guide);
+                       const AovFilm* aovs, const std::string& said) try {
+    WriteCheckpoint(file, identity, state, film, guide, aovs);
     return "";
 } catch (const Error& e) {
     if (e.what() != said) fmt::print(stderr, "\nlull: warning: no checkpoint: {}\n", e.what());
@@ -48,29 +49,40 @@ void CheckCheckpoint(const CheckpointOptions& options) {
 
 std::optional<RenderState> Resume(const CheckpointOptions& options, const RenderIdentity& identity,
                                   Film* film, std::vector<std::byte>* guide) {
+    return Resume(options, identity, film, guide, nullptr);
+}
+
+std::optional<RenderState> Resume(const CheckpointOptions& options, const RenderIdentity& identity,
+                                  Film* film, std::vector<std::byte>* guide, AovFilm* aovs) {
     if (!options.resume) return {};
     if (!std::filesystem::exists(options.file)) {
         fmt::print(stderr, "lull: there is no {} yet: from the start\n", options.file);
         return {};
     }
-    RenderState state = ReadCheckpoint(options.file, identity, film, guide);
+    RenderState state = ReadCheckpoint(options.file, identity, film, guide, aovs);
     fmt::print(stderr, "lull: going on from {}\n", options.file);
     return state;
 }
 
 void WriteCheckpoints(const CheckpointOptions& options, const RenderIdentity& identity,
                       const Film& film, RenderOptions* render, std::span<const std::byte> guide) {
+    WriteCheckpoints(options, identity, film, render, guide, nullptr);
+}
+
+void WriteCheckpoints(const CheckpointOptions& options, const RenderIdentity& identity,
+                      const Film& film, RenderOptions* render, std::span<const std::byte> guide,
+                      const AovFilm* aovs) {
     if (options.file.empty()) return;
     render->checkpointInterval = options.interval;
-    render->onCheckpoint = [&options, &identity, &film, guide,
+    render->onCheckpoint = [&options, &identity, &film, guide, aovs,
                             said = std::string()](const RenderState& state) mutable {
-        said = TryToWrite(options.file, identity, state, film, guide, said);
+        said = TryToWrite(options.file, identity, state, film, guide, aovs, said);
     };
 }
 
 void WriteLearningCheckpoint(const CheckpointOptions& options, const RenderIdentity& identity,
                              std::span<const std::byte> guide) {
-    TryToWrite(options.file, identity, {}, Film(PixelRect()), guide, "");
+    TryToWrite(options.file, identity, {}, Film(PixelRect()), guide, nullptr, "");
 }
 
 }  // namespace lull

@@ -27,6 +27,8 @@ struct Options {
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
+    AovSet aovs;
+    PictureOptions pictures;
 };
 
 constexpr const char* kFooter =
@@ -84,6 +86,8 @@ void AddOptions(CLI::App& app, Options* o) {
                    "Write what happened to each block: .html to look at, else JSON")
         ->type_name("R.html|R.json");
     AddGuideOptions(app, &o->guide);
+    AddAovOptions(app, &o->aovs);
+    AddPictureOptions(app, &o->pictures);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
     app.footer(kFooter);
@@ -201,6 +205,12 @@ ExitCode RunRender(Options options, Job* job) {
                   !factory.logRatios.empty());
     if (leads) CheckWritable(files, settings.scene.file);
     if (leads) CheckCheckpoint(settings.checkpoint);
+    if (options.aovs.Any() && options.guide.mode != GuideMode::Off)
+        throw Error("--aov: guided paths cannot make layers; leave --guide out");
+    std::optional<AovFilm> layers = MakeAovFilm(options.aovs, region, job->Count());
+    AovFilm* const aovs = layers ? &*layers : nullptr;
+    const std::unique_ptr<Display> display = MakeDisplay(
+        options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
 
     const std::unique_ptr<const Scene> scene =
         Compile(input.description, MakeCompileOptions(settings), input.warnings);
@@ -218,11 +228,12 @@ ExitCode RunRender(Options options, Job* job) {
     if (!settings.checkpoint.file.empty() || job->Count() > 1) {
         identity = IdentityOf(provenance, SceneHash(input.description));
         identity["curves"] = withCurves ? "yes" : "no";
+        if (aovs) identity["aov"] = TextOf(options.aovs);
     }
     Film film(region);
     std::optional<RenderState> interrupted;
     std::vector<std::byte> guide;  // what was learned, for checkpoints
-    if (leads) interrupted = Resume(settings.checkpoint, identity, &film, &guide);
+    if (leads) interrupted = Resume(settings.checkpoint, identity, &film, &guide, aovs);
 
     CatchInterrupts();
     const std::optional<Learning> learning =
@@ -252,23 +263,31 @@ ExitCode RunRender(Options options, Job* job) {
         renderOptions.secondsLeft = [&, reserve = SecondsToWrite(region.Area())] {
             return clock() - reserve;
         };
-    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide);
+    if (display && interrupted) display->Show(region, film);
+    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide, aovs);
     renderOptions.peers = job->ThePeers();
     job->Begin(TextOf(identity));
     const SampleSource source = learning->figures.isUsed ? SamplesOf(*scene, learning->guide)
                                                          : SamplesOf(*scene, settings.estimator);
     const RenderResult result =
-        Render(source, renderOptions, &film, interrupted ? &*interrupted : nullptr);
+        Render(source, renderOptions, &film, interrupted ? &*interrupted : nullptr,
+               {.aovs = aovs,
+                .aovSource = AovSamplesOf(*scene, settings.estimator, options.aovs),
+                .display = display.get()});
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
+    if (display) display->Show(region, film);  // some may have been undone
 
     if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
     if (!settings.quiet && result.timeUp) PrintShortfall(provenance, result);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 
-    WriteFiles(files, *scene, film, provenance, result, input.warnings, histories);
+    WriteFiles(files, *scene, film, provenance, result, input.warnings, histories,
+               aovs ? MakeExtraLayers(*aovs, film, input.description, *scene) : ExtraLayers(),
+               options.pictures);
     PrintFiles(files, result);
+    if (display) display->Finish();
     if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())
         std::filesystem::remove(settings.checkpoint.file);
     return result.cancelled ? kInterrupted : kDone;

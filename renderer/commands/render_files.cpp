@@ -71,8 +71,8 @@ ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provena
     return exr;
 }
 
-void WriteImagePng(const std::string& file, const RgbImage& image) {
-    WritePng(file, PixelsOf(image), image.width, image.height);
+void WriteImagePng(const std::string& file, const RgbImage& image, const PngFormat& format = {}) {
+    WritePng(file, PixelsOf(image), image.width, image.height, format);
 }
 
 void WriteSppMap(const std::string& file, const Film& film, const ScheduleOptions& schedule,
@@ -155,9 +155,14 @@ std::string SceneName(const std::string& file) {
 
 void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
                 const Provenance& provenance, const RenderResult& result, const Warnings& warnings,
-                const std::vector<BlockHistory>& histories) {
-    WriteExr(files.exr, MakeExr(scene, film, provenance, result));
-    WriteImagePng(files.png, ImageOf(film));
+                const std::vector<BlockHistory>& histories, const ExtraLayers& extra,
+                const PictureOptions& pictures) {
+    ExrImage exr = MakeExr(scene, film, provenance, result);
+    exr.channels.insert(exr.channels.end(), extra.channels.begin(), extra.channels.end());
+    exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
+    ApplyTo(&exr, pictures);
+    WriteExr(files.exr, exr);
+    WriteImagePng(files.png, ImageOf(film), MakePngFormat(pictures, scene.film.exposure));
     WriteSppMap(files.sppMap, film, provenance.schedule, result);
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
     if (!result.cancelled) WriteThresholdsRow(files.thresholds, provenance, result);

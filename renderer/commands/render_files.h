@@ -1,6 +1,8 @@
 // Writes the files of a render.
 #pragma once
 
+#include "renderer/commands/aov_options.h"
+#include "renderer/commands/picture_options.h"
 #include "renderer/measure/block_observer.h"
 #include "renderer/measure/image_error.h"
 #include "renderer/measure/report.h"
@@ -26,10 +28,11 @@ void CheckWritable(const RenderFiles&, const std::string& scene);
 // the file is called scene.pbrt. Not empty, without what the format has no room for.
 std::string SceneName(const std::string& file);
 
-// Writes all files, each whole or not at all; a report whose name ends in .html as a page, which
-// shows the curves in `histories`. Throws Error.
+// Writes all files, each whole or not at all; the image has `extra` as well, and a report whose
+// name ends in .html as a page, which shows the curves in `histories`. Throws Error.
 void WriteFiles(const RenderFiles&, const Scene&, const Film&, const Provenance&,
-                const RenderResult&, const Warnings&, const std::vector<BlockHistory>& histories);
+                const RenderResult&, const Warnings&, const std::vector<BlockHistory>& histories,
+                const ExtraLayers& extra, const PictureOptions&);
 
 // Writes an image as EXR and PNG, as of a render whose block i, of those in `blocks`, took spp[i].
 void WriteImage(const std::string& exr, const std::string& png, const Scene&, const RgbImage&,

@@ -10,6 +10,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/output/file_io.h"
+#include "renderer/output/png_format.h"
 
 namespace lull {
 
@@ -108,28 +109,37 @@ std::vector<std::byte> Encode(const std::string& path, const char* format,
     return {encoded.begin(), encoded.end()};
 }
 
-uint8_t Encode8Bit(float linear) {
-    const float v = 255 * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
-    return uint8_t(std::min(v, 255.f));
+// Returns the component as an integer of all bits of T.
+template <typename T>
+T EncodeSrgb(float linear) {
+    constexpr float most = std::numeric_limits<T>::max();
+    const float v = most * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
+    return T(std::min(v, most));
 }
 
+template <typename T>
 std::vector<std::byte> EncodePng(const std::string& path, OIIO::ImageSpec spec,
-                                 std::span<const uint8_t> bytes) {
-    if (bytes.size() != size_t(spec.width) * size_t(spec.height) * 3)
+                                 std::span<const T> components) {
+    if (components.size() != size_t(spec.width) * size_t(spec.height) * 3)
         FailToWrite(path, "the pixels do not fit the size");
     spec.attribute("oiio:ColorSpace", "sRGB");
     return Encode(path, "png", spec, [&](OIIO::ImageOutput* output) {
-        return output->write_image(OIIO::TypeDesc::UINT8, bytes.data());
+        return output->write_image(spec.format, components.data());
     });
 }
 
+template <typename T>
 std::vector<std::byte> EncodePng(const std::string& path, std::span<const Rgb> pixels, int width,
-                                 int height) {
-    std::vector<uint8_t> bytes;
-    bytes.reserve(pixels.size() * 3);
+                                 int height, const PngFormat& format) {
+    std::vector<T> components;
+    components.reserve(pixels.size() * 3);
     for (const Rgb& p : pixels)
-        for (int c = 0; c < 3; ++c) bytes.push_back(Encode8Bit(p[c]));
-    return EncodePng(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8), bytes);
+        for (const float c : p)
+            components.push_back(
+                EncodeSrgb<T>(format.toneMap == ToneMap::Filmic ? FilmicToneMap(c) : c));
+    OIIO::ImageSpec spec(width, height, 3, OIIO::BaseTypeFromC<T>::value);
+    for (const auto& [name, value] : format.text) spec.attribute(name, value);
+    return EncodePng<T>(path, spec, components);
 }
 
 void SetAttribute(OIIO::ImageSpec* spec, const std::string& name, const ExrAttribute& value) {
@@ -250,18 +260,25 @@ ExrImage ReadExr(const std::string& path) {
 }
 
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height) {
-    return EncodePng("picture in memory", pixels, width, height);
+    return EncodePng<uint8_t>("picture in memory", pixels, width, height, {});
 }
 
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("png:compressionLevel", 9);
     spec.attribute("png:filter", 0xf8);  // libpng's PNG_ALL_FILTERS
-    return EncodePng("picture in memory", spec, srgb);
+    return EncodePng<uint8_t>("picture in memory", spec, srgb);
 }
 
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {
-    WriteFileAtomically(path, EncodePng(path, pixels, width, height));
+    WritePng(path, pixels, width, height, {});
+}
+
+void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
+              const PngFormat& format) {
+    WriteFileAtomically(path, format.bits == 16
+                                  ? EncodePng<uint16_t>(path, pixels, width, height, format)
+                                  : EncodePng<uint8_t>(path, pixels, width, height, format));
 }
 
 }  // namespace lull

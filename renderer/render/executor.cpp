@@ -21,7 +21,8 @@ ScheduleOptions ScheduleFor(const RenderOptions& options) {
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same
 // part of the scene in the caches, and the pixel's sums stay in registers. Pixels that an
 // interrupted render has taken further already keep what they have. Returns how many were taken.
-int64_t RenderTile(const SampleSource& source, const Tile& tile, Sampler sampler, Film* film) {
+template <typename Source>
+int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film) {
     int64_t samples = 0;
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
         for (int x = tile.pixels.min.x(); x < tile.pixels.max.x(); ++x) {
@@ -75,9 +76,11 @@ std::vector<BlockStart> StartsOf(const RenderState* interrupted, bool hasClock, 
 }
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
-                   const RenderState* interrupted)
+                   const RenderState* interrupted, const RenderExtras& extras)
     : Executor(source, options, film, interrupted,
-               StartsOf(interrupted, bool(options.secondsLeft), *film), {}) {}
+               StartsOf(interrupted, bool(options.secondsLeft), *film), {}) {
+    this->extras = extras;
+}
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
                    const RenderState* interrupted, std::span<const BlockStart> starts,
@@ -102,6 +105,7 @@ bool Executor::Fits(const RenderState& state, const PixelRect& region,
 }
 
 RenderResult Executor::Run() {
+    ShowStops();
     do {
         pausing = false;
         nextCheckpoint = Seconds() + options.checkpointInterval;
@@ -149,10 +153,23 @@ void Executor::RunTile() {
 
 void Executor::RunTile(const Tile& tile) {
     const double tileStart = ThreadSeconds();
-    const int64_t taken = RenderTile(source, tile, Sampler(options.sampler, options.seed), film);
+    const int64_t taken = TakeSamples(tile);
+    if (extras.display) extras.display->Show(tile.pixels, *film);
     if (FinishTile(tile, taken, ThreadSeconds() - tileStart)) OnPassEnd(tile.block);
     ReportProgress();
     if (options.onCheckpoint && Seconds() >= nextCheckpoint) pausing = true;
+}
+
+int64_t Executor::TakeSamples(const Tile& tile) {
+    const Sampler sampler(options.sampler, options.seed);
+    if (!extras.aovs) return RenderTile(source, tile, sampler, film);
+    const auto withAovs = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
+        FirstHit firstHit;
+        const PathSample sample = extras.aovSource(s, pixel, index, &firstHit);
+        extras.aovs->At(pixel).Add(firstHit, sample.radiance);
+        return sample;
+    };
+    return RenderTile(withAovs, tile, sampler, film);
 }
 
 double Executor::Seconds() const {
@@ -185,7 +202,7 @@ std::optional<Tile> Executor::TakeTile() {
         undo.Keep(tile->block,
                   TilesOf(schedule.Blocks()[tile->block].pixels, tile->block,
                           options.schedule.tileSize, share),
-                  *film);
+                  *film, extras.aovs);
     return tile;
 }
 
@@ -196,7 +213,7 @@ void Executor::CallTime() {
 }
 
 void Executor::Undo() {
-    undo.UndoAll(film);
+    undo.UndoAll(film, extras.aovs);
     samples = film->SampleCount();
 }
 
@@ -221,8 +238,18 @@ int Executor::Decide(int i, const Judgement& judgement) {
     std::lock_guard lock(mutex);
     const int readyBefore = schedule.ReadyTiles();
     schedule.Decide(i, judgement.stop, judgement.noise);
+    ShowStops();
     if (hasClock) undo.Forget(i);
     return schedule.ReadyTiles() - readyBefore;
+}
+
+void Executor::ShowStops() {
+    if (!extras.display) return;
+    const std::span<const Block> blocks = schedule.Blocks();
+    shownStops.resize(blocks.size());
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i].stopped && !std::exchange(shownStops[i], true))
+            extras.display->ShowStop(blocks[i].pixels);
 }
 
 std::vector<std::unique_ptr<Criterion>> Executor::MakeCriteria(

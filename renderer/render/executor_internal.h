@@ -8,8 +8,8 @@
 #include <chrono>
 #include <mutex>
 
+#include "renderer/render/extras.h"
 #include "renderer/render/forecast.h"
-#include "renderer/render/render.h"
 #include "renderer/render/undo.h"
 #include "stopping/base/parallel.h"
 
@@ -20,7 +20,8 @@ namespace lull {
 // waits for another, and a single block still fills every core.
 class Executor {
   public:
-    Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted);
+    Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
+             const RenderExtras& extras);
     virtual ~Executor() = default;
 
     // Says whether the state has the blocks that the schedule will make of the region.
@@ -67,6 +68,7 @@ class Executor {
 
     const SampleSource& source;
     const RenderOptions& options;
+    RenderExtras extras = {};  // none on several ranks
     Film* film;
     const TileShare share;
     const Clock::time_point start = Clock::now();
@@ -76,15 +78,17 @@ class Executor {
     double nextCheckpoint = 0;
     const bool hasClock;
 
-    // Guards the schedule, `trends`, `samples`, the tiles' seconds in `results`, `undo`.
+    // Guards the schedule, `trends`, `samples`, the tiles' seconds in `results`, `undo`,
+    // `shownStops`.
     std::mutex mutex;
     Schedule schedule;
     std::vector<BlockResult> results;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     std::vector<StopTrend> trends;                     // of the blocks; empty: nothing is predicted
     int64_t samples;
-    PassUndo undo;            // for renders that have a clock
-    bool timeCalled = false;  // it has run down
+    PassUndo undo;                 // for renders that have a clock
+    bool timeCalled = false;       // it has run down
+    std::vector<char> shownStops;  // blocks that the display knows to have stopped
 
     std::mutex progressMutex;  // guards `nextProgress`, and lets one thread report at a time
     double nextProgress = 0;
@@ -103,6 +107,8 @@ class Executor {
   private:
     void RunTile();
     void RunTile(const Tile&);
+    int64_t TakeSamples(const Tile&);
+    void ShowStops();
     std::optional<Tile> TakeTile();
     bool FinishTile(const Tile&, int64_t taken, double seconds);
     std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderState* interrupted) const;

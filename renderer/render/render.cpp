@@ -8,6 +8,7 @@
 
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/rank_executor_internal.h"
+#include "renderer/transport/first_hit.h"
 
 namespace lull {
 
@@ -29,15 +30,24 @@ RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& op
 
 RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
                     const RenderState* interrupted) {
+    return Render(source, options, film, interrupted, {});
+}
+
+RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
+                    const RenderState* interrupted, const RenderExtras& extras) {
     if (interrupted && !Executor::Fits(*interrupted, film->Region(), options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    if (extras.aovs && !(extras.aovs->Region() == film->Region()))
+        throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
+    if (!alone && (extras.aovs || extras.display))
+        throw std::invalid_argument("several ranks have neither layers nor a viewer");
     if (!alone) return RenderWithPeers(source, options, film, interrupted, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
     RenderResult result =
-        arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
+        arena.execute([&] { return Executor(source, options, film, interrupted, extras).Run(); });
     result.threads = threads;
     return result;
 }
@@ -45,6 +55,18 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
 SampleSource SamplesOf(const Scene& scene, Estimator estimator) {
     return [&scene, estimator](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
         return RenderSample(scene, estimator, sampler, pixel, index);
+    };
+}
+
+AovSource AovSamplesOf(const Scene& scene, Estimator estimator, const AovSet& wanted) {
+    if (!wanted.FirstHits())
+        return
+            [&scene, estimator](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
+                return RenderSample(scene, estimator, sampler, pixel, index);
+            };
+    return [&scene, estimator, throughSpecular = wanted.throughSpecular](
+               Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
+        return RenderSample(scene, estimator, sampler, pixel, index, throughSpecular, firstHit);
     };
 }
 

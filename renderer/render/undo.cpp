@@ -15,17 +15,23 @@ const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect& rect, Film* f
     return from;
 }
 
-void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film) {
+void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film,
+                    const AovFilm* aovs) {
     Pixels& pixels = kept[block];
     pixels.tiles = tiles;
     for (const PixelRect& tile : tiles) CopyPixels(film, tile, &pixels.values);
+    for (const PixelRect& tile : tiles)
+        if (aovs) aovs->Copy(tile, &pixels.aovs);
 }
 
-std::vector<int> PassUndo::UndoAll(Film* film) {
+std::vector<int> PassUndo::UndoAll(Film* film, AovFilm* aovs) {
     std::vector<int> blocks;
     for (const auto& [block, pixels] : kept) {
         const FilmPixel* from = pixels.values.data();
         for (const PixelRect& tile : pixels.tiles) from = SetPixels(from, tile, film);
+        const AovPixel* fromAovs = pixels.aovs.data();
+        for (const PixelRect& tile : pixels.tiles)
+            if (aovs) fromAovs = aovs->Set(fromAovs, tile);
         blocks.push_back(block);
     }
     kept.clear();

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "renderer/output/film.h"
+#include "renderer/output/aov_film.h"
 
 namespace lull {
 
@@ -12,17 +12,20 @@ namespace lull {
 class PassUndo {
   public:
     bool Has(int block) const { return kept.contains(block); }
-    // Copies the pixels of the block that are in these tiles.
-    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&);
+    // Copies the pixels of the block that are in these tiles, of the layers as well if there are
+    // any.
+    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&,
+              const AovFilm* aovs = nullptr);
     // The pass has come to its end.
     void Forget(int block) { kept.erase(block); }
     // Puts all that is kept back. Returns the blocks.
-    std::vector<int> UndoAll(Film*);
+    std::vector<int> UndoAll(Film*, AovFilm* aovs = nullptr);
 
   private:
     struct Pixels {
         std::vector<PixelRect> tiles;
         std::vector<FilmPixel> values;  // tile by tile, each row by row
+        std::vector<AovPixel> aovs;     // empty: none are kept
     };
     std::map<int, Pixels> kept;
 };

@@ -2,6 +2,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/scene/footprint.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/guided_path.h"
 #include "renderer/transport/guided_path_tracer.h"
 #include "renderer/transport/path_state.h"
@@ -127,25 +128,27 @@ void GoThrough(const SurfaceInteraction& hit, Path* path) {
     path->wentThrough = true;
 }
 
-template <typename Guiding>
+template <typename Guiding, typename Recorder>
 Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
-          const Vec2f& film, const Vec2f& lens, float time, Guiding& guiding) {
+          const Vec2f& film, const Vec2f& lens, float time, Guiding& guiding, Recorder& firstHit) {
     Rgb L = Rgb::Zero();
     Path path{.ray = ray};
     for (int bounces = 0;; ++bounces) {
         // Stop where the ray could only add emission that has been counted or cannot be found.
         const bool isLast = bounces >= scene.maxDepth;
         const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
-        if (isLast && !(emissionCounts && scene.lights.AnyVisible())) break;
+        if (isLast && !(emissionCounts && scene.lights.AnyVisible()) && !firstHit.Wanted()) break;
 
         // Find the next vertex and add what it emits.
         Hit found;
         if (!scene.accelerator.Intersect(path.ray, &found, time)) {
+            firstHit.LeaveScene(path, scene, estimator);
             L += path.beta * Emission(scene, estimator, path, nullptr, found);
             break;
         }
+        firstHit.Advance(found.t);
         const Shape& shape = scene.shapes.shapes[found.shape];
-        if (isLast && shape.firstLight < 0) break;
+        if (isLast && shape.firstLight < 0 && !firstHit.Wanted()) break;
         SurfaceInteraction hit;
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         scene.shapes.Interact(path.ray, found, needs, &hit, time);
@@ -153,8 +156,9 @@ Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& 
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, film, lens, time, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
-        if (isLast) break;
+        if (isLast && !firstHit.Wanted()) break;
         if (needs & kIsInterface) {
+            if (isLast) break;
             GoThrough(hit, &path);
             --bounces;
             continue;
@@ -162,6 +166,8 @@ Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& 
 
         // Sample the light that arrives directly from lights.
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+        firstHit.MeetSurface(path, scene, estimator, found, hit, bsdf);
+        if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
         guiding.Enter(hit, bsdf, !(needs & kScattersBelow));
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0) {
@@ -184,9 +190,10 @@ Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& 
 // Takes a sample; `radiance(ray, film, lens, time)` is that of its path.
 template <typename Radiance>
 PathSample TakeSample(const Scene& scene, Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                      const Radiance& radiance) {
+                      const Radiance& radiance, FirstHit* firstHit = nullptr) {
     sampler.StartSample(pixel, index);
     const FilterSample filter = scene.filter.Sample(sampler.Get2D());
+    if (firstHit) *firstHit = {.weight = filter.weight, .offset2 = filter.offset.squaredNorm()};
     const Vec2f film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset;
     const Vec2f lens = scene.camera.HasLens() ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
     const float time = scene.isMoving ? sampler.Get1D() : 0;
@@ -205,7 +212,8 @@ PathSample TakeSample(const Scene& scene, Sampler& sampler, const Vec2i& pixel, 
 Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
              const Vec2f& film, const Vec2f& lens, float time) {
     Unguided unguided;
-    return Trace(scene, estimator, sampler, ray, film, lens, time, unguided);
+    NoFirstHit nobodyAsks;
+    return Trace(scene, estimator, sampler, ray, film, lens, time, unguided, nobodyAsks);
 }
 
 PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
@@ -220,12 +228,27 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
 PathSample RenderGuidedSample(const Scene& scene, const Guide& guide, Sampler& sampler,
                               const Vec2i& pixel, uint32_t index, const GuidedPathUse& use) {
     const auto radiance = [&](const Ray& ray, const Vec2f& film, const Vec2f& lens, float time) {
+        NoFirstHit nobodyAsks;
         Guided guided(guide, use.record, use.usual);
-        const Rgb L = Trace(scene, Estimator::Combined, sampler, ray, film, lens, time, guided);
+        const Rgb L =
+            Trace(scene, Estimator::Combined, sampler, ray, film, lens, time, guided, nobodyAsks);
         if (use.vertices) *use.vertices = guided.Vertices();
         return L;
     };
     return TakeSample(scene, sampler, pixel, index, radiance);
+}
+
+PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
+                        const Vec2i& pixel, uint32_t index, bool throughSpecular,
+                        FirstHit* firstHit) {
+    const auto radiance = [&](const Ray& ray, const Vec2f& film, const Vec2f& lens, float time) {
+        FirstHitRecorder recorder(scene.camera, ray, time, throughSpecular, firstHit);
+        if (scene.isVolumetric)
+            return VolumeRadiance(scene, estimator, sampler, ray, film, lens, time, &recorder);
+        Unguided unguided;
+        return Trace(scene, estimator, sampler, ray, film, lens, time, unguided, recorder);
+    };
+    return TakeSample(scene, sampler, pixel, index, radiance, firstHit);
 }
 
 }  // namespace lull

@@ -2,7 +2,7 @@
 
 #include "renderer/scene/footprint.h"
 #include "renderer/scene/phase.h"
-#include "renderer/transport/path_state.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/subsurface.h"
 
 namespace lull {
@@ -220,10 +220,10 @@ void ScatterInMedium(const Vertex& v, Sampler& sampler, Path* path) {
     path->ray = {v.p, wi, kInfinity};
 }
 
-}  // namespace
-
-Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
-                   const Vec2f& film, const Vec2f& lens, float time) {
+// Follows a path from the camera.
+template <typename Recorder>
+Rgb TracePath(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+              const Vec2f& film, const Vec2f& lens, float time, Recorder& firstHit) {
     Rgb L = Rgb::Zero();
     Path path{.ray = ray};
     int medium = scene.media.ofCamera;
@@ -236,7 +236,7 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
         // Stop where the ray could only add emission that has been counted or cannot be found.
         const bool isLast = bounces >= scene.maxDepth;
         const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
-        if (isLast && !(emissionCounts && scene.lights.AnyVisible())) break;
+        if (isLast && !(emissionCounts && scene.lights.AnyVisible()) && !firstHit.Wanted()) break;
 
         // Find the next vertex: a surface, or a point in the medium before it.
         Hit found;
@@ -250,6 +250,8 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             if (IsBlack(path.beta)) break;
         }
         if (inMedium.t) {
+            firstHit.Advance(*inMedium.t);
+            firstHit.MeetMedium(path, path.ray.o + *inMedium.t * path.ray.d);
             if (isLast) break;
             const Vertex v{.p = path.ray.o + *inMedium.t * path.ray.d,
                            .wo = -path.ray.d.normalized(),
@@ -260,9 +262,11 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
             ScatterInMedium(v, sampler, &path);
         } else {
             if (!isHit) {
+                firstHit.LeaveScene(path, scene, estimator);
                 L += path.beta * Emission(scene, estimator, path, nullptr, found);
                 break;
             }
+            firstHit.Advance(found.t);
             SurfaceInteraction hit;
             const SurfaceNeeds needs =
                 scene.materials.Needs(scene.shapes.shapes[found.shape].material);
@@ -280,8 +284,10 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
                 --bounces;
                 continue;
             }
-            if (isLast) break;
+            if (isLast && !firstHit.Wanted()) break;
             const Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
+            firstHit.MeetSurface(path, scene, estimator, found, hit, bsdf);
+            if (isLast) break;
             const Vertex v{.hit = &hit,
                            .bsdf = &bsdf,
                            .shape = found.shape,
@@ -300,6 +306,19 @@ Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, co
         if (bounces > 3 && !SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }
     return L;
+}
+
+}  // namespace
+
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+                   const Vec2f& film, const Vec2f& lens, float time) {
+    NoFirstHit nobodyAsks;
+    return TracePath(scene, estimator, sampler, ray, film, lens, time, nobodyAsks);
+}
+
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+                   const Vec2f& film, const Vec2f& lens, float time, FirstHitRecorder* firstHit) {
+    return TracePath(scene, estimator, sampler, ray, film, lens, time, *firstHit);
 }
 
 }  // namespace lull

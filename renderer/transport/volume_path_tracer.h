@@ -12,4 +12,10 @@ namespace lull {
 Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
                    const Vec2f& film, const Vec2f& lens, float time);
 
+class FirstHitRecorder;
+
+// Returns the same, and tells the recorder what the path has met first.
+Rgb VolumeRadiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
+                   const Vec2f& film, const Vec2f& lens, float time, FirstHitRecorder* firstHit);
+
 }  // namespace lull

@@ -39,6 +39,15 @@ struct RanksTest : testing::Test {
     TemporaryDirectory directory;
 };
 
+TEST_F(RanksTest, RefuseLayersAndViewers) {
+    for (const char* option : {"--aov noise", "--display 127.0.0.1:9"}) {
+        const Outcome outcome = Run(Ranks(2) + kRender + kShort + option);
+        EXPECT_NE(outcome.exitCode, 0);
+        EXPECT_TRUE(Contains(outcome.err, "render")) << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, "one process")) << outcome.err;
+    }
+}
+
 TEST_F(RanksTest, ComeToTheSameBits) {
     ASSERT_EQ(Run(std::string(kRender) + kShort + "-o one.exr").exitCode, 0);
     for (const int ranks : {1, 2, 3, 4}) {

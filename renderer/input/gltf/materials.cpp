@@ -110,6 +110,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
     GltfMaterial result;
     MaterialEntity entity;
     entity.loc = loc;
+    entity.materialName = material.name;
     entity.name = isUnlit ? "matte" : "metallicroughness";
     const ParameterWriter write(&entity.parameters, loc);
     if (isUnlit) {

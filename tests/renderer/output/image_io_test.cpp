@@ -9,6 +9,7 @@
 #endif
 
 #include "renderer/base/color.h"
+#include "renderer/output/png_format.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -284,6 +285,24 @@ TEST(WritePng, EncodesSrgb) {
 
     EXPECT_THROW(WritePng(path, pixels, 2, 3), Error);
     EXPECT_EQ(Texels<uint8_t>(ReadImage(path)), texels);
+}
+
+TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.png");
+    const std::vector<Rgb> pixels = {{0, 0.5f, 1}, {5.6f, 0.18f, -1}};
+    WritePng(path, pixels, 2, 1, {.bits = 16, .text = {{"ToneMap", "none"}}});
+    const auto wide = Texels<float>(ReadImage(path));  // 16-bit integers become 0 to 1
+    const float expected[] = {0, SrgbFromLinear(0.5f), 1, 1, SrgbFromLinear(0.18f), 0};
+    for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(wide[i], expected[i], 1e-5f) << i;
+    EXPECT_TRUE(Contains(ReadBytes(path), std::string("tEXtToneMap\0none", 16)));
+
+    WritePng(path, pixels, 2, 1, {.toneMap = ToneMap::Filmic});
+    const auto mapped = Texels<uint8_t>(ReadImage(path));
+    const float display[] = {0, FilmicToneMap(0.5f), FilmicToneMap(1), 1, FilmicToneMap(0.18f), 0};
+    for (size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(mapped[i], 255 * SrgbFromLinear(display[i]), 0.501f) << i;
+    EXPECT_FALSE(Contains(ReadBytes(path), "ToneMap"));
 }
 
 TEST(WritePng, KeepsTheOldFileWhereItFails) {

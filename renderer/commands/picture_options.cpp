@@ -1,0 +1,82 @@
+#include "renderer/commands/picture_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "renderer/base/memory.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFilmic = "filmic (Hable 2010)";
+
+// Says whether a channel is a colour or a direction, to which 11 bits do no harm.
+bool MayBeHalf(const std::string& name) {
+    return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
+           name.starts_with("N.");
+}
+
+}  // namespace
+
+void AddPictureOptions(CLI::App& app, PictureOptions* options) {
+    const std::map<std::string, ToneMap> maps = {{"none", ToneMap::None},
+                                                 {"filmic", ToneMap::Filmic}};
+    app.add_option_function<std::string>(
+           "--tone-map", [=](const std::string& name) { options->toneMap = maps.at(name); },
+           "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
+           "rules judge the picture without it")
+        ->check(CLI::IsMember(maps))
+        ->type_name("none|filmic")
+        ->default_str("none");
+    app.add_option("--png-bits", options->pngBits, "Bits of each colour of the PNG")
+        ->check(CLI::IsMember({8, 16}))
+        ->type_name("8|16")
+        ->capture_default_str();
+    app.add_flag("--exr-half", options->exrHalf,
+                 "Colours and normals of the EXR take 16 bits, up to 65504, instead of 32");
+    app.add_option("--display", options->display,
+                   "Show the render as it goes on in the viewer tev, or another that speaks its\n"
+                   "protocol and listens there")
+        ->check([](const std::string& text) -> std::string {
+            try {
+                ParseDisplayAddress(text);
+                return "";
+            } catch (const Error& e) {
+                return e.what();
+            }
+        })
+        ->type_name("HOST:PORT");
+}
+
+PngFormat MakePngFormat(const PictureOptions& options, double exposure) {
+    PngFormat format{.bits = options.pngBits, .toneMap = options.toneMap, .text = {}};
+    if (options.toneMap == ToneMap::Filmic) format.text["ToneMap"] = kFilmic;
+    if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
+    return format;
+}
+
+void ApplyTo(ExrImage* exr, const PictureOptions& options) {
+    if (options.toneMap == ToneMap::Filmic) exr->attributes["pngToneMap"] = kFilmic;
+    if (!options.exrHalf) return;
+    for (ExrChannel& channel : exr->channels) channel.isHalf |= MayBeHalf(channel.name);
+}
+
+std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,
+                                     const PixelRect& region, int ranks) {
+    if (options.display.empty()) return nullptr;
+    if (ranks > 1)
+        throw Error(
+            "--display: no rank has the whole picture before the end; render it by one "
+            "process");
+    CheckMemory(region.Area() * int64_t(5 * sizeof(float)),
+                fmt::format("--display of {}x{} pixels", region.Width(), region.Height()),
+                "leave it out");
+    return std::make_unique<Display>(
+        ParseDisplayAddress(options.display), name, region,
+        [](const std::string& message) { fmt::print(stderr, "\nlull: warning: {}\n", message); });
+}
+
+}  // namespace lull

@@ -1,0 +1,105 @@
+// Sums up what paths meet first: the layers beside the image that denoisers and compositors read
+// ("arbitrary output variables").
+#pragma once
+
+#include <string>
+
+#include "renderer/base/color.h"
+#include "renderer/output/film.h"
+
+namespace lull {
+
+// Says which layers are wanted, and how.
+struct AovSet {
+    bool albedo = false, normal = false, depth = false, position = false, object = false,
+         material = false, noise = false;
+    // Look through surfaces with nothing but perfectly specular lobes, to what is seen in them.
+    bool throughSpecular = false;
+
+    bool Any() const { return FirstHits() || noise; }
+    // Says whether a layer needs to know of first hits; noise does not.
+    bool FirstHits() const { return albedo || normal || depth || position || object || material; }
+    bool operator==(const AovSet&) const = default;
+};
+
+// Names the layers: "albedo,normal,..." in the order above, without throughSpecular.
+std::string NameOf(const AovSet&);
+
+// Reads such names, in any order. Throws Error naming the first that there is not, or that there
+// is none.
+AovSet ParseAovs(const std::string& names);
+
+// Says what one path has met first: a surface, or a point in a medium, which has no normal, object
+// or material.
+struct FirstHit {
+    Rgb albedo = Rgb::Zero();        // in [0, 1]; where light is seen instead, that
+    Vec3f normal = Vec3f::Zero();    // shading, unit, world, on the viewer's side
+    Vec3f position = Vec3f::Zero();  // world
+    float depth = 0;        // from the camera's plane along its axis; environment cameras: distance
+    uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
+    uint32_t material = 0;  // 1 + number of the material; 0: none
+    bool found = false;     // there was one
+    // Of the sample: its filter weight, and the squared distance from the pixel's centre.
+    float weight = 1, offset2 = 0;
+};
+
+// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+struct AovPixel {
+    std::array<double, 3> albedo = {}, normal = {}, position = {};
+    double depth = 0;
+    double squares = 0;                 // of the samples' luminance
+    uint32_t hits = 0;                  // samples that found one
+    uint32_t object = 0, material = 0;  // of the sample nearest to the centre
+    float nearest = kInfinity;          // its FirstHit::offset2
+
+    void Add(const FirstHit& hit, const Rgb& radiance) {
+        const double y = Luminance(radiance);
+        squares += y * y;
+        for (int c = 0; c < 3; ++c) {
+            albedo[c] += double(hit.weight * hit.albedo[c]);
+            normal[c] += double(hit.weight * hit.normal[c]);
+        }
+        if (hit.found) {
+            ++hits;
+            depth += double(hit.depth);
+            for (int c = 0; c < 3; ++c) position[c] += double(hit.position[c]);
+        }
+        if (hit.offset2 < nearest) {
+            nearest = hit.offset2;
+            object = hit.object;
+            material = hit.material;
+        }
+    }
+    bool operator==(const AovPixel&) const = default;
+};
+
+// Holds these pixels of the region that a Film beside it has, and how many samples each has is
+// there. Different pixels can be changed by different threads at the same time.
+class AovFilm {
+  public:
+    AovFilm(const PixelRect& region, const AovSet& wanted)
+        : region(region), wanted(wanted), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+
+    const PixelRect& Region() const { return region; }
+    const AovSet& Wanted() const { return wanted; }
+    AovPixel& At(const Vec2i& p) { return pixels[Index(p)]; }
+    const AovPixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
+    std::span<const AovPixel> Pixels() const { return pixels; }
+
+    // Appends the pixels of a rectangle, row by row.
+    void Copy(const PixelRect&, std::vector<AovPixel>* to) const;
+    // Sets them; returns what comes after those in `from`.
+    const AovPixel* Set(const AovPixel* from, const PixelRect&);
+
+  private:
+    size_t Index(const Vec2i& p) const {
+        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
+               size_t(p.x() - region.min.x());
+    }
+
+    PixelRect region;
+    AovSet wanted;
+    std::vector<AovPixel> pixels;
+};
+
+}  // namespace lull

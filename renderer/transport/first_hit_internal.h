@@ -1,0 +1,100 @@
+// Lets the loops over paths say what a path meets first. A loop is compiled once with a recorder
+// and once without, so that where nobody asks for layers there is not even a branch.
+#pragma once
+
+#include "renderer/bsdf/albedo.h"
+#include "renderer/transport/first_hit.h"
+#include "renderer/transport/path_state.h"
+
+namespace lull {
+
+// Stands where nobody asks.
+struct NoFirstHit {
+    static constexpr bool Wanted() { return false; }
+    static void Advance(float) {}
+    static void LeaveScene(const Path&, const Scene&, Estimator) {}
+    static void MeetSurface(const Path&, const Scene&, Estimator, const Hit&,
+                            const SurfaceInteraction&, const Bsdf&) {}
+    static void MeetMedium(const Path&, const Vec3f&) {}
+};
+
+class FirstHitRecorder {
+  public:
+    FirstHitRecorder(const Camera& camera, const Ray& cameraRay, float time, bool throughSpecular,
+                     FirstHit* hit)
+        : camera(camera),
+          direction(cameraRay.d),
+          time(time),
+          throughSpecular(throughSpecular),
+          hit(hit) {}
+
+    // Says whether it has still to be found.
+    bool Wanted() const { return !done; }
+
+    // The path's ray, of unit direction, has gone so far.
+    void Advance(float t) {
+        if (!done) distance += t;
+    }
+
+    // Nothing is there: what shines from there stands for the albedo.
+    void LeaveScene(const Path& path, const Scene& scene, Estimator estimator) {
+        if (done) return;
+        done = true;
+        StoreColor(Emission(scene, estimator, path, nullptr, {}) * scene.film.scale, path);
+    }
+
+    void MeetSurface(const Path& path, const Scene& scene, Estimator estimator, const Hit& found,
+                     const SurfaceInteraction& at, const Bsdf& bsdf) {
+        if (done) return;
+        const bool isSpecular = bsdf.LobeCount(LobeSet::All) > 0 &&
+                                bsdf.LobeCount(LobeSet::NonSpecular) == 0 &&
+                                !(scene.materials.Needs(at.material) & kScattersBelow);
+        if (isSpecular && throughSpecular && at.areaLight < 0) return;
+        Rgb color = AlbedoOf(bsdf, at.wo);
+        if (at.areaLight >= 0)
+            color = color.max(Emission(scene, estimator, path, &at, found) * scene.film.scale);
+        Store(color, at.p, path);
+        if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
+        hit->object =
+            1 + uint32_t(found.instance < 0 ? found.shape
+                                            : scene.shapes.worldShapeCount + found.instance);
+        hit->material = 1 + uint32_t(at.material);
+    }
+
+    // The path is scattered by a medium; `path.beta` knows of its albedo.
+    void MeetMedium(const Path& path, const Vec3f& p) {
+        if (!done) Store(Rgb::Ones(), p, path);
+    }
+
+  private:
+    void Store(const Rgb& color, const Vec3f& p, const Path& path) {
+        done = true;
+        StoreColor(color, path);
+        hit->position = p;
+        hit->depth = distance * DepthPerDistance();
+        hit->found = p.allFinite() && std::isfinite(hit->depth);
+    }
+
+    // Refraction scales radiance by the indices' ratio; that is no matter of colour.
+    void StoreColor(const Rgb& color, const Path& path) {
+        const Rgb seen = path.beta * path.etaScale * color;
+        for (int c = 0; c < 3; ++c) hit->albedo[c] = seen[c] > 0 ? std::min(seen[c], 1.f) : 0;
+    }
+
+    float DepthPerDistance() const {
+        if (camera.projection == Projection::Environment) return 1;
+        Vec3f axis = camera.rotation.col(2);
+        if (camera.motion) axis = TransformVector(camera.motion->At(time), axis);
+        return direction.dot(axis) / axis.norm();
+    }
+
+    const Camera& camera;
+    const Vec3f direction;  // of the camera's ray
+    const float time;
+    const bool throughSpecular;
+    FirstHit* hit;
+    float distance = 0;  // of the path so far
+    bool done = false;
+};
+
+}  // namespace lull

@@ -1,0 +1,203 @@
+// Layers beside the image, read by OpenEXR itself as compositors do, and how pictures are stored.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_lull.h"
+#include "tests/renderer/output/viewer_server.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kAll = "--aov albedo,normal,depth,position,object,material,noise ";
+
+// Holds a file as OpenEXR reads it.
+struct OpenExr {
+    Imf::InputFile file;
+    int width, height;
+
+    explicit OpenExr(const std::string& path) : file(path.c_str()) {
+        const Imath::Box2i window = file.header().dataWindow();
+        width = window.max.x - window.min.x + 1;
+        height = window.max.y - window.min.y + 1;
+    }
+
+    // Lists "name:type" of all channels, in the order of the alphabet, as OpenEXR keeps them.
+    std::string Channels() {
+        std::string list;
+        const Imf::ChannelList& channels = file.header().channels();
+        for (auto c = channels.begin(); c != channels.end(); ++c)
+            list +=
+                fmt::format("{}:{} ", c.name(), c.channel().type == Imf::HALF ? "half" : "float");
+        return list;
+    }
+    std::vector<float> Channel(const std::string& name) {
+        std::vector<float> values(size_t(width) * size_t(height));
+        Imf::FrameBuffer frame;
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), file.header().dataWindow()));
+        file.setFrameBuffer(frame);
+        file.readPixels(file.header().dataWindow().min.y, file.header().dataWindow().max.y);
+        return values;
+    }
+    std::string Text(const std::string& attribute) {
+        return file.header().typedAttribute<Imf::StringAttribute>(attribute).value();
+    }
+    float At(const std::string& name, int x, int y) {
+        return Channel(name).at(size_t(y) * size_t(width) + size_t(x));
+    }
+};
+
+struct LayersTest : testing::Test {
+    LayersTest() {
+        directory.Write("scene.pbrt",
+                        SceneText("MakeNamedMaterial \"clay\" \"string type\" \"matte\" \"rgb Kd\" "
+                                  "[.2 .4 .6]\nNamedMaterial \"clay\"\nShape \"sphere\""));
+    }
+    void Render(const std::string& options) {
+        const Outcome outcome = RunLull(directory, "render scene.pbrt --quiet " + options);
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    }
+    bool SameChannels(const std::string& a, const std::string& b) {
+        const ExrImage x = ReadExr(directory.File(a)), y = ReadExr(directory.File(b));
+        bool same = x.channels.size() == y.channels.size();
+        for (size_t i = 0; same && i < x.channels.size(); ++i)
+            same = x.channels[i].name == y.channels[i].name &&
+                   x.channels[i].values == y.channels[i].values;
+        return same;
+    }
+    TemporaryDirectory directory;
+};
+
+TEST_F(LayersTest, HaveTheNamesThatOtherProgramsRead) {
+    Render(std::string("--spp 16 -o a.exr ") + kAll);
+    OpenExr exr(directory.File("a.exr"));
+    EXPECT_EQ(exr.Channels(),
+              "B:float G:float N.X:float N.Y:float N.Z:float P.X:float P.Y:float P.Z:float R:float "
+              "Z:float albedo.B:float albedo.G:float albedo.R:float materialID:float noise:float "
+              "objectID:float spp:float ");
+    // The middle of the sphere, seen from z = -3.
+    const int x = exr.width / 2, y = exr.height / 2;
+    EXPECT_NEAR(exr.At("Z", x, y), 2, 0.02f);
+    EXPECT_NEAR(exr.At("P.Z", x, y), -1, 0.02f);
+    EXPECT_NEAR(exr.At("N.Z", x, y), -1, 0.02f);
+    EXPECT_NEAR(exr.At("albedo.R", x, y), 0.2f, 1e-5f);
+    EXPECT_NEAR(exr.At("albedo.B", x, y), 0.6f, 1e-5f);
+    EXPECT_EQ(exr.At("objectID", x, y), 1);
+    const float material = exr.At("materialID", x, y);
+    EXPECT_EQ(exr.Text("objectNames"), "{\"1\":\"sphere, scene.pbrt:9\"}");
+    EXPECT_EQ(exr.Text("materialNames"), fmt::format("{{\"{}\":\"clay\"}}", material));
+    EXPECT_GT(exr.At("noise", x, y), 0);
+    EXPECT_LT(exr.At("noise", x, y), 20);
+    // The white sky beside it.
+    EXPECT_EQ(exr.At("Z", 0, 0), 1e10f);
+    EXPECT_EQ(exr.At("albedo.R", 0, 0), 1);
+    EXPECT_EQ(exr.At("N.Z", 0, 0), 0);
+    EXPECT_EQ(exr.At("objectID", 0, 0), 0);
+    EXPECT_NEAR(exr.At("noise", 0, 0), 0, 1e-3f);
+}
+
+TEST_F(LayersTest, LeaveTheImageAsItIs) {
+    Render(std::string("--spp 16 -o with.exr ") + kAll);
+    Render("--spp 16 -o without.exr");
+    const ExrImage with = ReadExr(directory.File("with.exr")),
+                   without = ReadExr(directory.File("without.exr"));
+    ASSERT_EQ(without.channels.size(), 4u);
+    for (const ExrChannel& c : without.channels) EXPECT_EQ(with.Find(c.name)->values, c.values);
+    EXPECT_FALSE(without.attributes.contains("aov"));
+    EXPECT_EQ(ReadBytes(directory.File("with.png")), ReadBytes(directory.File("without.png")));
+}
+
+TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
+    const std::string options = std::string(kAll) +
+                                "--resolution 60x50 --block 20 --stop "
+                                "dammertz:0.004 --cap 1500 --pass 20 ";
+    Render(options + "--threads 1 -o whole.exr");
+    const std::string render =
+        "LULL render scene.pbrt --quiet " + options + "--threads 2 -o parts.exr --checkpoint c.h5 ";
+    const Outcome interrupted =
+        RunAndSignal(directory, render + "--checkpoint-interval 0.1", "TERM", "c.h5");
+    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
+    // Not without the same layers.
+    const Outcome other = RunShell(directory,
+                                   "LULL render scene.pbrt --quiet --aov noise --resolution 60x50 "
+                                   "--block 20 --stop dammertz:0.004 --cap 1500 -o parts.exr "
+                                   "--checkpoint c.h5 --resume");
+    EXPECT_EQ(other.exitCode, 1);
+    EXPECT_TRUE(Contains(other.err, "another aov")) << other.err;
+    const Outcome resumed = RunShell(directory, render + "--resume");
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
+}
+
+TEST_F(LayersTest, AreRefusedWhereTheyCannotBe) {
+    const Outcome unknown = RunLull(directory, "render scene.pbrt --aov albedo,colour");
+    EXPECT_EQ(unknown.exitCode, 2);
+    EXPECT_TRUE(Contains(unknown.err, "no layer \"colour\"")) << unknown.err;
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --aov-through-specular").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --display nowhere").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --png-bits 12").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --tone-map aces").exitCode, 2);
+}
+
+TEST_F(LayersTest, HalfIsForColours) {
+    Render(std::string("--spp 4 --exr-half -o a.exr ") + kAll);
+    OpenExr exr(directory.File("a.exr"));
+    EXPECT_EQ(
+        exr.Channels(),
+        "B:half G:half N.X:half N.Y:half N.Z:half P.X:float P.Y:float P.Z:float R:half Z:float "
+        "albedo.B:half albedo.G:half albedo.R:half materialID:float noise:float "
+        "objectID:float spp:float ");
+}
+
+TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
+    Render("--spp 4 --tone-map filmic --exposure 1.5 --png-bits 16 -o a.exr");
+    EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("pngToneMap"), "filmic (Hable 2010)");
+    const std::string png = ReadBytes(directory.File("a.png"));
+    EXPECT_EQ(png[24], 16);  // bit depth in the header
+    EXPECT_TRUE(Contains(png, std::string("ToneMap\0filmic (Hable 2010)", 27)));
+    EXPECT_TRUE(Contains(png, std::string("Exposure\0+1.5 stops", 19)));
+    // The image itself knows of the exposure, but not of the tone map.
+    Render("--spp 4 --exposure 1.5 -o b.exr");
+    EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
+}
+
+// What a viewer has put together at the end is what is in the file.
+TEST_F(LayersTest, ViewersSeeTheImage) {
+    ViewerServer server;
+    Render(
+        "--resolution 150x100 --block 40 --stop dammertz:0.02 --cap 300 --threads 2 -o a.exr "
+        "--display " +
+        server.Address());
+    ASSERT_EQ(server.Finish().size(), 1u);
+    const ViewedImage viewed = Reassemble(server.Finish()[0]);
+    EXPECT_EQ(viewed.name, "a.exr");
+    const ExrImage image = ReadExr(directory.File("a.exr"));
+    for (const ExrChannel& c : image.channels) EXPECT_EQ(viewed.channels.at(c.name), c.values);
+    EXPECT_EQ(viewed.channels.at("stop"), std::vector<float>(150 * 100, 1.f));
+}
+
+TEST_F(LayersTest, RendersWithoutAViewerAllTheSame) {
+    std::string address;
+    {
+        ViewerServer server;
+        address = server.Address();
+    }
+    const Outcome outcome =
+        RunLull(directory, "render scene.pbrt --quiet --spp 200 -o a.exr --display " + address);
+    EXPECT_EQ(outcome.exitCode, 0);
+    const std::string mark = "lull: warning: no viewer at " + address;
+    const size_t found = outcome.err.find(mark);
+    EXPECT_NE(found, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(mark, found + 1), std::string::npos) << outcome.err;
+    Render("--spp 200 -o b.exr");
+    EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
+}
+
+}  // namespace
+}  // namespace lull

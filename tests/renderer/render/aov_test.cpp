@@ -1,0 +1,144 @@
+// Layers go the way of the image: any threads and blocks, clocks, checkpoints.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "renderer/render/extras.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+const PixelRect kRegion = {{5, 3}, {75, 63}};
+
+PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    const PathSample sample = SyntheticSample(sampler, pixel, index);
+    const Vec2f u = sampler.Get2D();
+    *hit = {.albedo = Rgb(u.x(), u.y(), 0.1f),
+            .normal = Vec3f(u.y(), 0, 1),
+            .position = Vec3f(1e5f * u.x(), 1, 2),
+            .depth = u.x(),
+            .object = index,
+            .material = uint32_t(pixel.x()),
+            .found = u.x() < 0.7f,
+            .weight = 1,
+            .offset2 = u.y()};
+    return sample;
+}
+
+struct Rendered {
+    Film film{kRegion};
+    AovFilm aovs{kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")};
+    RenderOptions options;
+    RenderExtras extras;
+    RenderResult result;
+
+    Rendered() {
+        options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
+        options.sampler = SamplerKind::Random;
+        options.threads = 1;
+        options.makeCriterion = [](const BlockInfo& block) {
+            return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
+        };
+        extras.aovs = &aovs;
+        extras.aovSource = SampleWithHit;
+    }
+    void Run(const RenderState* interrupted = nullptr) {
+        result = Render(SyntheticSample, options, &film, interrupted, extras);
+    }
+};
+
+bool SameLayers(const AovFilm& a, const AovFilm& b) {
+    return std::equal(a.Pixels().begin(), a.Pixels().end(), b.Pixels().begin(), b.Pixels().end());
+}
+
+// Adds the same samples one by one.
+AovFilm Expected(const Film& film, const AovSet& wanted) {
+    AovFilm aovs(kRegion, wanted);
+    Sampler sampler(SamplerKind::Random, 0);
+    for (int y = kRegion.min.y(); y < kRegion.max.y(); ++y)
+        for (int x = kRegion.min.x(); x < kRegion.max.x(); ++x)
+            for (uint32_t k = 0; k < film.At({x, y}).count; ++k) {
+                FirstHit hit;
+                const PathSample sample = SampleWithHit(sampler, {x, y}, k, &hit);
+                aovs.At({x, y}).Add(hit, sample.radiance);
+            }
+    return aovs;
+}
+
+TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
+    for (const int threads : {1, 3, 8}) {
+        Rendered render;
+        render.options.threads = threads;
+        render.Run();
+        EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
+        EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
+        Film without(kRegion);
+        Render(SyntheticSample, render.options, &without);
+        EXPECT_TRUE(SamePixels(render.film, without));
+    }
+}
+
+// Passes that the time does not suffice for are undone in the layers as well.
+TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
+    Rendered render;
+    std::atomic<int> taken = 0;
+    render.options.threads = 2;
+    render.options.makeCriterion = nullptr;
+    render.extras.aovSource = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* h) {
+        ++taken;
+        return SampleWithHit(sampler, pixel, k, h);
+    };
+    render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
+    render.Run();
+    EXPECT_TRUE(render.result.timeUp);
+    EXPECT_LT(render.film.SampleCount(), taken);  // some were undone
+    EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
+}
+
+TEST(Aovs, GoOnFromCheckpoints) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("c.h5");
+    const RenderIdentity identity = {{"scene", "a"}};
+    Rendered whole;
+    whole.Run();
+    RenderState state;
+    {
+        Rendered first;
+        std::atomic<int> taken = 0;
+        first.extras.aovSource = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* h) {
+            ++taken;
+            return SampleWithHit(s, pixel, k, h);
+        };
+        first.options.isCancelled = [&] { return taken > 50001; };
+        first.options.onCheckpoint = [&](const RenderState& s) {
+            WriteCheckpoint(path, identity, s, first.film, {}, &first.aovs);
+        };
+        first.options.checkpointInterval = 1e6;
+        first.Run();
+        EXPECT_TRUE(first.result.cancelled);
+    }
+    Rendered second;
+    state = ReadCheckpoint(path, identity, &second.film, nullptr, &second.aovs);
+    second.Run(&state);
+    EXPECT_TRUE(SamePixels(second.film, whole.film));
+    EXPECT_TRUE(SameLayers(second.aovs, whole.aovs));
+
+    // A render without layers goes on from it too, but not the other way round.
+    Film film(kRegion);
+    state = ReadCheckpoint(path, identity, &film);
+    WriteCheckpoint(path, identity, state, film);
+    Rendered third;
+    EXPECT_THROW(ReadCheckpoint(path, identity, &third.film, nullptr, &third.aovs), Error);
+}
+
+TEST(Aovs, OfAnotherRegionAreRefused) {
+    Rendered render;
+    AovFilm other({{0, 0}, {1, 1}}, render.aovs.Wanted());
+    render.extras.aovs = &other;
+    EXPECT_THROW(render.Run(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,220 @@
+// Compares what paths say that they have met first with what is there.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/transport/first_hit.h"
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/output/test_files.h"
+
+namespace lull {
+namespace {
+
+constexpr Estimator kBoth[] = {Estimator::Combined, Estimator::PbrtV3};
+
+// An image of one pixel with a box filter, whose camera at z = -3 looks at the origin.
+std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::string& before = "") {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    const std::string text = fmt::format(
+        "LookAt 0 0 -3  0 0 0  0 1 0\n"
+        "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n{}\n"
+        "Camera \"perspective\" \"float fov\" [20]\nWorldBegin\n{}\nWorldEnd\n",
+        before, world);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    CompileOptions options;
+    options.threads = 1;
+    return Compile(d, options, warnings);
+}
+
+constexpr const char* kSky = "LightSource \"infinite\" \"rgb L\" [.25 .5 4]\n";
+// Squares across the view at a given z, facing the camera.
+std::string Wall(double z, double size = 10) {
+    return fmt::format(
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
+        "[-{1} -{1} {0}  -{1} {1} {0}  {1} {1} {0}  {1} -{1} {0}]\n",
+        z, size);
+}
+
+FirstHit Find(const Scene& scene, Estimator estimator, bool throughSpecular = false,
+              uint32_t index = 0) {
+    Sampler sampler(SamplerKind::Random, 7);
+    FirstHit hit;
+    RenderSample(scene, estimator, sampler, {0, 0}, index, throughSpecular, &hit);
+    return hit;
+}
+
+void ExpectColor(const Rgb& color, const Rgb& expected, float slack = 1e-5f) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], expected[c], slack);
+}
+
+TEST(FirstHit, IsWhatIsSeen) {
+    for (const Estimator estimator : kBoth) {
+        const auto scene = MakeScene(
+            "Material \"matte\"\nShape \"sphere\" \"float radius\" [.01]\n"
+            "Material \"matte\" \"rgb Kd\" [.1 .6 .9]\n" +
+            Wall(2));
+        for (uint32_t k = 0; k < 16; ++k) {
+            const FirstHit hit = Find(*scene, estimator, false, k);
+            ASSERT_TRUE(hit.found);
+            ExpectColor(hit.albedo, {0.1f, 0.6f, 0.9f});
+            EXPECT_NEAR(hit.depth, 5, 1e-4f);  // from the camera's plane, all over the wall
+            EXPECT_NEAR(hit.position.z(), 2, 1e-4f);
+            EXPECT_NEAR(hit.normal.z(), -1, 1e-5f);
+            EXPECT_EQ(hit.object, 2u);
+            EXPECT_EQ(hit.weight, 1);
+            EXPECT_LE(hit.offset2, 0.5f);
+        }
+    }
+}
+
+TEST(FirstHit, NumbersInstancesAfterShapes) {
+    const auto scene = MakeScene("ObjectBegin \"o\"\n" + Wall(0) + "ObjectEnd\n" + Wall(9) +
+                                 "Translate 0 0 20\nObjectInstance \"o\"\nTranslate 0 0 -19\n"
+                                 "Material \"mirror\"\nObjectInstance \"o\"\n");
+    const FirstHit hit = Find(*scene, Estimator::Combined);
+    EXPECT_NEAR(hit.depth, 4, 1e-4f);
+    EXPECT_EQ(hit.object, 3u);  // the wall of the world, then two instances
+}
+
+TEST(FirstHit, IsOnTheSideOfTheViewer) {
+    const auto scene =
+        MakeScene("ReverseOrientation\n" + Wall(2) + "Shape \"sphere\" \"float radius\" [5]");
+    EXPECT_NEAR(Find(*scene, Estimator::Combined).normal.z(), -1, 1e-5f);
+    const auto inside = MakeScene("Shape \"sphere\" \"float radius\" [5]");
+    EXPECT_LT(Find(*inside, Estimator::Combined).normal.z(), -0.95f);
+}
+
+TEST(FirstHit, IsLightWhereLightIsSeen) {
+    for (const Estimator estimator : kBoth) {
+        const FirstHit sky = Find(*MakeScene(kSky), estimator);
+        EXPECT_FALSE(sky.found);
+        ExpectColor(sky.albedo, {0.25f, 0.5f, 1});
+        EXPECT_EQ(sky.object, 0u);
+        const auto lamp = MakeScene(
+            "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n"
+            "AreaLightSource \"diffuse\" \"rgb L\" [.75 20 0] \"bool twosided\" \"true\"\n" +
+            Wall(1));
+        const FirstHit hit = Find(*lamp, estimator);
+        EXPECT_TRUE(hit.found);
+        ExpectColor(hit.albedo, {0.75f, 1, 0.5f});
+        const FirstHit exposed =
+            Find(*MakeScene(kSky,
+                            "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" "
+                            "[1] \"float scale\" [.5]"),
+                 estimator);
+        ExpectColor(exposed.albedo, {0.125f, 0.25f, 1});
+    }
+}
+
+// A red mirror faces the camera, and a green wall is behind the camera.
+TEST(FirstHit, GoesThroughMirrorsWhereAsked) {
+    const auto scene = MakeScene("Material \"mirror\" \"rgb Kr\" [.8 .4 .2]\n" + Wall(1, 3) +
+                                 "Material \"matte\" \"rgb Kd\" [.5 1 .5]\n" + Wall(-10, 60));
+    for (const Estimator estimator : kBoth) {
+        const FirstHit mirror = Find(*scene, estimator);
+        ExpectColor(mirror.albedo, {0.8f, 0.4f, 0.2f});
+        EXPECT_NEAR(mirror.depth, 4, 1e-4f);
+        EXPECT_EQ(mirror.object, 1u);
+        const FirstHit through = Find(*scene, estimator, true);
+        ExpectColor(through.albedo, {0.4f, 0.4f, 0.1f});
+        EXPECT_NEAR(through.depth, 4 + 11, 1e-3f);  // where it seems to be
+        EXPECT_NEAR(through.position.z(), -10, 1e-4f);
+        EXPECT_NEAR(through.normal.z(), 1, 1e-5f);
+        EXPECT_EQ(through.object, 2u);
+    }
+}
+
+TEST(FirstHit, GlassIsWhiteAndClear) {
+    const auto scene = MakeScene(
+        "Material \"glass\"\nShape \"sphere\" \"float radius\" [1]\n"
+        "Material \"matte\" \"rgb Kd\" [.1 .2 .3]\n" +
+        Wall(4, 500) + Wall(-400, 500));
+    for (const Estimator estimator : kBoth) {
+        ExpectColor(Find(*scene, estimator).albedo, Rgb::Ones());
+        int found = 0;
+        for (uint32_t k = 0; k < 64; ++k) {
+            const FirstHit hit = Find(*scene, estimator, true, k);
+            if (!hit.found) continue;  // reflected inside until the path ended
+            ++found;
+            EXPECT_EQ(hit.object >= 2, true);
+            ExpectColor(hit.albedo, {0.1f, 0.2f, 0.3f}, 1e-4f);
+        }
+        EXPECT_GE(found, 62);
+    }
+}
+
+TEST(FirstHit, OfAPathAtItsEndIsWhatIsSeenAllTheSame) {
+    const auto scene = MakeScene(Wall(2), "Integrator \"path\" \"integer maxdepth\" [0]");
+    for (const Estimator estimator : kBoth) {
+        const FirstHit hit = Find(*scene, estimator);
+        EXPECT_TRUE(hit.found);
+        ExpectColor(hit.albedo, {0.5f, 0.5f, 0.5f});
+    }
+}
+
+TEST(FirstHit, CanBeAPointInAMedium) {
+    const std::string ball =
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [{0} {0} {0}]"
+        " \"rgb sigma_s\" [{1} {1} {1}]\nMaterial \"none\"\nMediumInterface \"m\" \"\"\n"
+        "Shape \"sphere\"\nMediumInterface \"\" \"\"\nMaterial \"matte\"\n" +
+        Wall(2);
+    const std::string before = "Integrator \"volpath\"";
+    for (const Estimator estimator : kBoth) {
+        const FirstHit fog =
+            Find(*MakeScene(fmt::format(fmt::runtime(ball), 5000, 15000), before), estimator);
+        EXPECT_TRUE(fog.found);
+        EXPECT_NEAR(fog.depth, 2, 0.05f);
+        EXPECT_EQ(fog.object, 0u);
+        EXPECT_TRUE(fog.normal.isZero());
+        ExpectColor(fog.albedo, Rgb::Constant(0.75f));
+        const FirstHit wall =
+            Find(*MakeScene(fmt::format(fmt::runtime(ball), 0, 1e-6), before), estimator);
+        EXPECT_NEAR(wall.depth, 5, 1e-3f);
+        EXPECT_EQ(wall.object, 2u);
+    }
+}
+
+TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    const Description d =
+        ParsePbrt(directory.Write(
+                      "e.pbrt",
+                      "Film \"image\" \"integer xresolution\" [4] \"integer yresolution\" [4]\n"
+                      "Camera \"environment\"\nWorldBegin\nShape \"sphere\" \"float radius\" [7]\n"
+                      "WorldEnd\n"),
+                  {}, warnings);
+    const auto scene = Compile(d, {}, warnings);
+    for (int i = 0; i < 16; ++i) {
+        Sampler sampler(SamplerKind::Random, 7);
+        FirstHit hit;
+        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, false, &hit);
+        EXPECT_NEAR(hit.depth, 7, 1e-3f);
+    }
+}
+
+// Asking for layers changes no sample.
+TEST(FirstHit, LeavesTheImageAsItIs) {
+    const std::string world =
+        std::string(kSky) +
+        "LightSource \"point\" \"point from\" [1 1 -2]\nMaterial \"plastic\"\n" + Wall(1) +
+        "Material \"glass\"\nShape \"sphere\" \"float radius\" [.4]\n"
+        "Material \"metal\" \"float roughness\" [.1]\nTranslate 0 -.6 0\nShape \"sphere\" \"float "
+        "radius\" [.3]\n";
+    for (const char* integrator : {"Integrator \"path\"", "Integrator \"volpath\""})
+        for (const Estimator estimator : kBoth) {
+            const auto scene = MakeScene(world, integrator);
+            for (uint32_t k = 0; k < 500; ++k) {
+                Sampler a(SamplerKind::Sobol, 3), b(SamplerKind::Sobol, 3);
+                FirstHit hit;
+                const PathSample with = RenderSample(*scene, estimator, a, {0, 0}, k, true, &hit);
+                const PathSample without = RenderSample(*scene, estimator, b, {0, 0}, k);
+                for (int c = 0; c < 3; ++c) ASSERT_EQ(with.radiance[c], without.radiance[c]);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace lull
