@@ -67,14 +67,8 @@ class LightDistribution {
         const std::span<float> sums(tables.get() + voxel * lightCount, lightCount);
         // A table that is not made yet is all zeros; its last sum, written last, tells.
         std::atomic_ref<float> last(sums.back());
-        if (last.load(std::memory_order_acquire) == 0) {
-            std::lock_guard lock(locks[voxel % kLocks]);
-            if (last.load(std::memory_order_relaxed) == 0) {
-                const std::vector<float> made = Compute(voxel, contribution);
-                std::copy(made.begin(), made.end() - 1, sums.begin());
-                last.store(made.back(), std::memory_order_release);
-            }
-        }
+        if (last.load(std::memory_order_acquire) == 0) [[unlikely]]
+            MakeTable(voxel, contribution, sums);
         return LightChoice(sums);
     }
 
@@ -101,6 +95,19 @@ class LightDistribution {
         return (size_t(v.z()) * resolution.y() + v.y()) * resolution.x() + v.x();
     }
     Bounds3f VoxelBounds(size_t voxel) const;
+
+    // Makes the table of the voxel, unless another thread has by now. Apart, as Lookup() would
+    // be too long to be inlined with it.
+    template <typename Contribution>
+    [[gnu::noinline]] void MakeTable(size_t voxel, const Contribution& contribution,
+                                     std::span<float> sums) const {
+        std::lock_guard lock(locks[voxel % kLocks]);
+        std::atomic_ref<float> last(sums.back());
+        if (last.load(std::memory_order_relaxed) != 0) return;
+        const std::vector<float> made = Compute(voxel, contribution);
+        std::copy(made.begin(), made.end() - 1, sums.begin());
+        last.store(made.back(), std::memory_order_release);
+    }
 
     // Averages over a Halton set of points in the voxel and on the lights.
     template <typename Contribution>

@@ -29,8 +29,9 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
 
 // Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
 // scene, else `found` is the same hit as the accelerator told of it.
-inline Rgb Emission(const Scene& scene, Estimator estimator, const Path& path,
-                    const SurfaceInteraction* hit, const Hit& found) {
+[[gnu::always_inline]] inline Rgb Emission(const Scene& scene, Estimator estimator,
+                                           const Path& path, const SurfaceInteraction* hit,
+                                           const Hit& found) {
     if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
     Rgb sum = Rgb::Zero();
     if (!hit) {

@@ -15,8 +15,8 @@ namespace {
 // Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
 // the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
 // turns a grazing ray to the other side of the surface, it would pass through: that is in shadow.
-bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSample& light,
-               float time) {
+[[gnu::always_inline]] inline bool IsVisible(const Scene& scene, const SurfaceInteraction& hit,
+                                             const LightSample& light, float time) {
     if (light.isAtInfinity) return !scene.accelerator.Occluded(hit.SpawnRay(light.wi), time);
     const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
@@ -28,9 +28,10 @@ bool IsVisible(const Scene& scene, const SurfaceInteraction& hit, const LightSam
 // Returns the light that sampling light `index` brings to the hit, weighted against BSDF sampling.
 // `pmf` is the probability of having chosen the light.
 template <typename Guiding>
-Rgb SampleLight(const Scene& scene, Estimator estimator, const SurfaceInteraction& hit,
-                const Bsdf& bsdf, const Guiding& guiding, int index, float pmf, const Vec2f& u,
-                float time) {
+[[gnu::always_inline]] inline Rgb SampleLight(const Scene& scene, Estimator estimator,
+                                              const SurfaceInteraction& hit, const Bsdf& bsdf,
+                                              const Guiding& guiding, int index, float pmf,
+                                              const Vec2f& u, float time) {
     const auto light = scene.lights.Sample(index, hit.p, u);
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
@@ -89,9 +90,10 @@ Rgb SampleBsdfForLight(const Scene& scene, const SurfaceInteraction& hit, const 
 
 // Samples direct light as the estimator says: chooses one light of the table `choice`.
 template <typename Guiding>
-Rgb SampleDirectLight(const Scene& scene, Estimator estimator, Sampler& sampler,
-                      const SurfaceInteraction& hit, const Bsdf& bsdf, const Guiding& guiding,
-                      const LightChoice& choice, float time) {
+[[gnu::always_inline]] inline Rgb SampleDirectLight(const Scene& scene, Estimator estimator,
+                                                    Sampler& sampler, const SurfaceInteraction& hit,
+                                                    const Bsdf& bsdf, const Guiding& guiding,
+                                                    const LightChoice& choice, float time) {
     float pmf;
     const int index = choice.Sample(sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
@@ -178,9 +180,16 @@ Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& 
 
         bool isTransmission;
         if (!guiding.Scatter(bsdf, hit, L, sampler, &path, &isTransmission)) break;
-        if ((needs & kScattersBelow) && isTransmission &&
-            !ScatterBelow(scene, estimator, sampler, hit, bsdf, time, &path, &L))
-            break;
+        if ((needs & kScattersBelow) && isTransmission) [[unlikely]] {
+            // Works on copies: what it has a pointer to would lie in memory all along.
+            Path below = path;
+            Rgb arriving = Rgb::Zero();
+            const bool leaves =
+                ScatterBelow(scene, estimator, sampler, hit, bsdf, time, &below, &arriving);
+            path = below;
+            L += arriving;
+            if (!leaves) break;
+        }
         if (bounces > 3 && !guiding.SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }
     guiding.End(L);
