@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -18,23 +19,16 @@ namespace {
 
 using std::filesystem::path;
 
-// Makes the image of a region of the film: `mean` are R, G, B a pixel, `spp` the samples of each.
-ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<float>& mean,
-                 std::vector<float> spp, const Provenance& provenance, double seconds) {
+// Makes the header of an image of a region of the film, with channels R, G, B and spp.
+ExrImage MakeExr(const Scene& scene, const PixelRect& region, int64_t samples,
+                 const Provenance& provenance, double seconds) {
     ExrImage exr;
     exr.width = region.Width();
     exr.height = region.Height();
     exr.origin = region.min;
     exr.displaySize = scene.film.resolution;
-    for (int c = 0; c < 3; ++c) {
-        ExrChannel channel{.name = std::string(1, "RGB"[c]), .values = {}};
-        channel.values.reserve(mean.size() / 3);
-        for (size_t i = c; i < mean.size(); i += 3) channel.values.push_back(mean[i]);
-        exr.channels.push_back(std::move(channel));
-    }
-    int64_t samples = 0;
-    for (const float n : spp) samples += int64_t(n);
-    exr.channels.push_back({.name = "spp", .values = std::move(spp)});
+    for (const char* name : {"R", "G", "B", "spp"})
+        exr.channels.push_back({.name = name, .values = {}});
 
     // Counts go in as text, since an EXR's integers end at 2^31.
     exr.attributes = {{"renderer", "lull"},
@@ -57,8 +51,8 @@ ExrImage MakeExr(const Scene& scene, const PixelRect& region, const std::vector<
 
 ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provenance,
                  const RenderResult& result) {
-    ExrImage exr = MakeExr(scene, film.Region(), film.MeanImage(), film.SppImage(), provenance,
-                           result.progress.seconds);
+    ExrImage exr =
+        MakeExr(scene, film.Region(), film.SampleCount(), provenance, result.progress.seconds);
     exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
@@ -71,8 +65,58 @@ ExrImage MakeExr(const Scene& scene, const Film& film, const Provenance& provena
     return exr;
 }
 
-void WriteImagePng(const std::string& file, const RgbImage& image, const PngFormat& format = {}) {
-    WritePng(file, PixelsOf(image), image.width, image.height, format);
+// Writes means R, G, B as those of an EXR, with the samples of each pixel, and the values of the
+// channels after these four.
+void WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
+              const RowSource& spp) {
+    const size_t stride = exr.channels.size();
+    std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
+    WriteExr(file, exr, [&](int y, std::span<float> row) {
+        means(y, rgb);
+        spp(y, counts);
+        for (size_t x = 0; x < counts.size(); ++x) {
+            std::copy_n(&rgb[3 * x], 3, &row[stride * x]);
+            row[stride * x + 3] = counts[x];
+            for (size_t c = 4; c < stride; ++c)
+                row[stride * x + c] = exr.channels[c].values[size_t(y) * counts.size() + x];
+        }
+    });
+}
+
+// Returns the rows of the image, which is never held as a whole beside its sums.
+RowSource MeansOf(const Film& film) {
+    return [&film, view = std::make_shared<FilmView>()](int y, std::span<float> row) {
+        const PixelRect& all = film.Region();
+        film.Extract({{all.min.x(), all.min.y() + y}, {all.max.x(), all.min.y() + y + 1}}, false,
+                     view.get());
+        std::ranges::copy(view->mean, row.begin());
+    };
+}
+
+RowSource SppOf(const Film& film) {
+    return [&film](int y, std::span<float> row) {
+        for (size_t x = 0; x < row.size(); ++x)
+            row[x] = float(film.At(film.Region().min + Vec2i(int(x), y)).count);
+    };
+}
+
+RowSource MeansOf(const RgbImage& image) {
+    return [&image](int y, std::span<float> row) {
+        std::copy_n(&image.values[size_t(y) * row.size()], row.size(), row.begin());
+    };
+}
+
+// Returns the samples of pixels of blocks that have spp[i] each.
+RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
+                const std::vector<int>& spp) {
+    return [&](int y, std::span<float> row) {
+        y += region.min.y();
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            const PixelRect& r = blocks[i].pixels;
+            if (y < r.min.y() || y >= r.max.y()) continue;
+            std::fill_n(row.begin() + (r.min.x() - region.min.x()), r.Width(), float(spp[i]));
+        }
+    };
 }
 
 void WriteSppMap(const std::string& file, const Film& film, const ScheduleOptions& schedule,
@@ -81,7 +125,7 @@ void WriteSppMap(const std::string& file, const Film& film, const ScheduleOption
     for (const BlockResult& b : result.blocks) blocks.push_back({b.block.pixels, b.block.spp});
     const int lowest = std::min(schedule.passLength, schedule.cap);
     const SppMap map = DrawSppMap(film.Region(), blocks, lowest, schedule.cap);
-    WritePng(file, map.pixels, map.width, map.height);
+    WritePng(file, map.srgb, map.width, map.height);
 }
 
 void WriteThresholdsRow(const std::string& file, const Provenance& provenance,
@@ -161,8 +205,9 @@ void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
     exr.channels.insert(exr.channels.end(), extra.channels.begin(), extra.channels.end());
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, pictures);
-    WriteExr(files.exr, exr);
-    WriteImagePng(files.png, ImageOf(film), MakePngFormat(pictures, scene.film.exposure));
+    WriteExr(files.exr, exr, MeansOf(film), SppOf(film));
+    WritePng(files.png, MeansOf(film), film.Region().Width(), film.Region().Height(),
+             MakePngFormat(pictures, scene.film.exposure));
     WriteSppMap(files.sppMap, film, provenance.schedule, result);
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
     if (!result.cancelled) WriteThresholdsRow(files.thresholds, provenance, result);
@@ -179,14 +224,11 @@ void WriteImage(const std::string& exr, const std::string& png, const Scene& sce
                 const RgbImage& image, const std::vector<Block>& blocks,
                 const std::vector<int>& spp, const Provenance& provenance, double seconds) {
     const PixelRect& region = provenance.crop;
-    std::vector<float> sppImage(size_t(region.Area()));
-    for (size_t i = 0; i < blocks.size(); ++i)
-        for (int y = blocks[i].pixels.min.y(); y < blocks[i].pixels.max.y(); ++y)
-            for (int x = blocks[i].pixels.min.x(); x < blocks[i].pixels.max.x(); ++x)
-                sppImage[size_t(y - region.min.y()) * size_t(region.Width()) +
-                         size_t(x - region.min.x())] = float(spp[i]);
-    WriteExr(exr, MakeExr(scene, region, image.values, std::move(sppImage), provenance, seconds));
-    WriteImagePng(png, image);
+    int64_t samples = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) samples += blocks[i].pixels.Area() * spp[i];
+    WriteExr(exr, MakeExr(scene, region, samples, provenance, seconds), MeansOf(image),
+             SppOf(region, blocks, spp));
+    WritePng(png, MeansOf(image), image.width, image.height);
 }
 
 }  // namespace lull

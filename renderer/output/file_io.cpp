@@ -60,12 +60,14 @@ void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* 
     FailWithErrno(path);
 }
 
-void WriteAll(const std::string& path, int fd, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = write(fd, bytes.data(), bytes.size());
+// Calls write(bytes, done), which returns what it has written, until all is.
+template <typename Write>
+void WriteAll(const std::string& path, std::span<const std::byte> bytes, const Write& write) {
+    for (size_t done = 0; done < bytes.size();) {
+        const ssize_t written = write(bytes.subspan(done), done);
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) FailWithErrno(path);
-        bytes = bytes.subspan(size_t(written));
+        done += size_t(written);
     }
 }
 
@@ -117,31 +119,61 @@ void WriteDirectly(const std::string& path, const Target& target,
     OutputFile file;
     file.fd = open(target.path.c_str(), O_WRONLY | O_CLOEXEC);
     if (file.fd < 0) FailWithErrno(path);
-    WriteAll(path, file.fd, bytes);
+    WriteAll(path, bytes, [&](std::span<const std::byte> rest, size_t) {
+        return write(file.fd, rest.data(), rest.size());
+    });
     Close(path, &file);
 }
 
 }  // namespace
 
-void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes) {
-    const Target target = FindTarget(path);
-    if (IsSpecial(target)) {
-        WriteDirectly(path, target, bytes);
+struct AtomicFile::State {
+    std::string path;
+    Target target;
+    OutputFile file;                // the new one; none where the target is special
+    std::vector<std::byte> direct;  // what a special target is to get
+};
+
+AtomicFile::AtomicFile(const std::string& path) : state(std::make_unique<State>()) {
+    state->path = path;
+    state->target = FindTarget(path);
+    if (IsSpecial(state->target)) return;
+    const fs::file_status& old = state->target.status;
+    OpenTemporary(path, state->target.path, &state->file);
+    if (fs::exists(old) && fchmod(state->file.fd, mode_t(old.permissions() & fs::perms::mask)) != 0)
+        FailWithErrno(path);
+}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::WriteAt(int64_t offset, std::span<const std::byte> bytes) {
+    if (IsSpecial(state->target)) {
+        state->direct.resize(std::max(state->direct.size(), size_t(offset) + bytes.size()));
+        std::copy(bytes.begin(), bytes.end(), state->direct.begin() + offset);
         return;
     }
+    WriteAll(state->path, bytes, [&](std::span<const std::byte> rest, size_t done) {
+        return pwrite(state->file.fd, rest.data(), rest.size(), offset + off_t(done));
+    });
+}
 
-    OutputFile file;
-    OpenTemporary(path, target.path, &file);
-    if (fs::exists(target.status) &&
-        fchmod(file.fd, mode_t(target.status.permissions() & fs::perms::mask)) != 0)
-        FailWithErrno(path);
-    WriteAll(path, file.fd, bytes);
+void AtomicFile::Commit() {
+    const std::string& path = state->path;
+    if (IsSpecial(state->target)) return WriteDirectly(path, state->target, state->direct);
+    OutputFile& file = state->file;
     if (fsync(file.fd) != 0 && errno != EINVAL) FailWithErrno(path);
     Close(path, &file);
-
-    if (rename(file.temporary.c_str(), target.path.c_str()) != 0) FailWithErrno(path);
+    if (rename(file.temporary.c_str(), state->target.path.c_str()) != 0) FailWithErrno(path);
     file.temporary.clear();
-    SyncDirectory(target.path.parent_path());
+    SyncDirectory(state->target.path.parent_path());
+}
+
+std::string AtomicFile::Temporary() const { return state->file.temporary.string(); }
+
+void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes) {
+    AtomicFile file(path);
+    file.WriteAt(0, bytes);
+    file.Commit();
 }
 
 void WriteFileAtomically(const std::string& path, std::string_view text) {

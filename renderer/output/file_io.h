@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lull {
 
@@ -14,6 +17,25 @@ namespace lull {
 // why, with nothing left behind.
 void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes);
 void WriteFileAtomically(const std::string& path, std::string_view text);
+
+// Does the same with what comes piece by piece, for files that are too large to be held twice.
+// Without Commit() the old file stays. What is no regular file gets all at Commit().
+class AtomicFile {
+  public:
+    explicit AtomicFile(const std::string& path);
+    ~AtomicFile();
+
+    // Throw Error as WriteFileAtomically() does.
+    void WriteAt(int64_t offset, std::span<const std::byte> bytes);
+    void Commit();
+    // Returns the name of the new file, for libraries that write files themselves; empty where it
+    // is no regular file.
+    std::string Temporary() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state;
+};
 
 // Throws Error if WriteFileAtomically(path, ...) could not create its file now: the directory is
 // missing or takes no new files, or `path` is itself a directory. For use before a long render.

@@ -4,7 +4,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
@@ -93,20 +95,91 @@ Image ReadTexels(const std::string& path, OIIO::ImageInput* input, int channels)
     return image;
 }
 
-// Encodes in memory, so that every error of the disk meets the one place that handles them. The
-// path is for messages.
+// Takes what OpenImageIO writes. What goes wrong there is kept, as no exception may pass through
+// the libraries of the formats.
+class FileProxy final : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit FileProxy(const std::string& path)
+        : OIIO::Filesystem::IOProxy(path, Write), file(path) {}
+    const char* proxytype() const override { return "lull"; }
+    size_t write(const void* from, size_t size) override {
+        const size_t written = pwrite(from, size, m_pos);
+        m_pos += int64_t(written);
+        return written;
+    }
+    size_t pwrite(const void* from, size_t size, int64_t offset) override {
+        try {
+            if (!failure) file.WriteAt(offset, {static_cast<const std::byte*>(from), size});
+        } catch (const Error& e) {
+            failure = e;
+        }
+        end = std::max(end, offset + int64_t(size));
+        return failure ? 0 : size;
+    }
+    size_t size() const override { return size_t(end); }
+
+    AtomicFile file;
+    std::optional<Error> failure;
+
+  private:
+    int64_t end = 0;
+};
+
+// Writes a file through `write(output)`. The path is for messages.
+template <typename Write>
+void WriteThrough(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
+                  OIIO::Filesystem::IOProxy* proxy, const Write& write) {
+    auto output = OIIO::ImageOutput::create(format);
+    if (!output) FailToWrite(path, OIIO::geterror());
+    if (!output->set_ioproxy(proxy) || !output->open(path, spec) || !write(output.get()) ||
+        !output->close())
+        FailToWrite(path, output->geterror());
+}
+
 template <typename Write>
 std::vector<std::byte> Encode(const std::string& path, const char* format,
                               const OIIO::ImageSpec& spec, const Write& write) {
     OIIO::Filesystem::IOVecOutput bytes;
-    auto output = OIIO::ImageOutput::create(format);
-    if (!output) FailToWrite(path, OIIO::geterror());
-    if (!output->set_ioproxy(&bytes) || !output->open(path, spec) || !write(output.get()) ||
-        !output->close())
-        FailToWrite(path, output->geterror());
-    output.reset();
+    WriteThrough(path, format, spec, &bytes, write);
     const auto encoded = std::as_bytes(std::span(bytes.buffer()));
     return {encoded.begin(), encoded.end()};
+}
+
+template <typename Write>
+void WriteFile(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
+               const Write& write) {
+    FileProxy proxy(path);
+    try {
+        WriteThrough(path, format, spec, &proxy, write);
+    } catch (const Error&) {
+        if (!proxy.failure) throw;
+    }
+    if (proxy.failure) throw *proxy.failure;
+    proxy.file.Commit();
+}
+
+// Writes rows a strip at a time; EXR compresses 16 rows together, and several such on all threads.
+constexpr int kStrip = 64;
+
+template <typename T, typename Fill>
+bool WriteRows(OIIO::ImageOutput* output, OIIO::TypeDesc type, const Fill& fill) {
+    const OIIO::ImageSpec& spec = output->spec();
+    const size_t row = size_t(spec.width) * size_t(spec.nchannels);
+    std::vector<T> strip(row * size_t(std::min(kStrip, spec.height)));
+    for (int y = 0; y < spec.height; y += kStrip) {
+        const int end = std::min(y + kStrip, spec.height);
+        for (int k = y; k < end; ++k) fill(k, std::span(strip).subspan(row * size_t(k - y), row));
+        if (!output->write_scanlines(spec.y + y, spec.y + end, spec.z, type, strip.data()))
+            return false;
+    }
+    return true;
+}
+
+template <typename T>
+OIIO::ImageSpec PngSpec(int width, int height) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::BaseTypeFromC<T>::value);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return spec;
 }
 
 // Returns the component as an integer of all bits of T.
@@ -117,29 +190,44 @@ T EncodeSrgb(float linear) {
     return T(std::min(v, most));
 }
 
+// Returns what writes linear RGB as a PNG.
 template <typename T>
-std::vector<std::byte> EncodePng(const std::string& path, OIIO::ImageSpec spec,
-                                 std::span<const T> components) {
-    if (components.size() != size_t(spec.width) * size_t(spec.height) * 3)
-        FailToWrite(path, "the pixels do not fit the size");
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    return Encode(path, "png", spec, [&](OIIO::ImageOutput* output) {
-        return output->write_image(spec.format, components.data());
-    });
+auto PngWriter(const RowSource& rows, ToneMap toneMap) {
+    return [&rows, toneMap](OIIO::ImageOutput* output) {
+        std::vector<float> linear(size_t(output->spec().width) * 3);
+        return WriteRows<T>(output, output->spec().format, [&](int y, std::span<T> row) {
+            rows(y, linear);
+            if (toneMap == ToneMap::Filmic)
+                std::ranges::transform(linear, linear.begin(), FilmicToneMap);
+            std::ranges::transform(linear, row.begin(), EncodeSrgb<T>);
+        });
+    };
 }
 
 template <typename T>
-std::vector<std::byte> EncodePng(const std::string& path, std::span<const Rgb> pixels, int width,
-                                 int height, const PngFormat& format) {
-    std::vector<T> components;
-    components.reserve(pixels.size() * 3);
-    for (const Rgb& p : pixels)
-        for (const float c : p)
-            components.push_back(
-                EncodeSrgb<T>(format.toneMap == ToneMap::Filmic ? FilmicToneMap(c) : c));
-    OIIO::ImageSpec spec(width, height, 3, OIIO::BaseTypeFromC<T>::value);
+void WritePng(const std::string& path, const RowSource& rows, int width, int height,
+              const PngFormat& format) {
+    OIIO::ImageSpec spec = PngSpec<T>(width, height);
     for (const auto& [name, value] : format.text) spec.attribute(name, value);
-    return EncodePng<T>(path, spec, components);
+    WriteFile(path, "png", spec, PngWriter<T>(rows, format.toneMap));
+}
+
+auto PngWriter(std::span<const uint8_t> srgb) {
+    return [srgb](OIIO::ImageOutput* output) {
+        return output->write_image(OIIO::TypeDesc::UINT8, srgb.data());
+    };
+}
+
+void CheckFits(const std::string& path, size_t values, int width, int height) {
+    if (values != size_t(width) * size_t(height) * 3)
+        FailToWrite(path, "the pixels do not fit the size");
+}
+
+RowSource RowsOf(std::span<const Rgb> pixels, int width) {
+    return [=](int y, std::span<float> row) {
+        for (size_t i = 0; i < row.size(); ++i)
+            row[i] = pixels[size_t(y) * size_t(width) + i / 3][int(i % 3)];
+    };
 }
 
 void SetAttribute(OIIO::ImageSpec* spec, const std::string& name, const ExrAttribute& value) {
@@ -206,8 +294,19 @@ const ExrChannel* ExrImage::Find(const std::string& name) const {
 
 void WriteExr(const std::string& path, const ExrImage& image) {
     const size_t pixels = size_t(image.width) * size_t(image.height);
-    const size_t count = image.channels.size();
-    OIIO::ImageSpec spec(image.width, image.height, int(count), OIIO::TypeDesc::FLOAT);
+    for (const ExrChannel& c : image.channels)
+        if (c.values.size() != pixels)
+            FailToWrite(path, fmt::format("channel {} does not fit the size", c.name));
+    WriteExr(path, image, [&](int y, std::span<float> row) {
+        const size_t count = image.channels.size();
+        for (size_t i = 0; i < row.size(); ++i)
+            row[i] = image.channels[i % count].values[size_t(y) * size_t(image.width) + i / count];
+    });
+}
+
+void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows) {
+    OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()),
+                         OIIO::TypeDesc::FLOAT);
     spec.x = image.origin.x();
     spec.y = image.origin.y();
     const bool hasDisplay = image.displaySize.x() > 0 && image.displaySize.y() > 0;
@@ -217,21 +316,14 @@ void WriteExr(const std::string& path, const ExrImage& image) {
     spec.full_height = hasDisplay ? image.displaySize.y() : image.height;
     spec.channelnames.clear();
     for (const ExrChannel& c : image.channels) {
-        if (c.values.size() != pixels)
-            FailToWrite(path, fmt::format("channel {} does not fit the size", c.name));
         spec.channelnames.push_back(c.name);
         spec.channelformats.push_back(c.isHalf ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
     }
     spec.attribute("compression", "zip");
     for (const auto& [name, value] : image.attributes) SetAttribute(&spec, name, value);
-
-    std::vector<float> interleaved(pixels * count);
-    for (size_t c = 0; c < count; ++c)
-        for (size_t i = 0; i < pixels; ++i)
-            interleaved[i * count + c] = image.channels[c].values[i];
-    WriteFileAtomically(path, Encode(path, "openexr", spec, [&](OIIO::ImageOutput* output) {
-                            return output->write_image(OIIO::TypeDesc::FLOAT, interleaved.data());
-                        }));
+    WriteFile(path, "openexr", spec, [&](OIIO::ImageOutput* output) {
+        return WriteRows<float>(output, OIIO::TypeDesc::FLOAT, rows);
+    });
 }
 
 ExrImage ReadExr(const std::string& path) {
@@ -259,26 +351,49 @@ ExrImage ReadExr(const std::string& path) {
     return image;
 }
 
+uint8_t Encode8Bit(float linear) { return EncodeSrgb<uint8_t>(linear); }
+
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height) {
-    return EncodePng<uint8_t>("picture in memory", pixels, width, height, {});
+    const char* name = "picture in memory";
+    CheckFits(name, pixels.size() * 3, width, height);
+    return Encode(name, "png", PngSpec<uint8_t>(width, height),
+                  PngWriter<uint8_t>(RowsOf(pixels, width), ToneMap::None));
 }
 
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height) {
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    const char* name = "picture in memory";
+    CheckFits(name, srgb.size(), width, height);
+    OIIO::ImageSpec spec = PngSpec<uint8_t>(width, height);
     spec.attribute("png:compressionLevel", 9);
     spec.attribute("png:filter", 0xf8);  // libpng's PNG_ALL_FILTERS
-    return EncodePng<uint8_t>("picture in memory", spec, srgb);
+    return Encode(name, "png", spec, PngWriter(srgb));
 }
 
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {
-    WritePng(path, pixels, width, height, {});
+    WritePng(path, pixels, width, height, PngFormat());
 }
 
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format) {
-    WriteFileAtomically(path, format.bits == 16
-                                  ? EncodePng<uint16_t>(path, pixels, width, height, format)
-                                  : EncodePng<uint8_t>(path, pixels, width, height, format));
+    CheckFits(path, pixels.size() * 3, width, height);
+    WritePng(path, RowsOf(pixels, width), width, height, format);
+}
+
+void WritePng(const std::string& path, const RowSource& rows, int width, int height) {
+    WritePng(path, rows, width, height, PngFormat());
+}
+
+void WritePng(const std::string& path, const RowSource& rows, int width, int height,
+              const PngFormat& format) {
+    if (format.bits == 16)
+        WritePng<uint16_t>(path, rows, width, height, format);
+    else
+        WritePng<uint8_t>(path, rows, width, height, format);
+}
+
+void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height) {
+    CheckFits(path, srgb.size(), width, height);
+    WriteFile(path, "png", PngSpec<uint8_t>(width, height), PngWriter(srgb));
 }
 
 }  // namespace lull

@@ -1,6 +1,7 @@
 // Reads and writes image files. All names of OpenImageIO are in image_io.cpp.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -49,6 +50,12 @@ struct ExrImage {
 // Throws Error with the path and the reason.
 void WriteExr(const std::string& path, const ExrImage& image);
 
+// Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
+using RowSource = std::function<void(int y, std::span<float> values)>;
+
+// Writes the same where the channels of `image` have no values: they come row by row, from the top.
+void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
+
 // Reads an EXR with all its channels and those attributes that ExrAttribute can hold. Throws
 // Error as ReadImage does.
 ExrImage ReadExr(const std::string& path);
@@ -61,7 +68,13 @@ std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int hei
 // Error.
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
 
-// Writes such a PNG, whole or not at all; throws Error.
+// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
+// sRGB. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
+void WritePng(const std::string& path, const RowSource& rows, int width, int height);
+void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height);
+
+// Returns what an 8-bit display is sent for a linear value; NaN is black.
+uint8_t Encode8Bit(float linear);
 
 }  // namespace lull

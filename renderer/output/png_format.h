@@ -13,9 +13,11 @@ struct PngFormat {
     std::map<std::string, std::string> text = {};  // for the header: names of letters, and values
 };
 
-// Writes a PNG of sRGB in this format, whole or not at all: as WritePng() does otherwise. Throws
+// Write PNGs of sRGB in this format, whole or not at all: as WritePng() does otherwise. Throw
 // Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
+              const PngFormat& format);
+void WritePng(const std::string& path, const RowSource& rows, int width, int height,
               const PngFormat& format);
 
 }  // namespace lull

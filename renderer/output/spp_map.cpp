@@ -3,6 +3,7 @@
 #include <string>
 
 #include "renderer/base/color.h"
+#include "renderer/output/image_io.h"
 
 namespace lull {
 
@@ -22,14 +23,16 @@ int TextWidth(const std::string& number, int dot) {
 class Canvas {
   public:
     Canvas(int width, int height)
-        : map{width, height, std::vector<Rgb>(size_t(width) * size_t(height), Rgb(1, 1, 1))} {}
+        : map{width, height, std::vector<uint8_t>(size_t(width) * size_t(height) * 3, 255)} {}
 
     void Fill(const PixelRect& rect, const Rgb& srgb) {
-        const Rgb linear = srgb.unaryExpr([](float v) { return LinearFromSrgb(v); });
+        std::array<uint8_t, 3> color;
+        for (int c = 0; c < 3; ++c) color[size_t(c)] = Encode8Bit(LinearFromSrgb(srgb[c]));
         const PixelRect r{rect.min.cwiseMax(0), rect.max.cwiseMin(Vec2i(map.width, map.height))};
         for (int y = r.min.y(); y < r.max.y(); ++y)
             for (int x = r.min.x(); x < r.max.x(); ++x)
-                map.pixels[size_t(y) * size_t(map.width) + size_t(x)] = linear;
+                std::copy_n(color.begin(), 3,
+                            &map.srgb[3 * (size_t(y) * size_t(map.width) + size_t(x))]);
     }
 
     // Draws with the upper left corner at `at`, each dot `dot` pixels wide.

@@ -14,7 +14,7 @@ struct SppBlock {
 
 struct SppMap {
     int width = 0, height = 0;
-    std::vector<Rgb> pixels;  // linear; row-major
+    std::vector<uint8_t> srgb;  // R, G, B a pixel; row-major
 };
 
 // Returns the colour for t in [0, 1] (clamped) on a scale from dark blue to yellow that is

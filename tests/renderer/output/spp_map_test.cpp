@@ -24,7 +24,15 @@ TEST(Viridis, IsClampedBeyondItsEnds) {
     EXPECT_TRUE((Viridis(7) == Viridis(1)).all());
 }
 
-Rgb At(const SppMap& map, int x, int y) { return map.pixels[size_t(y) * map.width + x]; }
+// Returns sRGB values in [0, 1].
+Rgb At(const SppMap& map, int x, int y) {
+    const uint8_t* pixel = &map.srgb[3 * (size_t(y) * size_t(map.width) + size_t(x))];
+    return Rgb(pixel[0], pixel[1], pixel[2]) / 255;
+}
+
+bool Shows(const SppMap& map, int x, int y, const Rgb& color) {
+    return ((At(map, x, y) - color).abs() < 0.6f / 255).all();
+}
 
 TEST(DrawSppMap, ColoursBlocksByTheLogarithmOfTheirSpp) {
     const std::vector<SppBlock> blocks = {{{{100, 50}, {300, 250}}, 20},
@@ -32,16 +40,13 @@ TEST(DrawSppMap, ColoursBlocksByTheLogarithmOfTheirSpp) {
     const SppMap map = DrawSppMap({{100, 50}, {500, 250}}, blocks, 20, 10000);
     EXPECT_EQ(map.width, 400);
     EXPECT_GT(map.height, 200);
-    auto linear = [](const Rgb& c) {
-        return c.unaryExpr([](float v) { return LinearFromSrgb(v); });
-    };
-    EXPECT_TRUE(At(map, 5, 5).isApprox(linear(Viridis(0))));
-    EXPECT_TRUE(At(map, 205, 5).isApprox(linear(Viridis(1))));
+    EXPECT_TRUE(Shows(map, 5, 5, Viridis(0)));
+    EXPECT_TRUE(Shows(map, 205, 5, Viridis(1)));
     // The line between the blocks is darker than both.
     EXPECT_LT(Luminance(At(map, 199, 5)), Luminance(At(map, 5, 5)));
     // The bar below runs from one end of the scale to the other.
-    EXPECT_TRUE(At(map, 0, 210).isApprox(linear(Viridis(0))));
-    EXPECT_TRUE(At(map, 399, 210).isApprox(linear(Viridis(1))));
+    EXPECT_TRUE(Shows(map, 0, 210, Viridis(0)));
+    EXPECT_TRUE(Shows(map, 399, 210, Viridis(1)));
 }
 
 TEST(DrawSppMap, HoldsAnySize) {
@@ -50,7 +55,7 @@ TEST(DrawSppMap, HoldsAnySize) {
             const PixelRect region{{0, 0}, size};
             const std::vector<SppBlock> blocks = {{region, highest}};
             const SppMap map = DrawSppMap(region, blocks, 1, highest);
-            EXPECT_EQ(map.pixels.size(), size_t(map.width) * size_t(map.height));
+            EXPECT_EQ(map.srgb.size(), size_t(map.width) * size_t(map.height) * 3);
             EXPECT_EQ(map.width, size.x());
             EXPECT_GT(map.height, size.y());
         }
