@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
+#include "renderer/commands/half_buffer.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
@@ -24,6 +26,7 @@ struct Options {
     RenderSettings render;
     ClockOptions clock;
     GuideOptions guide;
+    HalfBuffer halfBuffer = HalfBuffer::Auto;
     std::string output, report;  // empty: as the scene says; none
     std::string rule = defaultRule;
     int spp = 0;  // 0: as the rule says
@@ -90,6 +93,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddPictureOptions(app, &o->pictures);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
+    AddHalfBufferOption(app, &o->halfBuffer);
     app.footer(kFooter);
 }
 
@@ -132,6 +136,15 @@ void PrintSummary(const RenderResult& result, const Film& film, int cap) {
                    rejected);
 }
 
+// Says how much ranks of different speed had to do in the end.
+void PrintShares(const std::vector<double>& shares) {
+    const auto [least, most] = std::ranges::minmax(shares);
+    if (most - least < 0.01) return;
+    fmt::print(stderr, "shares of the ranks at the end, in percent:");
+    for (const double share : shares) fmt::print(stderr, " {:.0f}", 100 * share);
+    fmt::print(stderr, "\n");
+}
+
 // Says what was missing when the time was up.
 void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
@@ -159,12 +172,6 @@ void PrintFiles(const RenderFiles& files, const RenderResult& result) {
     if (!files.report.empty()) fmt::print("{}\n", files.report);
 }
 
-std::string TextOf(const RenderIdentity& identity) {
-    std::string text;
-    for (const auto& [key, value] : identity) text += key + "=" + value + "\n";
-    return text;
-}
-
 bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
 
 // Makes the criteria; for a page, they also keep the curves of each block.
@@ -189,6 +196,14 @@ std::function<void(std::span<const std::byte>)> KeepsLearning(const CheckpointOp
     };
 }
 
+HalfUse UseOfHalf(const Options& options, const CriterionFactory& factory, bool withCurves) {
+    const RenderSettings& settings = options.render;
+    return {.rule = LooksAtHalf(factory, settings.schedule) ? factory.rule : "",
+            .clock = !options.clock.Text().empty(),
+            .page = withCurves,
+            .checkpoint = !settings.checkpoint.file.empty()};
+}
+
 ExitCode RunRender(Options options, Job* job) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
     RenderSettings& settings = options.render;
@@ -196,10 +211,16 @@ ExitCode RunRender(Options options, Job* job) {
     const std::function<double()> clock = StartClock(options.clock);
 
     // Check all that can be wrong before the work begins.
-    SceneInput input(settings.scene);
+    const TileGrid grid = GridOf(settings.schedule);
+    SceneInput input(settings.scene, {.grid = grid, .withHalf = false});
     const PixelRect& region = input.region;
     const CriterionFactory factory = ReadRule(options, region, &settings);
     CheckBlocks(region, settings.schedule, input.warnings);
+    const bool withCurves = IsHtml(options.report);
+    const FilmOptions filmOptions{
+        .grid = grid,
+        .withHalf = KeepsHalf(options.halfBuffer, UseOfHalf(options, factory, withCurves))};
+    CheckFilmFits(region, filmOptions);
     const RenderFiles files =
         NameFiles(options.output.empty() ? input.film.filename : options.output, options.report,
                   !factory.logRatios.empty());
@@ -223,14 +244,13 @@ ExitCode RunRender(Options options, Job* job) {
     provenance.logRatios = factory.logRatios;
     provenance.guide = options.guide.mode;
     provenance.guideMegabytes = options.guide.megabytes;
-    const bool withCurves = IsHtml(options.report);
     RenderIdentity identity;
     if (!settings.checkpoint.file.empty() || job->Count() > 1) {
         identity = IdentityOf(provenance, SceneHash(input.description));
         identity["curves"] = withCurves ? "yes" : "no";
         if (aovs) identity["aov"] = TextOf(options.aovs);
     }
-    Film film(region);
+    Film film(region, filmOptions);
     std::optional<RenderState> interrupted;
     std::vector<std::byte> guide;  // what was learned, for checkpoints
     if (leads) interrupted = Resume(settings.checkpoint, identity, &film, &guide, aovs);
@@ -265,8 +285,8 @@ ExitCode RunRender(Options options, Job* job) {
         };
     if (display && interrupted) display->Show(region, film);
     WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide, aovs);
-    renderOptions.peers = job->ThePeers();
-    job->Begin(TextOf(identity));
+    ShareAmongRanks(job, &renderOptions);
+    job->Begin(TextOf(identity) + (film.HasHalf() ? "half" : ""));
     const SampleSource source = learning->figures.isUsed ? SamplesOf(*scene, learning->guide)
                                                          : SamplesOf(*scene, settings.estimator);
     const RenderResult result =
@@ -278,8 +298,10 @@ ExitCode RunRender(Options options, Job* job) {
     if (!leads) return kDone;
     printer.Finish(result.progress);
     if (display) display->Show(region, film);  // some may have been undone
+    film.DropHalf();                           // what follows needs the memory
 
     if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
+    if (!settings.quiet && !result.shares.empty()) PrintShares(result.shares);
     if (!settings.quiet && result.timeUp) PrintShortfall(provenance, result);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 

@@ -1,6 +1,7 @@
 #include "renderer/commands/render_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
+#include "renderer/ranks/job.h"
 
 namespace lull {
 
@@ -123,6 +125,22 @@ RenderOptions MakeRenderOptions(const RenderSettings& settings, SamplerKind samp
     options.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
     options.isCancelled = Interrupted;
     return options;
+}
+
+void ShareAmongRanks(Job* job, RenderOptions* options) {
+    options->peers = job->ThePeers();
+    options->onSilence = [job](const std::vector<int>& ranks) {
+        job->Warn(
+            fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
+                        "last checkpoint, with any number of ranks",
+                        fmt::join(ranks, ", ")));
+    };
+}
+
+std::string TextOf(const RenderIdentity& identity) {
+    std::string text;
+    for (const auto& [key, value] : identity) text += key + "=" + value + "\n";
+    return text;
 }
 
 ProgressPrinter MakePrinter(const RenderSettings& settings, bool adaptive) {

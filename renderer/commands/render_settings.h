@@ -50,6 +50,14 @@ Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSetting
 // The printer must outlive it.
 RenderOptions MakeRenderOptions(const RenderSettings&, SamplerKind, ProgressPrinter*);
 
+class Job;
+
+// Lets all ranks share a render, of which a warning says so if one does not answer.
+void ShareAmongRanks(Job*, RenderOptions*);
+
+// Returns all that ranks have to agree on, for Job::Begin().
+std::string TextOf(const RenderIdentity&);
+
 // Makes what shows the progress on stderr; `adaptive` says whether blocks stop by themselves.
 ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
 

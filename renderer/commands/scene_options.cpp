@@ -140,16 +140,18 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     return description;
 }
 
-SceneInput::SceneInput(const SceneOptions& options)
+void CheckFilmFits(const PixelRect& region, const FilmOptions& options) {
+    CheckMemory(Film::Bytes(region, options),
+                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
+                "render it in parts with --crop, or smaller with --resolution");
+}
+
+SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions)
     : warnings(MakePrintedWarnings()),
       description(LoadDescription(options, warnings)),
       film(SilentFilmSettings(description, options)),
       region{film.cropMin, film.cropMax} {
-    // The sums, and at the end the means and counts as they are written.
-    constexpr int64_t kBytes = sizeof(FilmPixel) + 2 * 4 * sizeof(float) + 3;
-    CheckMemory(region.Area() * kBytes,
-                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
-                "render it in parts with --crop, or smaller with --resolution");
+    CheckFilmFits(region, filmOptions);
 }
 
 }  // namespace lull

@@ -29,11 +29,14 @@ Warnings MakePrintedWarnings();
 // Reads the scene's file. Throws Error.
 Description LoadDescription(const SceneOptions&, Warnings&);
 
+// Throws Error if the memory cannot hold such a film.
+void CheckFilmFits(const PixelRect& region, const FilmOptions&);
+
 // Holds a scene that has been read, and its film as the options change it, before it is compiled,
 // which will give the film's warnings.
 struct SceneInput {
     // Throws Error, also if the memory cannot hold such a film.
-    explicit SceneInput(const SceneOptions&);
+    explicit SceneInput(const SceneOptions&, const FilmOptions& = {});
 
     Warnings warnings;  // printed as they occur
     Description description;

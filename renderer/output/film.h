@@ -57,22 +57,39 @@ struct FilmView {
     std::vector<float> mean, halfMean;
 };
 
-// Holds the pixels of the crop window, addressed by their place in the full image. Different
-// pixels can be changed by different threads at the same time.
+// Says how a region is cut, from its upper left corner: into blocks, and these into tiles. The
+// pixels of a tile are given the same samples.
+struct TileGrid {
+    int blockSize = 1, tileSize = 1;  // pixels a side, > 0
+};
+
+struct FilmOptions {
+    TileGrid grid = {};    // by default every pixel is a tile of its own
+    bool withHalf = true;  // keeps the sums of the half; false: they are zero, and never asked for
+};
+
+// Holds the pixels of the crop window, addressed by their place in the full image: 24 bytes a
+// pixel, 24 more with the half, and 8 a tile. Different tiles can be changed by different threads
+// at the same time.
 class Film {
   public:
-    explicit Film(const PixelRect& region)
-        : region(region), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+    explicit Film(const PixelRect& region, const FilmOptions& options = {});
+    // Returns what such a film takes, in bytes.
+    static int64_t Bytes(const PixelRect& region, const FilmOptions&);
 
     const PixelRect& Region() const { return region; }
-    FilmPixel& At(const Vec2i& p) { return pixels[Index(p)]; }
-    const FilmPixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
-    // Returns all pixels, row-major; with Region() the whole state of the film.
-    std::span<const FilmPixel> Pixels() const { return pixels; }
-    std::span<FilmPixel> Pixels() { return pixels; }
+    bool HasHalf() const { return hasHalf; }
+    // Forgets the sums of the half.
+    void DropHalf();
+
+    // Return and set a pixel. The tile's samples are those of its last pixel, row by row, so that
+    // the pixels of a tile are set in this order, and all of them. Rejected samples are known by
+    // tile: At() has them at its last pixel, and Set() adds those of other pixels.
+    FilmPixel At(const Vec2i& p) const;
+    void Set(const Vec2i& p, const FilmPixel&);
 
     // Fills `view` with the means of `rect`, which lies inside Region(); `halfMean` is left empty
-    // where it is not wanted.
+    // where it is not wanted. Throws std::logic_error where it is and the film has no half.
     void Extract(const PixelRect& rect, bool withHalf, FilmView* view) const;
 
     // Return the whole image (row-major RGB) and the samples each pixel had.
@@ -82,13 +99,33 @@ class Film {
     int64_t RejectedCount() const;
 
   private:
+    struct Tile {
+        uint32_t count = 0, rejected = 0;
+    };
+    // Says which of the tiles along an axis a place is in, and whether it is the last there.
+    struct Place {
+        uint32_t tile;
+        bool isLast;
+    };
+    static std::vector<Place> PlacesOf(int size, const TileGrid&);
+
+    // Calls visit(index, tile) for every pixel.
+    template <typename Visit>
+    void ForEachPixel(Visit) const;
     size_t Index(const Vec2i& p) const {
         return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
                size_t(p.x() - region.min.x());
     }
+    size_t TileIndex(const Place& column, const Place& row) const {
+        return size_t(row.tile) * tilesInRow + column.tile;
+    }
 
     PixelRect region;
-    std::vector<FilmPixel> pixels;
+    bool hasHalf;
+    std::vector<Place> columns, rows;
+    size_t tilesInRow;
+    std::vector<Tile> tiles;
+    std::vector<std::array<double, 3>> sums, halfSums;
 };
 
 }  // namespace lull

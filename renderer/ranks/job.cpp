@@ -80,6 +80,11 @@ void Job::Begin(const std::string& what) {
                     all.different));
 }
 
+void Job::Warn(const std::string& message) const {
+    const std::string line = "lull: warning: " + message + "\n";
+    if (write(errorOutput, line.data(), line.size()) < 0) return;
+}
+
 void Job::Fail(const std::string& message) {
     const bool isFirst = count == 1 || phase != Phase::Before || AgreeByMpi(true, 0).failed == rank;
     if (isFirst) {

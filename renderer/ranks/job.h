@@ -27,8 +27,10 @@ class Job {
     // Waits until all ranks are ready to begin and checks that all are about to render the same,
     // of which `what` is a text that says it all. Throws Error, or OtherRankFailed.
     void Begin(const std::string& what);
-    // Says that the others are not needed any longer.
+    // Says that the others are not needed, until the next Begin().
     void End() { phase = Phase::After; }
+    // Prints a warning, whatever the rank.
+    void Warn(const std::string& message) const;
     // Prints an error, once for all ranks, and ends them all if others would wait for this one.
     void Fail(const std::string& message);
 

@@ -1,7 +1,10 @@
 #include "renderer/ranks/mpi_calls.h"
 
+#include <algorithm>
+#include <chrono>
 #include <climits>
 #include <list>
+#include <thread>
 
 #include "renderer/base/error.h"
 
@@ -18,6 +21,16 @@ const bool hasMpi = true;
 namespace {
 
 constexpr int tag = 0x6c;
+
+// Waits without taking a core from ranks that still load the scene, or write files.
+void WaitFor(MPI_Request request) {
+    constexpr std::chrono::microseconds longest{10000};
+    std::chrono::microseconds nap{50};
+    for (int done = 0; !done; nap = std::min(2 * nap, longest)) {
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+        if (!done) std::this_thread::sleep_for(nap);
+    }
+}
 
 // What is sent stays here until it has left.
 class MpiPeers final : public Peers {
@@ -61,7 +74,7 @@ class MpiPeers final : public Peers {
     }
 
     void Flush() override {
-        for (Sent& entry : sent) MPI_Wait(&entry.request, MPI_STATUS_IGNORE);
+        for (Sent& entry : sent) WaitFor(entry.request);
         sent.clear();
     }
 
@@ -101,17 +114,24 @@ void EndMpi() {
     int started = 0, ended = 0;
     MPI_Initialized(&started);
     MPI_Finalized(&ended);
-    if (started && !ended) MPI_Finalize();
+    if (!started || ended) return;
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);  // rank 0 may be writing files for long
+    WaitFor(request);
+    MPI_Finalize();
 }
 
 MpiAgreement AgreeByMpi(bool failed, uint64_t value) {
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     uint64_t first = value;
-    MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
+    WaitFor(request);
     const int mine[2] = {failed ? rank : INT_MAX, value != first ? rank : INT_MAX};
     int all[2] = {};
-    MPI_Allreduce(mine, all, 2, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MIN, MPI_COMM_WORLD, &request);
+    WaitFor(request);
     return {all[0] == INT_MAX ? -1 : all[0], all[1] == INT_MAX ? -1 : all[1]};
 }
 

@@ -60,44 +60,58 @@ BlockResult UnpackBooks(std::span<const std::byte> bytes) {
     return result;
 }
 
-// Calls visit(pixel) for the pixels of a rectangle, row by row.
-template <typename Film, typename Visit>
-void ForEachPixel(Film& film, const PixelRect& rect, Visit visit) {
+// Calls visit(place) for the pixels of a rectangle, row by row.
+template <typename Visit>
+void ForEachPixel(const PixelRect& rect, Visit visit) {
     for (int y = rect.min.y(); y < rect.max.y(); ++y)
-        for (int x = rect.min.x(); x < rect.max.x(); ++x) visit(film.At({x, y}));
+        for (int x = rect.min.x(); x < rect.max.x(); ++x) visit(Vec2i(x, y));
 }
 
 void WritePixels(Hdf5Group& group, const PixelRect& rect, const Film& film) {
     std::vector<double> sums, halfSums;
     std::vector<int32_t> counts, rejected;
-    ForEachPixel(film, rect, [&](const FilmPixel& pixel) {
+    ForEachPixel(rect, [&](const Vec2i& p) {
+        const FilmPixel pixel = film.At(p);
         sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
-        halfSums.insert(halfSums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
+        if (film.HasHalf())
+            halfSums.insert(halfSums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
         counts.push_back(int32_t(pixel.count));
         rejected.push_back(int32_t(pixel.rejected));
     });
     const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
     group.AddArray<double>("sum", shape, sums);
-    group.AddArray<double>("half_sum", shape, halfSums);
+    if (film.HasHalf()) group.AddArray<double>("half_sum", shape, halfSums);
     group.AddArray<int32_t>("count", std::span(shape).first(2), counts);
     group.AddArray<int32_t>("rejected", std::span(shape).first(2), rejected);
 }
 
 void ReadPixels(const Hdf5Group& group, const PixelRect& rect, Film* film) {
     const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
+    if (film->HasHalf() && !group.HasArray("half_sum"))
+        throw Error(
+            "it was written without the sums of the half of the samples, which are needed here; "
+            "begin anew, with --half-buffer on");
     const auto sums = group.Array<double>("sum", shape);
-    const auto halfSums = group.Array<double>("half_sum", shape);
+    const auto halfSums =
+        film->HasHalf() ? group.Array<double>("half_sum", shape) : std::vector<double>();
     const auto counts = group.Array<int32_t>("count", std::span(shape).first(2));
     const auto rejected = group.Array<int32_t>("rejected", std::span(shape).first(2));
     size_t i = 0;
-    ForEachPixel(*film, rect, [&](FilmPixel& pixel) {
+    ForEachPixel(rect, [&](const Vec2i& p) {
+        FilmPixel pixel;
         std::copy_n(&sums[3 * i], 3, pixel.sum.begin());
-        std::copy_n(&halfSums[3 * i], 3, pixel.halfSum.begin());
+        if (film->HasHalf()) std::copy_n(&halfSums[3 * i], 3, pixel.halfSum.begin());
         if (counts[i] < 0 || rejected[i] < 0 || rejected[i] > counts[i])
             throw Error("it has impossible counts of samples");
         pixel.count = uint32_t(counts[i]);
         pixel.rejected = uint32_t(rejected[i]);
+        film->Set(p, pixel);
         ++i;
+    });
+    i = 0;
+    ForEachPixel(rect, [&](const Vec2i& p) {
+        if (film->At(p).count != uint32_t(counts[i++]))
+            throw Error("the pixels of a tile have different counts of samples");
     });
 }
 
@@ -107,7 +121,8 @@ void WriteAovs(Hdf5Group& group, const PixelRect& rect, const AovFilm& aovs) {
     std::vector<double> sums;
     std::vector<float> nearest;
     std::vector<int32_t> numbers;
-    ForEachPixel(aovs, rect, [&](const AovPixel& pixel) {
+    ForEachPixel(rect, [&](const Vec2i& p) {
+        const AovPixel& pixel = aovs.At(p);
         for (const auto& sum : {pixel.albedo, pixel.normal, pixel.position})
             sums.insert(sums.end(), sum.begin(), sum.end());
         sums.insert(sums.end(), {pixel.depth, pixel.squares});
@@ -128,7 +143,8 @@ void ReadAovs(const Hdf5Group& group, const PixelRect& rect, AovFilm* aovs) {
     const auto numbers =
         group.Array<int32_t>("aov_numbers", std::array<int64_t, 3>{shape[0], shape[1], 3});
     size_t i = 0;
-    ForEachPixel(*aovs, rect, [&](AovPixel& pixel) {
+    ForEachPixel(rect, [&](const Vec2i& p) {
+        AovPixel& pixel = aovs->At(p);
         const double* sum = &sums[kAovSums * i];
         for (auto* to : {&pixel.albedo, &pixel.normal, &pixel.position}) {
             std::copy_n(sum, 3, to->begin());
@@ -148,7 +164,7 @@ void ReadAovs(const Hdf5Group& group, const PixelRect& rect, AovFilm* aovs) {
 
 bool HasSamples(const Film& film, const PixelRect& rect) {
     bool any = false;
-    ForEachPixel(film, rect, [&](const FilmPixel& pixel) { any |= pixel.count > 0; });
+    ForEachPixel(rect, [&](const Vec2i& p) { any |= film.At(p).count > 0; });
     return any;
 }
 

@@ -34,7 +34,7 @@ int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
             }
-            film->At(pixel) = sums;
+            film->Set(pixel, sums);
         }
     return samples;
 }
@@ -58,9 +58,14 @@ double NoiseOf(const BlockView& view) {
 }  // namespace
 
 std::vector<BlockStart> StartsOf(const RenderState* interrupted, bool hasClock, const Film& film) {
+    if (!interrupted) return {};
+    return StartsOf(interrupted->blocks, hasClock, film);
+}
+
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, bool hasClock,
+                                 const Film& film) {
     std::vector<BlockStart> starts;
-    if (!interrupted) return starts;
-    for (const BlockResult& b : interrupted->blocks) {
+    for (const BlockResult& b : blocks) {
         const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
         BlockStart start{
             .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
@@ -88,10 +93,10 @@ Executor::Executor(const SampleSource& source, const RenderOptions& options, Fil
     : source(source),
       options(options),
       film(film),
-      share(share),
+      share(std::move(share)),
       secondsBefore(interrupted ? interrupted->seconds : 0),
       hasClock(options.secondsLeft),
-      schedule(film->Region(), ScheduleFor(options), starts, share),
+      schedule(film->Region(), ScheduleFor(options), starts, this->share),
       results(interrupted ? interrupted->blocks
                           : std::vector<BlockResult>(schedule.Blocks().size())),
       criteria(MakeCriteria(interrupted)),
@@ -152,10 +157,11 @@ void Executor::RunTile() {
 }
 
 void Executor::RunTile(const Tile& tile) {
-    const double tileStart = ThreadSeconds();
+    const double tileStart = ThreadSeconds(), wallStart = Seconds();
     const int64_t taken = TakeSamples(tile);
     if (extras.display) extras.display->Show(tile.pixels, *film);
-    if (FinishTile(tile, taken, ThreadSeconds() - tileStart)) OnPassEnd(tile.block);
+    if (FinishTile(tile, ThreadSeconds() - tileStart, {taken, Seconds() - wallStart}))
+        OnPassEnd(tile.block);
     ReportProgress();
     if (options.onCheckpoint && Seconds() >= nextCheckpoint) pausing = true;
 }
@@ -170,6 +176,19 @@ int64_t Executor::TakeSamples(const Tile& tile) {
         return sample;
     };
     return RenderTile(withAovs, tile, sampler, film);
+}
+
+void Executor::Restart(std::span<const BlockStart> starts, TileShare newShare) {
+    std::lock_guard lock(mutex);
+    share = std::move(newShare);
+    schedule = Schedule(film->Region(), ScheduleFor(options), starts, share);
+    undo = {};
+    effort = {};
+}
+
+std::vector<BlockStart> Executor::Starts() {
+    NoteBlocks();
+    return StartsOf(results, hasClock, *film);
 }
 
 double Executor::Seconds() const {
@@ -218,10 +237,12 @@ void Executor::Undo() {
 }
 
 // Returns true if the tile was the last of its pass.
-bool Executor::FinishTile(const Tile& tile, int64_t taken, double seconds) {
+bool Executor::FinishTile(const Tile& tile, double seconds, const Effort& spent) {
     std::lock_guard lock(mutex);
     results[tile.block].seconds += seconds;
-    samples += taken;
+    samples += spent.samples;
+    effort.samples += spent.samples;
+    effort.seconds += spent.seconds;
     return schedule.Finish(tile);
 }
 

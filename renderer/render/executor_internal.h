@@ -42,6 +42,12 @@ class Executor {
     Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
              std::span<const BlockStart> starts, TileShare);
 
+    // Begins anew where blocks are now, with no task at work: passes under way are given out once
+    // more, of which pixels keep what they have.
+    void Restart(std::span<const BlockStart> starts, TileShare);
+    // Returns where blocks are, with no task at work.
+    std::vector<BlockStart> Starts();
+
     // What is different with several ranks: what follows on the last tile of a pass, what is known
     // of a block's pixels, what a decision leads to, and whether an exception is taken care of.
     virtual void OnPassEnd(int block) { Spawn(DecideBlock(block)); }
@@ -70,7 +76,7 @@ class Executor {
     const RenderOptions& options;
     RenderExtras extras = {};  // none on several ranks
     Film* film;
-    const TileShare share;
+    TileShare share;
     const Clock::time_point start = Clock::now();
     const double secondsBefore;         // of the runs before this one
     std::atomic<bool> pausing = false;  // takes no more tiles, for a checkpoint
@@ -78,7 +84,7 @@ class Executor {
     double nextCheckpoint = 0;
     const bool hasClock;
 
-    // Guards the schedule, `trends`, `samples`, the tiles' seconds in `results`, `undo`,
+    // Guards the schedule, `trends`, `samples`, the tiles' seconds in `results`, `undo`, `effort`,
     // `shownStops`.
     std::mutex mutex;
     Schedule schedule;
@@ -86,6 +92,12 @@ class Executor {
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     std::vector<StopTrend> trends;                     // of the blocks; empty: nothing is predicted
     int64_t samples;
+    // What tiles took here since it was last looked at; seconds as clocks have it.
+    struct Effort {
+        int64_t samples = 0;
+        double seconds = 0;
+    };
+    Effort effort;
     PassUndo undo;                 // for renders that have a clock
     bool timeCalled = false;       // it has run down
     std::vector<char> shownStops;  // blocks that the display knows to have stopped
@@ -110,7 +122,7 @@ class Executor {
     int64_t TakeSamples(const Tile&);
     void ShowStops();
     std::optional<Tile> TakeTile();
-    bool FinishTile(const Tile&, int64_t taken, double seconds);
+    bool FinishTile(const Tile&, double seconds, const Effort& spent);
     std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderState* interrupted) const;
     Judgement Judge(int block);
     BlockView ViewOf(int block, int spp);
@@ -121,6 +133,7 @@ class Executor {
 };
 
 // Says where blocks are that an interrupted render has left; with a clock, also how noisy.
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, bool hasClock, const Film&);
 std::vector<BlockStart> StartsOf(const RenderState* interrupted, bool hasClock, const Film&);
 
 }  // namespace lull

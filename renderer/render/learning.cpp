@@ -61,7 +61,9 @@ std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
             .cancelled)
         return {};
     double sum = 0;
-    for (const FilmPixel& pixel : film.Pixels()) sum += double(Luminance(pixel.Mean()));
+    const std::vector<float> means = film.MeanImage();
+    for (size_t i = 0; i < means.size(); i += 3)
+        sum += double(Luminance({means[i], means[i + 1], means[i + 2]}));
     return sum / double(std::max<int64_t>(1, region.Area()));
 }
 

@@ -6,18 +6,23 @@
 // image is the same bits for any number of ranks.
 //
 //     rank 0                                    rank r
-//       Start: where blocks are, their sums  ->   renders its tiles of a block's pass
+//       Start: where blocks are, who has     ->   renders its tiles of a block's pass
+//       which tiles, their sums; Begin
 //       asks the criterion when the parts    <-   Part: the means of its pixels
 //       of all ranks are there
 //       Answer: stop or go on                ->   begins the block's next pass
 //
-// No rank waits for another block. To write a checkpoint or to end, rank 0 says
+// No rank waits for another block. To write a checkpoint, to deal out the tiles anew, or to end,
+// rank 0 says
 //
 //       Pause                                ->   finishes the tiles under way
 //       (asks for blocks that are complete)  <-   Quiet
 //       Collect                              ->
 //       has all pixels, writes the files     <-   Pixels ..., Collected
-//       Resume, or End                       ->
+//       Resume, End, or Start                ->
+//
+// With Start, tiles go to where there is time: the sums of those that have another owner are sent
+// to it, and it adds to them as the one before would have.
 #pragma once
 
 #include <cstddef>

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <condition_variable>
+#include <set>
 
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/peers.h"
@@ -27,6 +28,8 @@ class RankExecutor : public Executor {
     RankExecutor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
                  std::span<const BlockStart> starts, tbb::task_arena*);
 
+    static constexpr double patienceWithRanks = 0.5;  // seconds to answer a Ping
+
     // Leaves a message to be sent. From any thread.
     void Post(int to, std::vector<std::byte> message);
     void PostToAll(const std::vector<std::byte>& message);
@@ -42,9 +45,18 @@ class RankExecutor : public Executor {
     void Quiesce();
 
     std::vector<PixelRect> TilesOfRank(int block, int rank) const;
+    // Returns those that another deal did not give it; all where that is empty.
+    std::vector<PixelRect> NewTilesOfRank(int block, int rank,
+                                          const std::vector<int>& before) const;
+    // Returns what the tiles here took since the last call, in samples and seconds a thread.
+    Effort TakeEffort();
+    // Asks whether the ranks are there, and tells options.onSilence of those that are not.
+    void AskForLife(const std::vector<int>& ranks);
+    void CheckLife();
     bool TakeException(std::exception_ptr) override;
 
     Peers& peers;
+    const int ranks;
     tbb::task_arena* arena;
 
   private:
@@ -54,7 +66,9 @@ class RankExecutor : public Executor {
     std::condition_variable changed;
     std::vector<std::pair<int, std::vector<std::byte>>> outbox;
     std::exception_ptr failure;
-    std::chrono::microseconds patience{0};
+    Clock::time_point lastMessage = Clock::now();
+    std::set<int> silent;    // have been asked, and have not answered
+    double silentSince = 0;  // seconds
 };
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.

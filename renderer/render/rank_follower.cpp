@@ -1,6 +1,4 @@
 // All ranks but the first: render their tiles, and do as they are told.
-#include <thread>
-
 #include "renderer/render/rank_executor_internal.h"
 
 namespace lull {
@@ -10,20 +8,18 @@ namespace {
 class Follower final : public RankExecutor {
   public:
     Follower(const SampleSource& source, const RenderOptions& options, Film* film,
-             const StartMessage& start, tbb::task_arena* arena)
-        : RankExecutor(source, options, film, nullptr, start.blocks, arena),
-          needs(start.needs),
-          touched(start.needs.size()) {
-        samples = 0;  // rank 0 knows of those before
+             tbb::task_arena* arena)
+        : RankExecutor(source, options, film, nullptr, {}, arena) {
+        pausing = true;  // until rank 0 has said where blocks are
     }
 
     RenderResult Follow() {
-        EnqueueTiles();
         bool told = false;
         while (!ended) {
             Exchange();
             if (told || !IsCancelled()) continue;
             Post(0, Pack(RankWord::Interrupted));
+            if (share.rank == 1) AskForLife({0});  // one is enough to say so
             told = true;
         }
         Quiesce();
@@ -37,6 +33,11 @@ class Follower final : public RankExecutor {
             needs.at(size_t(answer.block)) = answer.need;
             const int ready = Decide(answer.block, {answer.stop, answer.noise});
             if (!pausing) Enqueue([this, ready] { Spawn(ready); });
+        } else if (word == RankWord::Start) {
+            Begin(GetStart(reader));
+        } else if (word == RankWord::Pixels) {
+            const int block = GetBlock(reader, needs.size());
+            GetPixels(reader, NewTilesOfRank(block, share.rank, before), film);
         } else if (word == RankWord::TimeUp) {
             CallTime();
         } else if (word == RankWord::Pause) {
@@ -45,7 +46,7 @@ class Follower final : public RankExecutor {
         } else if (word == RankWord::Collect) {
             if (reader.Get<uint8_t>()) UndoPasses();
             SendPixels();
-        } else if (word == RankWord::Resume) {
+        } else if (word == RankWord::Resume || word == RankWord::Begin) {
             pausing = false;
             EnqueueTiles();
         } else if (word == RankWord::End) {
@@ -53,12 +54,24 @@ class Follower final : public RankExecutor {
         }
     }
 
+    // Goes on from where rank 0 says, as soon as the sums have come. It has those of all pixels.
+    void Begin(StartMessage start) {
+        if (start.blocks.size() != schedule.Blocks().size())
+            throw std::runtime_error("the ranks have different blocks");
+        before = begun ? share.deal : std::vector<int>();
+        begun = true;
+        Restart(start.blocks, {share.rank, std::move(start.deal)});
+        needs = std::move(start.needs);
+        touched.assign(needs.size(), false);
+    }
+
     void OnPassEnd(int block) override {
         const std::vector<PixelRect> tiles = TilesOfRank(block, share.rank);
-        PartMessage part{block, 0, 0, MeansOf(tiles, needs[size_t(block)], *film)};
+        const Effort taken = TakeEffort();
+        PartMessage part{block, taken.samples, 0, taken.seconds,
+                         MeansOf(tiles, needs[size_t(block)], *film)};
         {
             std::lock_guard lock(mutex);
-            part.samples = std::exchange(samples, 0);
             part.seconds = std::exchange(results[size_t(block)].seconds, 0);
         }
         touched[size_t(block)] = true;
@@ -83,16 +96,9 @@ class Follower final : public RankExecutor {
 
     std::vector<ViewNeed> needs;
     std::vector<char> touched;  // blocks that had a pass since their pixels were sent
-    bool ended = false;
+    std::vector<int> before;    // the deal before this one
+    bool begun = false, ended = false;
 };
-
-// Returns the next message, when it comes.
-PeerMessage WaitForMessage(Peers& peers) {
-    for (;;) {
-        if (std::optional<PeerMessage> message = peers.Receive()) return std::move(*message);
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-}
 
 }  // namespace
 
@@ -102,24 +108,7 @@ RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given,
     options.makeCriterion = nullptr;
     options.onProgress = nullptr;
     options.onCheckpoint = nullptr;
-    const std::vector<Block> blocks = MakeBlocks(film->Region(), options.schedule);
-    const TileShare share{options.peers->Rank(), options.peers->Count()};
-    StartMessage start;
-    for (;;) {
-        const PeerMessage message = WaitForMessage(*options.peers);
-        StateReader reader(message.bytes);
-        const RankWord word = reader.Get<RankWord>();
-        if (word == RankWord::Begin) break;
-        if (word == RankWord::Start) start = GetStart(reader);
-        if (word != RankWord::Pixels) continue;
-        const int block = GetBlock(reader, blocks.size());
-        GetPixels(reader,
-                  TilesOf(blocks[size_t(block)].pixels, block, options.schedule.tileSize, share),
-                  film);
-    }
-    if (start.blocks.size() != blocks.size())
-        throw std::runtime_error("the ranks have different blocks");
-    Follower follower(source, options, film, start, arena);
+    Follower follower(source, options, film, arena);
     return follower.Guarded([&] { return follower.Follow(); });
 }
 

@@ -32,6 +32,8 @@ std::vector<std::byte> Pack(RankWord word) { return Begin(word).bytes; }
 
 std::vector<std::byte> Pack(const StartMessage& message) {
     StateWriter writer = Begin(RankWord::Start);
+    writer.Put(uint64_t(message.deal.size()));
+    writer.PutAll(std::span(message.deal));
     writer.Put(uint64_t(message.blocks.size()));
     for (size_t i = 0; i < message.blocks.size(); ++i) {
         writer.Put(message.blocks[i]);
@@ -51,6 +53,7 @@ std::vector<std::byte> Pack(const PartMessage& message) {
     writer.Put(int32_t(message.block));
     writer.Put(message.samples);
     writer.Put(message.seconds);
+    writer.Put(message.busySeconds);
     writer.Put(uint64_t(message.values.size()));
     writer.PutAll(std::span(message.values));
     return std::move(writer.bytes);
@@ -64,17 +67,34 @@ std::vector<std::byte> PackCollect(bool undo) {
 
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
                                   const Film& film) {
-    std::vector<FilmPixel> pixels;
-    pixels.reserve(size_t(AreaOf(tiles)));
-    for (const PixelRect& tile : tiles) CopyPixels(film, tile, &pixels);
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
-    writer.PutAll(std::span<const FilmPixel>(pixels));
+    std::vector<FilmPixel> pixels;
+    std::vector<double> sums;
+    for (const PixelRect& tile : tiles) {
+        pixels.clear();
+        CopyPixels(film, tile, &pixels);
+        sums.clear();
+        uint32_t rejected = 0;
+        for (const FilmPixel& pixel : pixels) {
+            sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
+            if (film.HasHalf()) sums.insert(sums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
+            rejected += pixel.rejected;
+        }
+        writer.Put(pixels.back().count);
+        writer.Put(rejected);
+        writer.PutAll(std::span<const double>(sums));
+    }
     return std::move(writer.bytes);
 }
 
 StartMessage GetStart(StateReader& reader) {
     StartMessage message;
+    const auto deals = reader.Get<uint64_t>();
+    if (deals == 0 || deals > reader.Left() / sizeof(int))
+        throw std::runtime_error("a message of a rank is damaged");
+    message.deal.resize(deals);
+    reader.GetAll(std::span(message.deal));
     for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
         message.blocks.push_back(reader.Get<BlockStart>());
         message.needs.push_back(reader.Get<ViewNeed>());
@@ -89,6 +109,7 @@ PartMessage GetPart(StateReader& reader) {
     message.block = reader.Get<int32_t>();
     message.samples = reader.Get<int64_t>();
     message.seconds = reader.Get<double>();
+    message.busySeconds = reader.Get<double>();
     const auto size = reader.Get<uint64_t>();
     if (size != reader.Left() / sizeof(float))
         throw std::runtime_error("a message of a rank is damaged");
@@ -105,11 +126,18 @@ int GetBlock(StateReader& reader, size_t blocks) {
 }
 
 void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film) {
-    std::vector<FilmPixel> pixels(size_t(AreaOf(tiles)));
-    reader.GetAll(std::span(pixels));
+    for (const PixelRect& tile : tiles) {
+        std::vector<FilmPixel> pixels(size_t(tile.Area()));
+        const auto count = reader.Get<uint32_t>();
+        pixels.back().rejected = reader.Get<uint32_t>();
+        for (FilmPixel& pixel : pixels) {
+            pixel.count = count;
+            reader.GetAll(std::span<double>(pixel.sum));
+            if (film->HasHalf()) reader.GetAll(std::span<double>(pixel.halfSum));
+        }
+        SetPixels(pixels.data(), tile, film);
+    }
     reader.Finish();
-    const FilmPixel* from = pixels.data();
-    for (const PixelRect& tile : tiles) from = SetPixels(from, tile, film);
 }
 
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed need, const Film& film) {

@@ -10,8 +10,8 @@ namespace lull {
 
 enum class RankWord : uint8_t {
     // From rank 0.
-    Start,    // StartMessage
-    Begin,    // all sums have been sent
+    Start,    // StartMessage; then come the sums of tiles that the rank did not own
+    Begin,    // all of them have been sent
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
@@ -24,11 +24,14 @@ enum class RankWord : uint8_t {
     Collected,
     Interrupted,  // a signal has come
     // Both ways.
-    Pixels  // sums of a block's tiles
+    Pixels,  // sums of a block's tiles
+    Ping,    // to be answered at once by
+    Alive
 };
 
 // Says where all blocks are when a rank begins.
 struct StartMessage {
+    std::vector<int> deal;  // of the tiles, see TileShare
     std::vector<BlockStart> blocks;
     std::vector<ViewNeed> needs;  // what the judge will look at after each block's next pass
 };
@@ -44,8 +47,9 @@ struct AnswerMessage {
 // Holds what a rank has of a block after a pass.
 struct PartMessage {
     int block;
-    int64_t samples;            // taken
-    double seconds;             // of processors
+    int64_t samples;            // taken since the last part
+    double seconds;             // of processors, for this block
+    double busySeconds;         // of the rank's threads, on the average, since the last part
     std::vector<float> values;  // the means of its tiles, then the half means, as far as needed
 };
 

@@ -65,14 +65,19 @@ struct RenderOptions {
     // The processes that share the work, each with the same scene and options (peers.h). Null: this
     // one does all.
     Peers* peers = nullptr;
+    // How long they render at least before tiles are dealt out by how fast they were.
+    double dealInterval = 5;
+    // Is told, once the render has been cancelled, of ranks that do not answer. Can be empty.
+    std::function<void(const std::vector<int>& ranks)> onSilence;
 };
 
 struct RenderResult {
     std::vector<BlockResult> blocks;
-    RenderProgress progress;  // at the end
-    bool cancelled = false;   // before every block had stopped
-    bool timeUp = false;      // the clock ended it before every block had stopped
-    int threads = 0;          // that it could use
+    RenderProgress progress;          // at the end
+    bool cancelled = false;           // before every block had stopped
+    bool timeUp = false;              // the clock ended it before every block had stopped
+    int threads = 0;                  // that it could use
+    std::vector<double> shares = {};  // of the tiles, that ranks had in the end; empty: one rank
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.

@@ -11,9 +11,6 @@ constexpr int largestLead = 16;
 
 int CeilDiv(int a, int b) { return (a + b - 1) / b; }
 
-// Returns the first tile of block `index` that is in the share.
-int FirstTileOf(int index, const TileShare& share) { return (share.rank + index) % share.ranks; }
-
 int CountTiles(const PixelRect& r, int tileSize) {
     return CeilDiv(r.Width(), tileSize) * CeilDiv(r.Height(), tileSize);
 }
@@ -48,16 +45,20 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
     return blocks;
 }
 
-std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize, TileShare share) {
+std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
+                               const TileShare& share) {
     std::vector<PixelRect> tiles;
-    for (int i = FirstTileOf(index, share); i < CountTiles(block, tileSize); i += share.ranks)
-        tiles.push_back(TileAt(block, tileSize, i));
+    for (int i = 0; i < CountTiles(block, tileSize); ++i)
+        if (share.Has(index, i)) tiles.push_back(TileAt(block, tileSize, i));
     return tiles;
 }
 
 Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
-                   std::span<const BlockStart> starts, TileShare share)
+                   std::span<const BlockStart> starts, const TileShare& share)
     : options(options), share(share), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
+    for (size_t i = 0; i < blocks.size(); ++i)
+        for (int t = 0; t < CountTiles(blocks[i].pixels, options.tileSize); ++t)
+            progress[i].tiles += share.Has(int(i), t);
     for (size_t i = 0; i < starts.size(); ++i) {
         blocks[i].spp = progress[i].decidedSpp = starts[i].spp;
         blocks[i].noise = starts[i].noise;
@@ -78,20 +79,15 @@ void Schedule::GoOn(int i) {
     StartPass(i, std::min(blocks[i].spp + options.passLength, options.cap));
 }
 
-int Schedule::TileCount(int block) const {
-    const int all = CountTiles(blocks[block].pixels, options.tileSize);
-    return CeilDiv(std::max(0, all - FirstTileOf(block, share)), share.ranks);
-}
-
 void Schedule::StartPass(int block, int target) {
     Progress& pass = progress[block];
     pass.target = target;
-    pass.tilesGiven = pass.tilesFinished = 0;
+    pass.tilesGiven = pass.tilesFinished = pass.next = 0;
     pass.underWay = true;
     pass.mustEnd |= blocks[block].spp == 0;
-    if ((timeCalled && !pass.mustEnd) || TileCount(block) == 0) return;
+    if ((timeCalled && !pass.mustEnd) || pass.tiles == 0) return;
     MakeReady(block);
-    readyTiles += TileCount(block);
+    readyTiles += pass.tiles;
 }
 
 std::tuple<double, int, int> Schedule::ByNoise(int block) const {
@@ -128,7 +124,7 @@ void Schedule::CallTime() {
     timeCalled = true;
     for (int i = 0; i < int(blocks.size()); ++i) {
         if (progress[i].mustEnd || !ready.contains({blocks[i].spp, i})) continue;
-        readyTiles -= TileCount(i) - progress[i].tilesGiven;
+        readyTiles -= progress[i].tiles - progress[i].tilesGiven;
         MakeUnready(i);
     }
 }
@@ -140,17 +136,22 @@ std::optional<Tile> Schedule::Next() {
     const Block& block = blocks[i];
     Progress& pass = progress[i];
 
-    const int tile = FirstTileOf(i, share) + pass.tilesGiven * share.ranks;
-    const PixelRect pixels = TileAt(block.pixels, options.tileSize, tile);
-    ++pass.tilesGiven;
+    const PixelRect pixels = TakeTile(i);
     --readyTiles;
-    if (pass.tilesGiven == TileCount(i)) MakeUnready(i);
+    if (pass.tilesGiven == pass.tiles) MakeUnready(i);
     return Tile{i, pixels, block.spp, pass.target - block.spp};
+}
+
+PixelRect Schedule::TakeTile(int block) {
+    Progress& pass = progress[block];
+    while (!share.Has(block, pass.next)) ++pass.next;
+    ++pass.tilesGiven;
+    return TileAt(blocks[block].pixels, options.tileSize, pass.next++);
 }
 
 bool Schedule::Finish(const Tile& tile) {
     Progress& pass = progress[tile.block];
-    if (++pass.tilesFinished < TileCount(tile.block)) return false;
+    if (++pass.tilesFinished < pass.tiles) return false;
     blocks[tile.block].spp = pass.target;
     return true;
 }

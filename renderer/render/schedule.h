@@ -26,6 +26,11 @@ struct ScheduleOptions {
     bool worstFirst = false;
 };
 
+// Returns how a film is cut by the schedule.
+inline TileGrid GridOf(const ScheduleOptions& options) {
+    return {options.blockSize, options.tileSize};
+}
+
 // The noise of a block of which nobody knows it: more than that of any other.
 inline constexpr double unknownNoise = std::numeric_limits<double>::infinity();
 
@@ -39,14 +44,21 @@ struct Block {
     double noise = unknownNoise;  // visible at the end of the last pass, as Decide() was told
 };
 
-// Says which tiles of each block are one's own, where several machines share the work: every
-// `ranks`-th, beginning at another one in each block.
+// Says which tiles of each block are one's own, where several machines share the work: `deal` names
+// the ranks that get one after the other, over and over, beginning at another place in each block.
 struct TileShare {
-    int rank = 0, ranks = 1;
+    int rank = 0;
+    std::vector<int> deal = {0};
+
+    bool Has(int block, int tile) const {
+        const int place = (tile - block) % int(deal.size());
+        return deal[size_t(place < 0 ? place + int(deal.size()) : place)] == rank;
+    }
 };
 
 // Returns the tiles of block `index` that are in the share, row by row.
-std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize, TileShare = {});
+std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
+                               const TileShare& = {});
 
 // Says where a block is when a schedule begins.
 struct BlockStart {
@@ -82,7 +94,7 @@ class Schedule {
     // was, or to leave blocks out.
     // Only tiles of the share are given out and waited for.
     Schedule(const PixelRect& region, const ScheduleOptions&,
-             std::span<const BlockStart> starts = {}, TileShare share = {});
+             std::span<const BlockStart> starts = {}, const TileShare& share = {});
 
     std::span<const Block> Blocks() const { return blocks; }
     const ScheduleOptions& Options() const { return options; }
@@ -120,16 +132,17 @@ class Schedule {
   private:
     struct Progress {
         int decidedSpp = 0;
-        int target = 0;      // the spp at the end of the pass under way
-        int tilesGiven = 0;  // of this pass
-        int tilesFinished = 0;
-        bool underWay = false;       // from its start to the decision
-        bool mustEnd = false;        // though time has been called
-        std::vector<int> followers;  // of the block
+        int target = 0;                         // the spp at the end of the pass under way
+        int tiles = 0;                          // of the share
+        int tilesGiven = 0, tilesFinished = 0;  // of this pass
+        int next = 0;                           // where to look for the next tile of the share
+        bool underWay = false;                  // from its start to the decision
+        bool mustEnd = false;                   // though time has been called
+        std::vector<int> followers;             // of the block
     };
 
-    int TileCount(int block) const;
     int NextBlock() const;
+    PixelRect TakeTile(int block);
     std::tuple<double, int, int> ByNoise(int block) const;
     void StartPass(int block, int target);
     void MakeReady(int block);

@@ -3,15 +3,13 @@
 namespace lull {
 
 void CopyPixels(const Film& film, const PixelRect& rect, std::vector<FilmPixel>* to) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const FilmPixel* row = &film.At({rect.min.x(), y});
-        to->insert(to->end(), row, row + rect.Width());
-    }
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x) to->push_back(film.At({x, y}));
 }
 
 const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect& rect, Film* film) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y, from += rect.Width())
-        std::copy_n(from, rect.Width(), &film->At({rect.min.x(), y}));
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x) film->Set({x, y}, *from++);
     return from;
 }
 

@@ -32,7 +32,8 @@ class PassUndo {
 
 // Appends the pixels of a rectangle, row by row.
 void CopyPixels(const Film&, const PixelRect&, std::vector<FilmPixel>* to);
-// Sets the pixels of a rectangle, row by row; returns what comes after those in `from`.
+// Sets the pixels of a rectangle, row by row, which are whole tiles; returns what comes after those
+// in `from`.
 const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect&, Film*);
 
 }  // namespace lull

@@ -20,16 +20,17 @@ PathSample Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
 // Renders and notes each pixel whose samples are not those of the block it is in, or that is in
 // none or in two.
 void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, Failures* wrong) {
-    Film film({{0, 0}, size});
     const CriterionFactory factory = MakeCriterionFactory(rule);
     RenderOptions options;
     options.schedule = {
         .blockSize = blockSize, .passLength = 20, .cap = cap, .smallestSide = factory.smallestSide};
     options.sampler = SamplerKind::Random;
     options.makeCriterion = factory.make;
+    Film film({{0, 0}, size}, {.grid = GridOf(options.schedule)});
     const RenderResult result = Render(Noise, options, &film);
 
-    std::vector<int> expected(film.Pixels().size(), 0), blocks(film.Pixels().size(), 0);
+    const std::vector<float> counts = film.SppImage();
+    std::vector<int> expected(counts.size(), 0), blocks(counts.size(), 0);
     for (const BlockResult& r : result.blocks)
         for (int y = r.block.pixels.min.y(); y < r.block.pixels.max.y(); ++y)
             for (int x = r.block.pixels.min.x(); x < r.block.pixels.max.x(); ++x) {
@@ -38,7 +39,7 @@ void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, F
                 ++blocks[i];
             }
     for (size_t i = 0; i < expected.size(); ++i) {
-        const int count = int(film.Pixels()[i].count);
+        const int count = int(counts[i]);
         wrong->Note(count != expected[i] || blocks[i] != 1 || count < 20 || count > cap, [&] {
             return fmt::format("{}x{}, blocks of {}, {}, pixel {}", size.x(), size.y(), blockSize,
                                rule, i);

@@ -44,7 +44,7 @@ void Snapshot::Show(const PixelRect& pixels, const Film& film) {
     std::lock_guard lock(mutex);
     for (int y = r.min.y(); y < r.max.y(); ++y)
         for (int x = r.min.x(); x < r.max.x(); ++x) {
-            const FilmPixel& pixel = film.At(region.min + Vec2i(x, y));
+            const FilmPixel pixel = film.At(region.min + Vec2i(x, y));
             const Rgb mean = pixel.Mean();
             float* to = At(x, y);
             for (int c = 0; c < 3; ++c) to[c] = mean[c];

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "tests/renderer/output/add_sample.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -18,7 +19,7 @@ struct OnePixel {
 
     explicit OnePixel(const char* layers) : aovs(kPixel, ParseAovs(layers)) {}
     void Add(const FirstHit& hit, const Rgb& radiance = Rgb::Zero()) {
-        film.At(kPixel.min).Add(radiance, false);
+        AddTo(&film, kPixel.min, radiance);
         aovs.At(kPixel.min).Add(hit, radiance);
     }
     float Value(const std::string& channel) const {

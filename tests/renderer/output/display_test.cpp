@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "tests/renderer/output/add_sample.h"
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/output/viewer_server.h"
 
@@ -25,8 +26,7 @@ struct Warned {
 void AddSamples(const PixelRect& r, Film* film) {
     for (int y = r.min.y(); y < r.max.y(); ++y)
         for (int x = r.min.x(); x < r.max.x(); ++x)
-            film->At({x, y}).Add(Rgb(float(x), float(y), float(film->At({x, y}).count) + 0.25f),
-                                 false);
+            AddTo(film, {x, y}, Rgb(float(x), float(y), float(film->At({x, y}).count) + 0.25f));
 }
 
 void ExpectSame(const ViewedImage& image, const Film& film, const PixelRect& stopped) {
@@ -63,8 +63,8 @@ TEST(Display, SendsTevsMessages) {
     ViewerServer server;
     const PixelRect region = {{4, 0}, {6, 1}};
     Film film(region);
-    film.At({4, 0}).Add(Rgb(1, 2, 0.5f), false);
-    film.At({5, 0}).Add(Rgb(0, 0, 1), false);
+    AddTo(&film, {4, 0}, Rgb(1, 2, 0.5f));
+    AddTo(&film, {5, 0}, Rgb(0, 0, 1));
     Warned warned;
     {
         Display display(ParseDisplayAddress(server.Address()), "a.exr", region, warned.Sink());

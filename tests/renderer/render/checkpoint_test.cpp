@@ -165,6 +165,25 @@ TEST(Checkpoint, SaysWhatIsNotTheSame) {
                          "another crop (none there, 1 here)"));
 }
 
+// Whoever needs the half has to have asked for it from the start.
+TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.checkpoint");
+    WriteSmallCheckpoint(path);
+    Film film(kRegion, {.withHalf = false}), whole(kRegion);
+    const RenderState state = ReadCheckpoint(path, kIdentity, &film);
+    ReadCheckpoint(path, kIdentity, &whole);
+    EXPECT_EQ(film.MeanImage(), whole.MeanImage());
+    EXPECT_GT(film.SampleCount(), 0);
+
+    WriteCheckpoint(path, kIdentity, state, film);
+    Film again(kRegion, {.withHalf = false});
+    EXPECT_NO_THROW(ReadCheckpoint(path, kIdentity, &again));
+    EXPECT_EQ(again.MeanImage(), whole.MeanImage());
+    EXPECT_TRUE(
+        Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }), "--half-buffer on"));
+}
+
 TEST(Checkpoint, RefusesDamagedFiles) {
     const TemporaryDirectory directory;
     const std::string path = directory.File("a.checkpoint");

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "renderer/render/peers.h"
+#include "renderer/render/rank_deal.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
@@ -67,10 +68,13 @@ RenderOptions SharedOptions() {
 }
 
 using Change = std::function<void(RenderOptions*, int rank)>;
+using SourceOfRank = std::function<SampleSource(int rank)>;
+
+SampleSource SameForAll(int) { return SyntheticSample; }
 
 // Renders with `ranks` ranks; 0: without peers.
 Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
-                    const SampleSource& source = SyntheticSample) {
+                    const SourceOfRank& sourceOf = SameForAll) {
     Shared shared;
     Mailboxes mail;
     mail.boxes.resize(size_t(std::max(1, ranks)));
@@ -82,13 +86,13 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
         options.threads = ranks + 1;
         if (rank == 0) options.onCheckpoint = [&](const RenderState& s) { shared.state = s; };
         if (change) change(&options, rank);
-        auto film = std::make_unique<Film>(kImage);
+        auto film = std::make_unique<Film>(kImage, FilmOptions{.grid = GridOf(options.schedule)});
         const RenderState* state = nullptr;
         if (before && rank == 0) {
             *film = *before->film;
             state = &before->state;
         }
-        RenderResult result = Render(source, options, film.get(), state);
+        RenderResult result = Render(sourceOf(rank), options, film.get(), state);
         if (rank > 0) return;
         shared.film = std::move(film);
         shared.result = std::move(result);
@@ -196,7 +200,7 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
                     return rank > 0 ? 1 : double(time - taken);
                 };
             },
-            nullptr, source);
+            nullptr, [&](int) { return source; });
         EXPECT_TRUE(shared.result.timeUp);
         const Shared again = RenderShared(2, [&](RenderOptions* o, int) {
             o->schedule.smallestSide = 0;
@@ -229,7 +233,7 @@ TEST(Ranks, DealOutEveryTileOnce) {
         int64_t area = 0;
         size_t least = 1000, most = 0;
         for (int rank = 0; rank < ranks; ++rank) {
-            const std::vector<PixelRect> tiles = TilesOf(block, 3, 8, {rank, ranks});
+            const std::vector<PixelRect> tiles = TilesOf(block, 3, 8, {rank, EvenDeal(ranks)});
             for (const PixelRect& tile : tiles) area += tile.Area();
             least = std::min(least, tiles.size());
             most = std::max(most, tiles.size());
@@ -237,6 +241,58 @@ TEST(Ranks, DealOutEveryTileOnce) {
         EXPECT_EQ(area, block.Area());
         EXPECT_LE(most - least, 1u);
     }
+    int64_t area = 0;
+    for (int rank = 0; rank < 3; ++rank)
+        for (const PixelRect& tile : TilesOf(block, 300, 8, {rank, DealBySpeed({1, 2, 5})}))
+            area += tile.Area();
+    EXPECT_EQ(area, block.Area());
+}
+
+// Takes a nap at the first sample of each pixel's pass, on those ranks and in those passes that
+// `isSlow(rank, index)` is true for.
+SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSlow) {
+    return [isSlow](int rank) -> SampleSource {
+        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            if (index % 20 == 0 && isSlow(rank, index))
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+            return SyntheticSample(sampler, pixel, index);
+        };
+    };
+}
+
+TEST(Ranks, MoveTilesToWhereThereIsTime) {
+    const Shared reference = RenderShared(0);
+    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0.02; };
+    for (const int ranks : {2, 3, 4}) {
+        const Shared shared =
+            RenderShared(ranks, change, nullptr,
+                         SlowWhere([ranks](int rank, uint32_t) { return rank == ranks - 1; }));
+        EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
+        EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+        ASSERT_EQ(shared.result.shares.size(), size_t(ranks));
+        EXPECT_LT(shared.result.shares.back(), 0.7 / ranks);
+    }
+}
+
+// Tiles go to and fro, with a clock and checkpoints, too.
+TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
+    const auto source =
+        SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
+    const Shared reference = RenderShared(0);
+    int checkpoints = 0;
+    const Shared moved = RenderShared(
+        3,
+        [&](RenderOptions* o, int rank) {
+            o->dealInterval = 0;
+            o->secondsLeft = [] { return 1000.0; };
+            if (rank > 0) return;
+            o->checkpointInterval = 0.02;
+            o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+        },
+        nullptr, source);
+    EXPECT_TRUE(SamePixels(*moved.film, *reference.film));
+    EXPECT_EQ(StopsOf(moved), StopsOf(reference));
+    EXPECT_GT(checkpoints, 0);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ RenderOptions SmallRender() {
 }
 
 Film Rendered(const RenderOptions& options, const PixelRect& region = kRegion) {
-    Film film(region);
+    Film film(region, {.grid = GridOf(options.schedule)});
     Render(SyntheticSample, options, &film);
     return film;
 }

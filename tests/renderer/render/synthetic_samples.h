@@ -20,13 +20,12 @@ inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t
 // Says whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {
     if (!(a.Region() == b.Region())) return false;
-    for (size_t i = 0; i < a.Pixels().size(); ++i) {
-        const FilmPixel &p = a.Pixels()[i], &q = b.Pixels()[i];
-        if (p.sum != q.sum || p.halfSum != q.halfSum || p.count != q.count ||
-            p.rejected != q.rejected)
-            return false;
-    }
-    return true;
+    for (int y = a.Region().min.y(); y < a.Region().max.y(); ++y)
+        for (int x = a.Region().min.x(); x < a.Region().max.x(); ++x) {
+            const FilmPixel p = a.At({x, y}), q = b.At({x, y});
+            if (p.sum != q.sum || p.halfSum != q.halfSum || p.count != q.count) return false;
+        }
+    return a.RejectedCount() == b.RejectedCount();
 }
 
 // Stops at the spp that it is given, and notes what it was shown.

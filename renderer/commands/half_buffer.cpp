@@ -1,0 +1,41 @@
+#include "renderer/commands/half_buffer.h"
+
+#include <CLI/CLI.hpp>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+void AddHalfBufferOption(CLI::App& app, HalfBuffer* choice) {
+    const std::map<std::string, HalfBuffer> choices = {
+        {"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}};
+    app.add_option_function<std::string>(
+           "--half-buffer", [=](const std::string& name) { *choice = choices.at(name); },
+           "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
+           "may be when going on from a checkpoint")
+        ->check(CLI::IsMember(choices))
+        ->type_name("auto|on|off")
+        ->default_str("auto");
+}
+
+bool LooksAtHalf(const CriterionFactory& factory, const ScheduleOptions& schedule) {
+    const std::unique_ptr<Criterion> criterion = factory.make({});
+    for (int spp = 0; spp < schedule.cap;) {
+        spp = int(std::min<int64_t>(int64_t(spp) + schedule.passLength, schedule.cap));
+        if (criterion->Need(spp) == ViewNeed::MeanAndHalf) return true;
+    }
+    return false;
+}
+
+bool KeepsHalf(HalfBuffer choice, const HalfUse& use) {
+    const std::string user = !use.rule.empty() ? "the rule " + use.rule
+                             : use.clock       ? "a clock"
+                             : use.page        ? "a page with curves"
+                                               : "";
+    if (choice == HalfBuffer::Off && !user.empty())
+        throw Error("--half-buffer off: " + user + " needs the mean of half of the samples");
+    if (choice == HalfBuffer::Auto) return !user.empty() || use.checkpoint;
+    return choice == HalfBuffer::On;
+}
+
+}  // namespace lull
