@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <new>
 
@@ -12,6 +14,9 @@
 namespace lull {
 
 namespace {
+
+// The subcommands that render for long.
+constexpr std::array sharedCommands = {"render", "compare", "bench", "dataset"};
 
 ExitCode Run(Job* job, const Command& command) {
     std::string message;
@@ -39,21 +44,24 @@ ExitCode Main(Job* job, int argc, char** argv) {
     Command command;
     AddRenderCommand(app, &command, job);
     AddInfoCommand(app, &command);
-    AddDatasetCommand(app, &command);
+    AddDatasetCommand(app, &command, job);
     AddTrainCommand(app, &command);
     AddEvaluateCommand(app, &command);
     AddSelftestCommand(app, &command);
-    AddCompareCommand(app, &command);
-    AddBenchCommand(app, &command);
+    AddCompareCommand(app, &command, job);
+    AddBenchCommand(app, &command, job);
     AddJudgeCommand(app, &command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? kDone : kWrongUsage;
     }
-    if (job->Count() > 1 && !app.got_subcommand("render"))
+    const auto isShared = [&](const char* name) { return app.got_subcommand(name); };
+    if (job->Count() > 1 && std::ranges::none_of(sharedCommands, isShared))
         command = []() -> ExitCode {
-            throw Error("only `lull render` runs on several ranks; start this one by itself");
+            throw Error(
+                "only render, compare, bench and dataset run on several ranks; start this one by "
+                "itself");
         };
     return Run(job, command);
 }

@@ -15,6 +15,7 @@
 #include "renderer/measure/compared_files.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/bench_page.h"
+#include "renderer/ranks/job.h"
 
 namespace lull {
 
@@ -98,7 +99,7 @@ struct Job {
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
 };
 
-Job Prepare(const Options& options) {
+Job Prepare(const Options& options, bool leads) {
     const RenderSettings& settings = options.render;
     SceneInput input(settings.scene);
     Job job;
@@ -108,8 +109,8 @@ Job Prepare(const Options& options) {
     if (!options.external.empty()) job.external = ReadExternalImages(options.external);
     for (const ExternalImage& external : job.external)
         job.externalImages.push_back(ReadImageOfSize(external.file, input.region));
-    CheckWritable(options.output + ".csv");
-    if (!options.report.empty()) CheckWritable(options.report);
+    if (leads) CheckWritable(options.output + ".csv");
+    if (leads && !options.report.empty()) CheckWritable(options.report);
     job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     job.sceneHash = SceneHash(input.description);
@@ -143,9 +144,10 @@ class PointCounter {
 };
 
 // Renders with one sampler, or takes what is left of an earlier run, and adds its points. Returns
-// false if it was interrupted.
-bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
+// false if it was interrupted. The ranks share the render, and the first measures.
+bool BenchSampler(const Options& options, SamplerKind sampler, Job* job, lull::Job* ranks,
                   std::vector<BenchPoint>* points) {
+    const bool leads = ranks->Rank() == 0;
     const RenderSettings& settings = options.render;
     Provenance provenance = job->provenance;
     provenance.sampler = sampler;
@@ -157,7 +159,8 @@ bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
         .resume = std::filesystem::exists(CheckpointName(options, sampler))};
 
     Film film(provenance.crop);
-    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &film);
+    std::optional<RenderState> interrupted;
+    if (leads) interrupted = Resume(checkpoint, identity, &film);
     std::vector<BlockHistory> histories(MakeBlocks(provenance.crop, settings.schedule).size());
     if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(sampler));
     ProgressPrinter printer = MakePrinter(settings, false);
@@ -167,10 +170,13 @@ bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
     render.checkpointAtEnd = true;
     WriteCheckpoints(checkpoint, identity, film, &render);
     const SampleSource source = SamplesOf(*job->scene, settings.estimator);
+    ShareAmongRanks(ranks, &render);
+    ranks->Begin(TextOf(identity));
     const RenderResult result =
         Render(source, render, &film, interrupted ? &*interrupted : nullptr);
     printer.Finish(result.progress);
     if (result.cancelled) return false;
+    if (!leads) return true;
 
     const ObservedRender observed{source, render, film, result, histories};
     const bool makesReference = !job->reference;
@@ -185,20 +191,22 @@ bool BenchSampler(const Options& options, SamplerKind sampler, Job* job,
     return true;
 }
 
-ExitCode RunBench(Options options) {
+ExitCode RunBench(Options options, lull::Job* ranks) {
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
-    Job job = Prepare(options);
+    Job job = Prepare(options, ranks->Rank() == 0);
     CatchInterrupts();
     std::vector<BenchPoint> points;
     for (const std::string& name : options.samplers) {
         const SamplerKind sampler = name == "random" ? SamplerKind::Random : SamplerKind::Sobol;
-        if (BenchSampler(options, sampler, &job, &points)) continue;
+        if (BenchSampler(options, sampler, &job, ranks, &points)) continue;
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
                    CheckpointName(options, sampler));
         return kInterrupted;
     }
+    ranks->End();
+    if (ranks->Rank() > 0) return kDone;
     for (size_t i = 0; i < job.external.size(); ++i)
         points.push_back(MeasureExternal(job.external[i], job.externalImages[i], *job.reference));
 
@@ -228,12 +236,12 @@ ExitCode RunBench(Options options) {
 
 }  // namespace
 
-void AddBenchCommand(CLI::App& app, Command* command) {
+void AddBenchCommand(CLI::App& app, Command* command, lull::Job* ranks) {
     CLI::App* bench = app.add_subcommand(
         "bench", "Measures error against seconds and samples: fixed numbers, and stopping rules.");
     auto options = std::make_shared<Options>();
     AddOptions(*bench, options.get());
-    bench->callback([=] { *command = [=] { return RunBench(*options); }; });
+    bench->callback([=] { *command = [=] { return RunBench(*options, ranks); }; });
 }
 
 }  // namespace lull

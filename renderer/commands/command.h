@@ -14,15 +14,15 @@ class Job;
 // Does the work of a subcommand and returns the exit code. Throws what went wrong.
 using Command = std::function<ExitCode()>;
 
-// The only one that several ranks can share.
+// Those that several ranks can share get the job.
 void AddRenderCommand(CLI::App& app, Command* command, Job* job);
+void AddDatasetCommand(CLI::App& app, Command* command, Job* job);
+void AddCompareCommand(CLI::App& app, Command* command, Job* job);
+void AddBenchCommand(CLI::App& app, Command* command, Job* job);
 void AddInfoCommand(CLI::App& app, Command* command);
-void AddDatasetCommand(CLI::App& app, Command* command);
 void AddTrainCommand(CLI::App& app, Command* command);
 void AddEvaluateCommand(CLI::App& app, Command* command);
 void AddSelftestCommand(CLI::App& app, Command* command);
-void AddCompareCommand(CLI::App& app, Command* command);
-void AddBenchCommand(CLI::App& app, Command* command);
 void AddJudgeCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

@@ -13,6 +13,7 @@
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/compared_files.h"
 #include "renderer/output/file_io.h"
+#include "renderer/ranks/job.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -79,7 +80,7 @@ ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) 
 }
 
 // Loads the scene and checks all that can be wrong before the work begins.
-Job Prepare(const CompareOptions& options) {
+Job Prepare(const CompareOptions& options, bool leads) {
     const RenderSettings& settings = options.render;
     SceneInput input(settings.scene);
 
@@ -95,8 +96,8 @@ Job Prepare(const CompareOptions& options) {
         job.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
     }
-    CheckOutputs(options);
-    CheckCheckpoint(settings.checkpoint);
+    if (leads) CheckOutputs(options);
+    if (leads) CheckCheckpoint(settings.checkpoint);
     job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
     input.warnings.Summarize();
     job.warnings = input.warnings.Counts();
@@ -152,7 +153,9 @@ std::vector<std::string> WriteImages(const CompareOptions& options, const Job& j
     return names;
 }
 
-ExitCode CompareRenders(CompareOptions options) {
+// The ranks share the render that all images come from; the first does the rest.
+ExitCode CompareRenders(CompareOptions options, lull::Job* ranks) {
+    const bool leads = ranks->Rank() == 0;
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file);
@@ -160,7 +163,7 @@ ExitCode CompareRenders(CompareOptions options) {
         throw Error(
             "compare: a reference is missing: --snapshots renders one, to the cap; "
             "--reference R.exr takes one rendered before");
-    const Job job = Prepare(options);
+    const Job job = Prepare(options, leads);
     const PixelRect& region = job.provenance.crop;
 
     ComparisonReport report;
@@ -174,7 +177,8 @@ ExitCode CompareRenders(CompareOptions options) {
         fromFiles.push_back(ReadImageBeside(options.reference, "reference", comparison));
 
     Film film(region);
-    const std::optional<RenderState> interrupted = Resume(settings.checkpoint, job.identity, &film);
+    std::optional<RenderState> interrupted;
+    if (leads) interrupted = Resume(settings.checkpoint, job.identity, &film);
     report.histories.resize(comparison.blocks.size());
     ProgressPrinter printer = MakePrinter(settings, !options.snapshots);
     CatchInterrupts();
@@ -187,8 +191,12 @@ ExitCode CompareRenders(CompareOptions options) {
                                          &report.histories);
     WriteCheckpoints(settings.checkpoint, job.identity, film, &render);
     const SampleSource source = SamplesOf(*job.scene, settings.estimator);
+    ShareAmongRanks(ranks, &render);
+    ranks->Begin(TextOf(job.identity));
     const RenderResult result =
         Render(source, render, &film, interrupted ? &*interrupted : nullptr);
+    ranks->End();
+    if (!leads) return kDone;
     printer.Finish(result.progress);
     if (result.cancelled) {
         fmt::print(stderr, "lull: interrupted{}\n",
@@ -229,15 +237,15 @@ ExitCode CompareRenders(CompareOptions options) {
 
 }  // namespace
 
-void AddCompareCommand(CLI::App& app, Command* command) {
+void AddCompareCommand(CLI::App& app, Command* command, lull::Job* ranks) {
     CLI::App* compare = app.add_subcommand(
         "compare", "Compares automatic stopping with people's thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
     AddCompareOptions(*compare, options.get());
     compare->callback([=] {
         *command = [=] {
-            return options->render.scene.file.empty() ? CompareFiles(*options)
-                                                      : CompareRenders(*options);
+            if (!options->render.scene.file.empty()) return CompareRenders(*options, ranks);
+            return ranks->Rank() == 0 ? CompareFiles(*options) : kDone;
         };
     });
 }

@@ -11,6 +11,7 @@
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/recorded_viewpoint.h"
 #include "renderer/output/file_io.h"
+#include "renderer/ranks/job.h"
 
 namespace lull {
 
@@ -81,7 +82,8 @@ std::string CheckpointName(const Options& options) {
     return fmt::format("{}.{}.checkpoint", options.output, options.name);
 }
 
-ExitCode RunDataset(const Options& options) {
+ExitCode RunDataset(const Options& options, Job* job) {
+    const bool leads = job->Rank() == 0;  // prints, and writes files
     const RenderSettings& settings = options.render;
     SceneInput input(settings.scene);
     const PixelRect& region = input.region;
@@ -92,11 +94,13 @@ ExitCode RunDataset(const Options& options) {
     std::vector<int> limits = RecordingLimits(blocks.size(), options.blocks, settings.schedule.cap);
     if (options.past > 0) LimitByHuman(options.human, options.name, options.past, &limits);
     std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
-    CheckWritable(options.output);
+    if (leads) CheckWritable(options.output);
     const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
     if (old != dataset.end())
         for (const auto& [number, block] : old->blocks) limits.at(size_t(number)) = 0;
     if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
+        job->Begin("nothing");
+        job->End();
         fmt::print(stderr, "lull: {} has all blocks of '{}' already\n", options.output,
                    options.name);
         return kDone;
@@ -117,15 +121,20 @@ ExitCode RunDataset(const Options& options) {
                                        .interval = settings.checkpoint.interval,
                                        .resume = std::filesystem::exists(CheckpointName(options))};
     Film pixels(region);
-    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &pixels);
+    std::optional<RenderState> interrupted;
+    if (leads) interrupted = Resume(checkpoint, identity, &pixels);
 
     ProgressPrinter printer = MakePrinter(settings, false);
     CatchInterrupts();
     RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
     WriteCheckpoints(checkpoint, identity, pixels, &render);
+    ShareAmongRanks(job, &render);
+    job->Begin(TextOf(identity));
     const RenderResult result =
         RecordBlocks(SamplesOf(*scene, settings.estimator), render, limits, &pixels,
                      interrupted ? &*interrupted : nullptr, &viewpoint);
+    job->End();
+    if (!leads) return kDone;
     printer.Finish(result.progress);
     if (result.cancelled) {
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
@@ -142,7 +151,7 @@ ExitCode RunDataset(const Options& options) {
 
 }  // namespace
 
-void AddDatasetCommand(CLI::App& app, Command* command) {
+void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* dataset = app.add_subcommand(
         "dataset", "Records what stopping rules can learn from, viewpoint by viewpoint.");
     auto options = std::make_shared<Options>();
@@ -150,7 +159,7 @@ void AddDatasetCommand(CLI::App& app, Command* command) {
     options->render.sampler = SamplerKind::Random;
     options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());
-    dataset->callback([=] { *command = [=] { return RunDataset(*options); }; });
+    dataset->callback([=] { *command = [=] { return RunDataset(*options, job); }; });
 }
 
 }  // namespace lull

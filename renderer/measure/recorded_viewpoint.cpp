@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/render/peers.h"
 #include "stopping/rules/small_blocks.h"
 #include "stopping/rules/thresholds.h"
 
@@ -123,7 +124,7 @@ RenderResult RecordBlocks(const SampleSource& source, RenderOptions render,
         };
     const RenderState beginning = Beginning(blocks, limits);
     RenderResult result = Render(source, render, film, interrupted ? interrupted : &beginning);
-    if (result.cancelled) return result;
+    if (result.cancelled || (render.peers && render.peers->Rank() > 0)) return result;
     for (size_t i = 0; i < blocks.size(); ++i)
         if (limits[i] > 0) AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);
     return result;
