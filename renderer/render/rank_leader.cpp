@@ -147,10 +147,10 @@ class Leader final : public RankExecutor {
 
     // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
+        quiet = collected = 0;  // now: a rank that is idle answers before Exchange() returns
         PostToAll(Pack(RankWord::Pause));
         Exchange();  // sends it
         Quiesce();
-        quiet = collected = 0;
         Await(quiet);
         Quiesce();  // decisions on what has arrived
         if (undo) Undo();

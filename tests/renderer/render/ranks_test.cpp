@@ -16,6 +16,8 @@ namespace lull {
 namespace {
 
 struct Mailboxes {
+    // How long rank 0 sleeps when it has sent a mere word, so that the others answer meanwhile.
+    std::chrono::milliseconds nap{0};
     std::mutex mutex;
     std::vector<std::deque<PeerMessage>> boxes;
     int64_t bytes = 0;
@@ -27,9 +29,13 @@ class QueuePeers final : public Peers {
     int Rank() const override { return rank; }
     int Count() const override { return int(mail->boxes.size()); }
     void Send(int to, std::vector<std::byte> message) override {
-        std::lock_guard lock(mail->mutex);
-        mail->bytes += int64_t(message.size());
-        mail->boxes[size_t(to)].push_back({rank, std::move(message)});
+        const bool isWord = message.size() == 1;
+        {
+            std::lock_guard lock(mail->mutex);
+            mail->bytes += int64_t(message.size());
+            mail->boxes[size_t(to)].push_back({rank, std::move(message)});
+        }
+        if (rank == 0 && isWord) std::this_thread::sleep_for(mail->nap);
     }
     std::optional<PeerMessage> Receive() override {
         std::lock_guard lock(mail->mutex);
@@ -74,9 +80,10 @@ SampleSource SameForAll(int) { return SyntheticSample; }
 
 // Renders with `ranks` ranks; 0: without peers.
 Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
-                    const SourceOfRank& sourceOf = SameForAll) {
+                    const SourceOfRank& sourceOf = SameForAll, std::chrono::milliseconds nap = {}) {
     Shared shared;
     Mailboxes mail;
+    mail.nap = nap;
     mail.boxes.resize(size_t(std::max(1, ranks)));
     const auto runRank = [&](int rank) {
         QueuePeers peers(&mail, rank);
@@ -182,6 +189,14 @@ TEST(Ranks, PauseForCheckpoints) {
     EXPECT_GT(checkpoints, 2);
     EXPECT_TRUE(SamePixels(*shared.film, *reference.film));
     EXPECT_EQ(StopsOf(shared), StopsOf(reference));
+}
+
+// Others are quiet, and say so, before rank 0 has looked for messages.
+TEST(Ranks, MayAnswerAtOnce) {
+    const auto change = [](RenderOptions* o, int) { o->makeCriterion = nullptr; };
+    const auto nap = std::chrono::milliseconds(20);
+    EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, nap).film,
+                           *RenderShared(0, change).film));
 }
 
 // The clock of rank 0 is that of all.
