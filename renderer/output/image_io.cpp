@@ -176,8 +176,10 @@ bool WriteRows(OIIO::ImageOutput* output, OIIO::TypeDesc type, const Fill& fill)
 }
 
 template <typename T>
-OIIO::ImageSpec PngSpec(int width, int height) {
+OIIO::ImageSpec PngSpec(int width, int height,
+                        const std::map<std::string, std::string>& text = {}) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::BaseTypeFromC<T>::value);
+    for (const auto& [name, value] : text) spec.attribute(name, value);
     spec.attribute("oiio:ColorSpace", "sRGB");
     return spec;
 }
@@ -207,9 +209,8 @@ auto PngWriter(const RowSource& rows, ToneMap toneMap) {
 template <typename T>
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,
               const PngFormat& format) {
-    OIIO::ImageSpec spec = PngSpec<T>(width, height);
-    for (const auto& [name, value] : format.text) spec.attribute(name, value);
-    WriteFile(path, "png", spec, PngWriter<T>(rows, format.toneMap));
+    WriteFile(path, "png", PngSpec<T>(width, height, format.text),
+              PngWriter<T>(rows, format.toneMap));
 }
 
 auto PngWriter(std::span<const uint8_t> srgb) {
