@@ -83,16 +83,29 @@ bool RankExecutor::TakeException(std::exception_ptr exception) {
 }
 
 void RankExecutor::Enqueue(std::function<void()> work) {
-    task.order.Leave();
-    arena->enqueue(group.defer([this, work = std::move(work)] {
-        task.order.Enter();
-        try {
-            work();
-        } catch (...) {
-            TakeException(std::current_exception());
-        }
-        task.order.Leave();
-    }));
+    {
+        std::lock_guard lock(worksMutex);
+        works.push_back(std::move(work));
+    }
+    workTask.order.Leave();
+    arena->enqueue(group.defer(std::ref(workTask)));
+}
+
+void RankExecutor::WorkTask::operator()() {
+    order.Enter();
+    executor->task.order.Enter();
+    std::function<void()> work;
+    {
+        std::lock_guard lock(executor->worksMutex);
+        work = std::move(executor->works.front());
+        executor->works.pop_front();
+    }
+    try {
+        work();
+    } catch (...) {
+        executor->TakeException(std::current_exception());
+    }
+    executor->task.order.Leave();
 }
 
 void RankExecutor::EnqueueTiles() {

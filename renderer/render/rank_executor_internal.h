@@ -4,6 +4,8 @@
 #include <tbb/task_arena.h>
 
 #include <condition_variable>
+#include <deque>
+#include <functional>
 #include <set>
 
 #include "renderer/render/executor_internal.h"
@@ -61,6 +63,17 @@ class RankExecutor : public Executor {
 
   private:
     void Wait();
+
+    // Does the oldest of `works`. The thread sanitizer sees the order that a mutex gives, but not
+    // that of what oneTBB hands over, so that the first thing it reads is `order`.
+    struct WorkTask {
+        RankExecutor* executor;
+        TaskOrder order = {};
+        void operator()();
+    };
+    WorkTask workTask{this};
+    std::mutex worksMutex;  // guards `works`
+    std::deque<std::function<void()>> works;
 
     std::mutex outboxMutex;  // guards `outbox` and `failure`
     std::condition_variable changed;
