@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "renderer/commands/command.h"
+#include "renderer/commands/guide_options.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
@@ -23,6 +24,7 @@ namespace {
 
 struct Options {
     RenderSettings render;
+    GuideOptions guide;
     std::vector<std::string> samplers = {"sobol", "random"};
     std::vector<std::string> rules;  // beside those that are always measured
     std::string reference, external, output, report;
@@ -34,6 +36,9 @@ constexpr const char* kFooter =
 cost: the measured seconds of processors, divided by the number of threads. The errors are against
 --reference, or else against the image of the first sampler at the cap; that one has the samples of
 its sampler's other images in it, so that their error is understated near the cap.
+
+With --guide, each sampler renders once more with paths that are guided, "sobol+guide"; learning
+counts among the seconds of each of these points. With auto, only where the guide is used.
 
 Images of other renderers join in from a CSV with lines "name,seconds,file.exr".
 
@@ -54,6 +59,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->delimiter(',')
         ->check(CLI::IsMember({"random", "sobol"}))
         ->type_name("S,S");
+    AddGuideOptions(app, &o->guide);
     app.add_option("--rule", o->rules, "Another stopping rule to measure; can be given again")
         ->take_all()
         ->type_name("RULE");
@@ -118,8 +124,28 @@ Job Prepare(const Options& options, bool leads) {
     return job;
 }
 
-std::string CheckpointName(const Options& options, SamplerKind sampler) {
-    return fmt::format("{}.{}.checkpoint", options.output, NameOf(sampler));
+// One way of rendering: what a curve is drawn for.
+struct Variant {
+    SamplerKind sampler = SamplerKind::Sobol;
+    bool isGuided = false;
+};
+
+std::string NameOf(const Variant& variant) {
+    return NameOf(variant.sampler) + (variant.isGuided ? "+guide" : "");
+}
+
+std::vector<Variant> Variants(const Options& options) {
+    std::vector<Variant> variants;
+    for (const bool isGuided : {false, true})
+        for (const std::string& name : options.samplers)
+            if (!isGuided || options.guide.mode != GuideMode::Off)
+                variants.push_back(
+                    {name == "random" ? SamplerKind::Random : SamplerKind::Sobol, isGuided});
+    return variants;
+}
+
+std::string CheckpointName(const Options& options, const Variant& variant) {
+    return fmt::format("{}.{}.checkpoint", options.output, NameOf(variant));
 }
 
 // Says how far the comparisons are, at most once a second.
@@ -143,33 +169,57 @@ class PointCounter {
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-// Renders with one sampler, or takes what is left of an earlier run, and adds its points. Returns
-// false if it was interrupted. The ranks share the render, and the first measures.
-bool BenchSampler(const Options& options, SamplerKind sampler, Job* job, lull::Job* ranks,
+// Learns, where the variant is guided. Returns nothing if it was interrupted; learning begins anew
+// then, to the same bits.
+std::optional<Learning> Learn(const Options& options, const Variant& variant, const Job& job,
+                              const lull::Job& ranks) {
+    if (!variant.isGuided) return Learning();
+    return LearnGuide(options.guide, {.scene = *job.scene,
+                                      .region = job.provenance.crop,
+                                      .settings = options.render,
+                                      .sampler = variant.sampler,
+                                      .ranks = ranks.Count(),
+                                      .clock = {},
+                                      .keep = {},
+                                      .kept = {}});
+}
+
+// Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
+// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render, and
+// the first measures.
+bool BenchVariant(const Options& options, const Variant& variant, Job* job, lull::Job* ranks,
                   std::vector<BenchPoint>* points) {
     const bool leads = ranks->Rank() == 0;
     const RenderSettings& settings = options.render;
+    const std::optional<Learning> learning = Learn(options, variant, *job, *ranks);
+    if (!learning) return false;
+    if (variant.isGuided && !learning->figures.isUsed) return true;
     Provenance provenance = job->provenance;
-    provenance.sampler = sampler;
+    provenance.sampler = variant.sampler;
+    if (variant.isGuided) {
+        provenance.guide = options.guide.mode;
+        provenance.guideMegabytes = options.guide.megabytes;
+    }
     for (const ObservedRule& rule : job->rules) provenance.criterion += rule.text + " ";
     RenderIdentity identity = IdentityOf(provenance, job->sceneHash);
     const CheckpointOptions checkpoint{
-        .file = CheckpointName(options, sampler),
+        .file = CheckpointName(options, variant),
         .interval = settings.checkpoint.interval,
-        .resume = std::filesystem::exists(CheckpointName(options, sampler))};
+        .resume = std::filesystem::exists(CheckpointName(options, variant))};
 
     Film film(provenance.crop);
     std::optional<RenderState> interrupted;
     if (leads) interrupted = Resume(checkpoint, identity, &film);
     std::vector<BlockHistory> histories(MakeBlocks(provenance.crop, settings.schedule).size());
-    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(sampler));
+    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(variant));
     ProgressPrinter printer = MakePrinter(settings, false);
-    RenderOptions render = MakeRenderOptions(settings, sampler, &printer);
+    RenderOptions render = MakeRenderOptions(settings, variant.sampler, &printer);
     render.makeCriterion = MakeObservers(job->rules, provenance.crop, settings.schedule,
                                          {.snapshots = true, .goesOn = true}, &histories);
     render.checkpointAtEnd = true;
     WriteCheckpoints(checkpoint, identity, film, &render);
-    const SampleSource source = SamplesOf(*job->scene, settings.estimator);
+    const SampleSource source = variant.isGuided ? SamplesOf(*job->scene, learning->guide)
+                                                 : SamplesOf(*job->scene, settings.estimator);
     ShareAmongRanks(ranks, &render);
     ranks->Begin(TextOf(identity));
     const RenderResult result =
@@ -184,8 +234,10 @@ bool BenchSampler(const Options& options, SamplerKind sampler, Job* job, lull::J
     PointCounter counter(job->rules.size(), settings.quiet);
     for (BenchPoint point : MeasurePoints(observed, job->rules, *job->reference, result.threads,
                                           [&] { counter.Add(); })) {
-        point.sampler = NameOf(sampler);
+        point.sampler = NameOf(variant);
         point.sharesReference = makesReference;
+        point.seconds += learning->figures.seconds;
+        point.threadSeconds += learning->figures.seconds * result.threads;
         points->push_back(std::move(point));
     }
     return true;
@@ -196,13 +248,16 @@ ExitCode RunBench(Options options, lull::Job* ranks) {
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
     Job job = Prepare(options, ranks->Rank() == 0);
+    CheckGuide(options.guide, *job.scene, settings.estimator);
     CatchInterrupts();
     std::vector<BenchPoint> points;
-    for (const std::string& name : options.samplers) {
-        const SamplerKind sampler = name == "random" ? SamplerKind::Random : SamplerKind::Sobol;
-        if (BenchSampler(options, sampler, &job, ranks, &points)) continue;
+    const std::vector<Variant> variants = Variants(options);
+    std::vector<std::string> names;
+    for (const Variant& variant : variants) {
+        names.push_back(NameOf(variant));
+        if (BenchVariant(options, variant, &job, ranks, &points)) continue;
         fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
-                   CheckpointName(options, sampler));
+                   CheckpointName(options, variant));
         return kInterrupted;
     }
     ranks->End();
@@ -218,19 +273,20 @@ ExitCode RunBench(Options options, lull::Job* ranks) {
             options.samplers.front()));
     notes.push_back(
         "Seconds are the measured seconds of processors, of the samples and of the rule, divided "
-        "by "
-        "the number of threads.");
+        "by the number of threads.");
+    if (options.guide.mode != GuideMode::Off)
+        notes.push_back(
+            "The seconds of guided points have all the time that was taken to learn in them.");
     WriteFileAtomically(options.output + ".csv", BenchCsv(points));
     fmt::print("{}.csv\n", options.output);
     if (!options.report.empty()) {
         WriteFileAtomically(options.report,
                             MakeBenchPage(SceneName(settings.scene.file), job.provenance, points,
-                                          options.samplers, *job.reference, notes));
+                                          names, *job.reference, notes));
         fmt::print("{}\n", options.report);
     }
-    for (const std::string& name : options.samplers)
-        std::filesystem::remove(
-            CheckpointName(options, name == "random" ? SamplerKind::Random : SamplerKind::Sobol));
+    for (const Variant& variant : variants)
+        std::filesystem::remove(CheckpointName(options, variant));
     return kDone;
 }
 

@@ -60,17 +60,18 @@ void AddGuideOptions(CLI::App& app, GuideOptions* options) {
         ->capture_default_str();
 }
 
+void CheckGuide(const GuideOptions& options, const Scene& scene, Estimator estimator) {
+    if (options.mode != GuideMode::On) return;
+    if (const auto why = WhyNotGuided(scene, estimator))
+        throw Error(fmt::format(
+            "--guide on: {}, and paths are not guided there; give --guide auto or off", *why));
+}
+
 std::optional<Learning> LearnGuide(const GuideOptions& options, const LearningContext& context) {
     if (options.mode == GuideMode::Off) return NotGuided("");
     const RenderSettings& settings = context.settings;
-    if (const auto why = WhyNotGuided(context.scene, settings.estimator)) {
-        if (options.mode == GuideMode::On)
-            throw Error(
-                fmt::format("--guide on: {}, and paths are not guided there; give --guide "
-                            "auto or off",
-                            *why));
-        return NotGuided(*why);
-    }
+    CheckGuide(options, context.scene, settings.estimator);
+    if (const auto why = WhyNotGuided(context.scene, settings.estimator)) return NotGuided(*why);
     LearningOptions learningOptions{.mode = options.mode,
                                     .megabytes = options.megabytes,
                                     .sampler = context.sampler,

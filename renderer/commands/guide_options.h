@@ -32,8 +32,11 @@ struct LearningContext {
     std::span<const std::byte> kept;
 };
 
+// Throws Error where the scene cannot be guided but --guide on asks for it.
+void CheckGuide(const GuideOptions&, const Scene&, Estimator);
+
 // Learns, and says so on stderr. Returns nothing if it was interrupted. Several ranks each learn
-// all, to the same bits. Throws Error where the scene cannot be guided but --guide on asks for it.
+// all, to the same bits. Throws as CheckGuide() does.
 std::optional<Learning> LearnGuide(const GuideOptions&, const LearningContext&);
 
 }  // namespace lull

@@ -2,6 +2,8 @@
 // Draws error against effort: lines for fixed samples per pixel, marks for stopping rules.
 
 const benchErrors = [["rmseLightness", "RMSE of L"], ["relMse", "relMSE"], ["dssim", "1 \u2212 SSIM"], ["flip", "FLIP"], ["rmse", "RMSE"]];
+// How the lines of each sampler, in their order, are dashed.
+const benchDashes = [undefined, [7, 5], [2, 4], [12, 4, 2, 4]];
 const benchEfforts = [["seconds", "seconds"], ["spp", "mean samples per pixel"]];
 
 // Says whether most samples of the reference are a point's own, which tells little of its error.
@@ -20,7 +22,7 @@ function benchSeries(data, error, effort) {
     const points = g.points.filter(p => isNumber(p[error]) && p[error] > 0 && isNumber(p[effort]) && !isTooNear(data, p)).sort((a, b) => a[effort] - b[effort]);
     const k = rules.indexOf(g.rule);
     return {label: g.rule + (g.sampler ? ", " + g.sampler : ""), x: points.map(p => p[effort]), y: points.map(p => p[error]),
-      colour: palette[k % palette.length], dash: samplers.indexOf(g.sampler) > 0 ? [7, 5] : undefined,
+      colour: palette[k % palette.length], dash: benchDashes[Math.max(0, samplers.indexOf(g.sampler)) % benchDashes.length],
       mark: g.rule === "fixed" ? null : (k + 4) % 5, line: points.length > 1};
   }).filter(s => s.x.length);
 }
@@ -41,7 +43,7 @@ function startBench(data) {
   byId("bench-controls").append(makeChoice("Error", benchErrors, error, v => { error = v; draw(); }));
   draw();
   if (data.bench.samplers.length > 1)
-    byId("bench-table").append(make("p", {class: "small"}, `Full lines: ${data.bench.samplers[0]}; dashed: ${data.bench.samplers[1]}.`));
+    byId("bench-table").append(make("p", {class: "small"}, `Lines: ${data.bench.samplers.map((s, i) => s + " " + ["full", "dashed", "dotted", "dashed and dotted"][i]).join(", ")}.`));
   if (data.bench.points.some(p => isTooNear(data, p)))
     byId("bench-table").append(make("p", {class: "small"}, "Left out of the charts: points of which the reference shares the samples, beyond half the cap."));
   const table = makeTable("All points", ["rule", "setting", "sampler", "mean spp", "seconds", "RMSE of L", "relMSE", "SSIM", "FLIP"],
