@@ -25,6 +25,7 @@ std::string Joined(const std::string& what, const std::string& place) {
 }
 
 std::string NameOfShape(const ShapeEntity& shape) {
+    if (!shape.label.empty()) return shape.label;
     const std::string file = shape.parameters.GetString("filename", "");
     return file.empty() ? Joined(shape.name, Place(shape.loc))
                         : std::filesystem::path(file).stem().string();

@@ -118,6 +118,7 @@ struct ShapeEntity : Entity {
     // Of a curve: directives that followed and differ in points, widths and the like alone. Hair
     // comes as one directive a strand, and makes one shape.
     std::vector<Entity> strands;
+    std::string label;  // what its file calls it, for people; glTF: the node, else the mesh
 };
 
 // Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the

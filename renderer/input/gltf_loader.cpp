@@ -90,6 +90,12 @@ Bounds3f Transformed(const Mat4d& m, const Bounds3f& b) {
     return bounds;
 }
 
+// Returns the name of the node or, if it has none, of the mesh; can be empty.
+std::string NameOf(const GltfDocument& document, const Placement& placement) {
+    const std::string& name = document.model.nodes[size_t(placement.node)].name;
+    return name.empty() ? document.model.meshes[size_t(placement.mesh)].name : name;
+}
+
 // Puts a mesh into the world: once as it is, more often as instances of an object. What emits is
 // copied instead, since every light is a triangle of the world.
 void AddShapes(const GltfDocument& document, MeshShapes mesh,
@@ -104,12 +110,15 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
         for (size_t i = 0; i < placements.size(); ++i) {
             ShapeEntity copy = i + 1 < placements.size() ? shape : std::move(shape);
             copy.worldFromObject = placements[i].worldFromMesh;
+            copy.label = NameOf(document, placements[i]);
             description->shapes.push_back(std::move(copy));
         }
     }
     if (object.shapes.empty()) return;
-    object.name = fmt::format("/meshes/{}", placements[0].mesh);
-    object.loc = document.At(object.name);
+    const std::string path = fmt::format("/meshes/{}", placements[0].mesh);
+    object.loc = document.At(path);
+    const std::string& name = document.model.meshes[size_t(placements[0].mesh)].name;
+    object.name = name.empty() ? path : name;
     for (const Placement& p : placements)
         description->instances.push_back({int(description->objects.size()), p.worldFromMesh,
                                           document.At(fmt::format("/nodes/{}", p.node))});

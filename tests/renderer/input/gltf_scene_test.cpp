@@ -9,6 +9,25 @@ const GltfFolder kFolder;
 
 Vec3f Transformed(const Mat4d& m, const Vec3f& p) { return TransformPoint(m, p); }
 
+TEST(GltfNodes, KeepTheNamesOfItsNodes) {
+    GltfFile file;
+    const int plain = file.Triangle(), twice = file.Triangle();
+    file.root["meshes"][0]["name"] = "sheet";
+    file.root["meshes"][1]["name"] = "chair";
+    file.Node({{"mesh", plain}, {"name", "paper"}});
+    for (const float x : {0.f, 2.f}) file.Node({{"mesh", twice}, {"translation", {x, 0.f, 0.f}}});
+    const Description d = GltfFolder().Parse(file);
+    ASSERT_EQ(d.shapes.size(), 1u);
+    EXPECT_EQ(d.shapes[0].label, "paper");
+    ASSERT_EQ(d.objects.size(), 1u);
+    EXPECT_EQ(d.objects[0].name, "chair");
+
+    GltfFile unnamed;
+    unnamed.Node({{"mesh", unnamed.Triangle()}});
+    unnamed.root["meshes"][0]["name"] = "sheet";
+    EXPECT_EQ(GltfFolder().Parse(unnamed).shapes.at(0).label, "sheet");
+}
+
 TEST(GltfNodes, MultiplyAlongTheHierarchy) {
     GltfFile file;
     const float half = std::sqrt(0.5f);
