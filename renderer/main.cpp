@@ -25,7 +25,7 @@ ExitCode Run(Job* job, const Command& command) {
     } catch (const OtherRankFailed&) {
         return kFailed;
     } catch (const std::bad_alloc&) {
-        message = "out of memory";
+        message = "out of memory; end other programs, or give --crop or a smaller --resolution";
     } catch (const std::exception& e) {
         message = e.what();
     }

@@ -208,10 +208,10 @@ TEST(BadInput, ImageTooLargeForTheMemory) {
     directory.Write("scene.pbrt", SceneText(kSphere));
     const Outcome outcome = RunShell(directory,
                                      "ulimit -v 4000000 && LULL render scene.pbrt -o out.exr "
-                                     "--resolution 12000x12000 --spp 1");
+                                     "--resolution 13000x13000 --spp 1");
     EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "an image of 12000x12000 pixels needs 13.1 GB of memory"))
+    EXPECT_TRUE(Contains(outcome.err, "an image of 13000x13000 pixels needs 4.1 GB of memory"))
         << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "--crop")) << outcome.err;
 }
