@@ -11,7 +11,7 @@ namespace lull {
 namespace {
 
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
-              kUnsignedInt = 5125, kFloat = 5126;
+              kUnsignedInt = 5125;  // 5126 is float
 
 // Holds where the elements of an array lie; `bytes` is null where they are all zero.
 struct Elements {

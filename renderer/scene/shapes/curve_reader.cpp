@@ -126,8 +126,8 @@ void AddStrand(const Entity& entity, Curves* curves, Warnings& warnings) {
     const std::vector<Vec3f> normals = ReadNormals(entity, curves->kind, *count, warnings);
     const auto [width0, width1] = ReadWidths(entity);
     for (size_t i = 0; i < *count; ++i) {
-        const auto widthAt = [&](size_t k) {
-            return Lerp(float(k) / float(*count), width0, width1);
+        const auto widthAt = [&, from = width0, to = width1](size_t k) {
+            return Lerp(float(k) / float(*count), from, to);
         };
         const CurvePiece piece{basis.Piece(points, i), {widthAt(i), widthAt(i + 1)}};
         if (piece.p[0] == piece.p[1] && piece.p[0] == piece.p[2] && piece.p[0] == piece.p[3]) {
