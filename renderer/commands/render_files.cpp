@@ -43,6 +43,8 @@ ExrImage MakeExr(const Scene& scene, const PixelRect& region, int64_t samples,
     if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
     if (scene.film.exposure != 0) exr.attributes["exposure"] = scene.film.exposure;
     if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
+    if (provenance.filtering != TextureFiltering::Bilinear)
+        exr.attributes["filtering"] = NameOf(provenance.filtering);
     if (provenance.guide != GuideMode::Off)
         exr.attributes["guide"] = fmt::format("{}: {}", NameOf(provenance.guide),
                                               provenance.guideFigures.isUsed ? "used" : "not used");

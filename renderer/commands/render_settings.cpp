@@ -111,6 +111,7 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .maxDepth = scene.maxDepth,
             .threads = settings.scene.compile.threads,
             .substitute = settings.scene.compile.substitute,
+            .filtering = settings.scene.compile.filtering,
             .resolution = film.resolution,
             .crop = {film.cropMin, film.cropMax}};
 }

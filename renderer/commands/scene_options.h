@@ -18,9 +18,8 @@ struct SceneOptions {
     double environmentRotation = 0, exposure = 0;
 };
 
-// Adds SCENE, --resolution, --crop, --max-depth, --threads, --substitute, --exposure,
-// --environment,
-// --environment-rotation, --camera and --orbit.
+// Adds SCENE, --resolution, --crop, --max-depth, --threads, --substitute, --filtering, --exposure,
+// --environment, --environment-rotation, --camera and --orbit.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.

@@ -117,6 +117,7 @@ Json ProvenanceJson(const Provenance& p) {
                  {"resolution", {p.resolution.x(), p.resolution.y()}},
                  {"crop", RectJson(p.crop)}};
     if (!p.clock.empty()) json["clock"] = p.clock;
+    if (p.filtering != TextureFiltering::Bilinear) json["filtering"] = NameOf(p.filtering);
     if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
     return json;
 }

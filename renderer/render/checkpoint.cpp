@@ -215,6 +215,7 @@ RenderIdentity IdentityOf(const Provenance& p, const std::string& sceneHash) {
         {"block", fmt::to_string(p.schedule.blockSize)},
         {"pass", fmt::to_string(p.schedule.passLength)},
         {"cap", fmt::to_string(p.schedule.cap)}};
+    if (p.filtering != TextureFiltering::Bilinear) identity["filtering"] = NameOf(p.filtering);
     if (p.guide != GuideMode::Off)
         identity["guide"] = fmt::format("{} of {} MB", NameOf(p.guide), p.guideMegabytes);
     return identity;

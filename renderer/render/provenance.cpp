@@ -8,4 +8,8 @@ std::string NameOf(Estimator estimator) {
     return estimator == Estimator::Combined ? "combined" : "pbrt-v3";
 }
 
+std::string NameOf(TextureFiltering filtering) {
+    return filtering == TextureFiltering::Bilinear ? "bilinear" : "pbrt-v3";
+}
+
 }  // namespace lull

@@ -22,6 +22,7 @@ struct Provenance {
     int maxDepth = 0;
     int threads = 0;  // 0: all
     bool substitute = false;
+    TextureFiltering filtering = TextureFiltering::Bilinear;
     Vec2i resolution = {0, 0};
     PixelRect crop;
     std::string clock = {};  // that ends the render, in words; empty: none
@@ -32,5 +33,6 @@ struct Provenance {
 
 std::string NameOf(SamplerKind);
 std::string NameOf(Estimator);
+std::string NameOf(TextureFiltering);
 
 }  // namespace lull

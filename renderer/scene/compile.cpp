@@ -68,7 +68,8 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     ReadIntegrator(description.integrator, options.maxDepth, scene.get(), warnings);
 
     scene->textureSeconds = Timed([&] {
-        scene->textures = TextureTable(description, options.substitute, warnings);
+        scene->textures =
+            TextureTable(description, options.substitute, warnings, options.filtering);
         scene->materials =
             MaterialTable(description, scene->textures, options.substitute, warnings);
     });

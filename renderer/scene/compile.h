@@ -12,6 +12,7 @@ struct CompileOptions {
     // Choose and sample lights as pbrt-v3 does, for its estimator: by tables however many there
     // are, and environment maps by all of their brightness.
     bool lightsAsPbrtV3 = false;
+    TextureFiltering filtering = TextureFiltering::Bilinear;
     int threads = 0;  // for the acceleration structure; 0: all
 };
 

@@ -33,8 +33,8 @@ void ComputeFootprint(const Camera& camera, const Vec2f& film, const Vec2f& lens
     }
     hit->dpdx = moves[0];
     hit->dpdy = moves[1];
-    hit->uvStep = 0.5f * (ParametersOf(hit->dpdx, *hit).cwiseAbs() +
-                          ParametersOf(hit->dpdy, *hit).cwiseAbs());
+    hit->duvdx = ParametersOf(hit->dpdx, *hit);
+    hit->duvdy = ParametersOf(hit->dpdy, *hit);
 }
 
 }  // namespace lull

@@ -12,7 +12,7 @@ enum SurfaceNeeds : uint8_t {
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
-    kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise
+    kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise, filters
     kIsInterface = 16,            // nothing at all: paths go straight on, as no surface scatters
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color
@@ -35,11 +35,11 @@ struct SurfaceInteraction {
     Vec3f dpdu, dpdv;  // of the shading geometry
     Vec3f dndu, dndv;
     // Where a camera ray hits and the material needs it: the derivatives of the surface itself,
-    // how far p moves from one sample to the next across the image, and half of what u and v then
-    // move by. The latter stay 0 at all other hits.
+    // how far p moves from one sample to the next across and down the image, and what uv then moves
+    // by. The latter stay 0 at all other hits.
     Vec3f surfaceDpdu, surfaceDpdv;
     Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
-    Vec2f uvStep = Vec2f::Zero();
+    Vec2f duvdx = Vec2f::Zero(), duvdy = Vec2f::Zero();
     int material = -1;
     int areaLight = -1;  // into the scene's lights; -1: emits nothing
 

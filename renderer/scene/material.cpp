@@ -256,14 +256,18 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
     }
     Bsdf bsdf(frame, hit->n);
     AddLobes(material,
-             MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials, hit},
+             MaterialInputs{textures,
+                            {hit->p, hit->uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy},
+                            materials,
+                            hit},
              &bsdf);
     return bsdf;
 }
 
 std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& textures,
                                                         const SurfaceInteraction& hit) const {
-    const MaterialInputs in{textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy}, materials, &hit};
+    const MaterialInputs in{
+        textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy, hit.duvdx, hit.duvdy}, materials, &hit};
     return std::visit(
         [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
             if constexpr (requires { kind.Profile(in); })

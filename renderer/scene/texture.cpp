@@ -6,6 +6,7 @@
 #include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/constant.h"
 #include "renderer/scene/textures/dots.h"
+#include "renderer/scene/textures/filtered_imagemap.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/marble.h"
 #include "renderer/scene/textures/mix.h"
@@ -18,13 +19,13 @@ namespace lull {
 
 struct FloatTextureNode {
     std::variant<Scale<float>, Mix<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
-                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>>
+                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, FilteredImageMap<float>>
         kind;
 };
 
 struct SpectrumTextureNode {
     std::variant<Scale<Rgb>, Mix<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
-                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors>
+                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, FilteredImageMap<Rgb>>
         kind;
 };
 
@@ -50,11 +51,18 @@ TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* node
     if constexpr (std::is_same_v<decltype(made), Handle>) {
         return made;
     } else {
-        if (const Handle* handle = std::get_if<Handle>(&made)) return *handle;
-        nodes->push_back({std::move(std::get<1>(made))});
-        Handle handle = ConstantTexture<TypeOf<Node>>(0);
-        handle.index = int(nodes->size()) - 1;
-        return handle;
+        return std::visit(
+            [&](auto&& texture) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(texture)>, Handle>) {
+                    return texture;
+                } else {
+                    nodes->push_back({std::move(texture)});
+                    Handle handle = ConstantTexture<TypeOf<Node>>(0);
+                    handle.index = int(nodes->size()) - 1;
+                    return handle;
+                }
+            },
+            std::move(made));
     }
 }
 
@@ -149,10 +157,12 @@ TextureTable::~TextureTable() = default;
 TextureTable::TextureTable(TextureTable&&) noexcept = default;
 TextureTable& TextureTable::operator=(TextureTable&&) noexcept = default;
 
-TextureTable::TextureTable(const Description& description, bool substitute, Warnings& warnings) {
+TextureTable::TextureTable(const Description& description, bool substitute, Warnings& warnings,
+                           TextureFiltering filtering) {
     TextureImages images;
     for (const TextureEntity& entity : description.textures) {
-        const TextureInput input{entity, description, *this, images, substitute, warnings};
+        const TextureInput input{entity,     description, *this,    images,
+                                 substitute, warnings,    filtering};
         // Each texture takes a place in both lists, so that its index is its place in the
         // description; the one of the other type is never referred to.
         auto asFloat = ConstantTexture<float>(0);

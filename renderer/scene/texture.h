@@ -10,13 +10,18 @@
 
 namespace lull {
 
-// Holds what a texture may depend on. Images are filtered bilinearly on the finest level: after
-// thousands of samples nothing else is needed. Noise leaves out octaves that are finer than the
-// distance of samples, as pbrt-v3's does; where that is not known it is 0, for full detail.
+// Says how images are looked up: bilinearly on the finest level, as after thousands of samples
+// nothing else is needed, or as pbrt-v3 does, from smaller copies where camera rays hit.
+enum class TextureFiltering { Bilinear, PbrtV3 };
+
+// Holds what a texture may depend on. Noise leaves out octaves that are finer than the distance of
+// samples, as pbrt-v3's does; where that is not known it is 0, for full detail.
 struct TextureContext {
     Vec3f p;  // world
     Vec2f uv;
-    Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();  // of p, from one sample to the next
+    // Of p and of uv, from one sample to the next across and down the image.
+    Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
+    Vec2f duvdx = Vec2f::Zero(), duvdy = Vec2f::Zero();
 };
 
 // Refers to a texture of a TextureTable, or is a constant, which is evaluated without a look-up.
@@ -40,7 +45,8 @@ class TextureTable {
     // naming file and line for a kind that is not modelled or an unreadable image. With
     // `substitute` these are counted warnings, and the former becomes constant 1, the latter
     // pbrt-v3's grey.
-    TextureTable(const Description&, bool substitute, Warnings&);
+    TextureTable(const Description&, bool substitute, Warnings&,
+                 TextureFiltering = TextureFiltering::Bilinear);
     TextureTable();  // empty
     ~TextureTable();
     TextureTable(TextureTable&&) noexcept;

@@ -21,8 +21,9 @@ int FromEnvironment(const char* name, int otherwise) {
     return value ? std::max(2, std::atoi(value)) : otherwise;
 }
 
-PixelStatistics LoadReference(const fs::path& path) {
-    const ExrImage image = ReadExr(path.string());
+PixelStatistics LoadReference(const std::string& name) {
+    const fs::path file = fs::path(LULL_PLUGINS_DIR) / "references" / (name + ".exr");
+    const ExrImage image = ReadExr(file.string());
     PixelStatistics reference{image.width, image.height, 0, {}, {}, 0};
     reference.samples = std::get<int>(image.attributes.at("samplesPerPixel"));
     const size_t count = size_t(image.width) * image.height;
@@ -78,15 +79,21 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     return result;
 }
 
+std::unique_ptr<const Scene> Load(const std::string& name, TextureFiltering filtering) {
+    Warnings warnings;
+    CompileOptions options;
+    options.filtering = filtering;
+    const fs::path file = fs::path(LULL_PLUGINS_DIR) / "scenes" / (name + ".pbrt");
+    return Compile(ParsePbrt(file.string(), {}, warnings), options, warnings);
+}
+
 class Plugins : public testing::TestWithParam<std::string> {};
 
 TEST_P(Plugins, LookAsInPbrt) {
-    const fs::path folder = LULL_PLUGINS_DIR;
-    Warnings warnings;
+    const bool filters = GetParam().starts_with("filtering-");
     const auto scene =
-        Compile(ParsePbrt((folder / "scenes" / (GetParam() + ".pbrt")).string(), {}, warnings), {},
-                warnings);
-    const PixelStatistics theirs = LoadReference(folder / "references" / (GetParam() + ".exr"));
+        Load(GetParam(), filters ? TextureFiltering::PbrtV3 : TextureFiltering::Bilinear);
+    const PixelStatistics theirs = LoadReference(GetParam());
     const int samples = FromEnvironment("LULL_PLUGIN_SAMPLES", 256);
     for (const Estimator estimator : {Estimator::PbrtV3, Estimator::Combined}) {
         const PixelStatistics ours =
@@ -101,6 +108,22 @@ TEST_P(Plugins, LookAsInPbrt) {
         EXPECT_LE(c.pixelsOut, 0.01) << line;  // single samples have tails that the normal has not
         EXPECT_EQ(c.tilesOut, 0) << line;
         EXPECT_EQ(ours.rejected, 0);
+    }
+}
+
+// What the scenes of filtering show is seen: without it, and filtered the other way, they differ.
+TEST(Filtering, Shows) {
+    for (const char* name : {"filtering-ewa", "filtering-trilinear"}) {
+        const PixelStatistics theirs = LoadReference(name);
+        const auto tilesOut = [&](const char* scene, TextureFiltering filtering) {
+            return Compare(MeasurePixels(*Load(scene, filtering), Estimator::PbrtV3,
+                                         SamplerKind::Random, 512, 7),
+                           theirs)
+                .tilesOut;
+        };
+        const char* other = name[10] == 'e' ? "filtering-trilinear" : "filtering-ewa";
+        EXPECT_GT(tilesOut(name, TextureFiltering::Bilinear), 0.1) << name;
+        EXPECT_GT(tilesOut(other, TextureFiltering::PbrtV3), 0) << name;
     }
 }
 

@@ -6,10 +6,12 @@ void ApplyBumpMap(const FloatTexture& displacement, const TextureTable& textures
                   SurfaceInteraction* hit) {
     // Step half a sample's distance where it is known.
     constexpr float kSmallStep = 0.0005f;
-    const float du = hit->uvStep.x() > 0 ? hit->uvStep.x() : kSmallStep;
-    const float dv = hit->uvStep.y() > 0 ? hit->uvStep.y() : kSmallStep;
+    const Vec2f half = 0.5f * (hit->duvdx.cwiseAbs() + hit->duvdy.cwiseAbs());
+    const float du = half.x() > 0 ? half.x() : kSmallStep;
+    const float dv = half.y() > 0 ? half.y() : kSmallStep;
     const auto height = [&](const Vec3f& p, const Vec2f& uv) {
-        return textures.Evaluate(displacement, TextureContext{p, uv, hit->dpdx, hit->dpdy});
+        const TextureContext at{p, uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy};
+        return textures.Evaluate(displacement, at);
     };
     const float h = height(hit->p, hit->uv);
     const float hu = height(hit->p + du * hit->dpdu, hit->uv + Vec2f(du, 0));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/scene/image_lookup.h"
+#include "renderer/scene/textures/filtered_imagemap.h"
 #include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/texture_image.h"
 
@@ -50,9 +51,10 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
 // sRGB-encoded; without it: as its extension suggests), "scale" (after linearisation), "channel"
 // (of a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap"
 // ("repeat", "black", "clamp", "mirrored"; "wrapt" of its own for the second axis) and the mapping.
-// "trilinear" and "maxanisotropy" have no effect: there are no coarser levels. Throws Error with
-// file and line if the image cannot be read; with `substitute` that becomes pbrt-v3's grey.
+// "trilinear" and "maxanisotropy" (8; up to 1024) have an effect where images are filtered as
+// pbrt-v3 does. Throws Error with file and line if the image cannot be read; with `substitute` that
+// becomes pbrt-v3's grey.
 template <typename T>
-Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input);
+Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input);
 
 }  // namespace lull

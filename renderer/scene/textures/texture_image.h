@@ -11,6 +11,7 @@
 
 #include "renderer/input/description.h"
 #include "renderer/output/image.h"
+#include "renderer/scene/textures/mip_pyramid.h"
 
 namespace lull {
 
@@ -54,6 +55,11 @@ class TextureImages {
     std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, bool gamma,
                                             TextureChannels channels);
 
+    // Returns the image, `scale` times as bright, and its smaller copies. It must be one of these.
+    std::shared_ptr<const MipPyramid> GetPyramid(const std::shared_ptr<const TextureImage>&,
+                                                 float scale, Wrap wrapS, Wrap wrapT);
+
+    // Returns the memory taken by images; by the pyramids alone, where images are in these.
     size_t Bytes() const;
 
   private:
@@ -63,6 +69,9 @@ class TextureImages {
 
     std::map<std::tuple<std::string, bool, TextureChannels>, std::shared_ptr<const TextureImage>>
         images;
+    std::map<std::tuple<std::shared_ptr<const TextureImage>, float, Wrap, Wrap>,
+             std::shared_ptr<const MipPyramid>>
+        pyramids;
     // The last one read, as other channels of it are often asked for next.
     std::string lastName;
     Image last;

@@ -16,12 +16,13 @@ struct TextureInput {
     TextureImages& images;
     bool substitute;  // replace what is not modelled, with a counted warning
     Warnings& warnings;
+    TextureFiltering filtering = TextureFiltering::Bilinear;
 };
 
-// Is what a maker returns: a new texture of its kind, or, where another texture or a constant
-// says the same, the handle of that.
-template <typename T, typename Kind>
-using Made = std::variant<TextureHandle<T>, Kind>;
+// Is what a maker returns: a new texture of its kind or kinds, or, where another texture or a
+// constant says the same, the handle of that.
+template <typename T, typename... Kind>
+using Made = std::variant<TextureHandle<T>, Kind...>;
 
 // Reads a texture parameter of type T, float or Rgb.
 template <typename T>

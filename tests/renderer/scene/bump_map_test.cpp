@@ -36,7 +36,8 @@ TEST(BumpMap, StepsByTheDistanceOfSamplesWhereItIsKnown) {
     AddTexture(&b.AddMaterial("matte"), "bumpmap", 0, false);
     const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.985f, 0.5f));
-    hit.uvStep = {0.01f, 0.01f};
+    hit.duvdx = {0.01f, 0};
+    hit.duvdy = {0.01f, -0.02f};
     table.MakeBsdf(b.textures, &hit);
     EXPECT_TRUE(hit.dpdu.isApprox(Vec3f(0, 2, -0.1f), 1e-3f)) << hit.dpdu.transpose();
 }
