@@ -3,6 +3,7 @@
 
     make.py scenes                     writes scenes/NAME.pbrt and the images they use
     make.py references PBRT [NAME...]  renders them (those named) into references/NAME.exr
+    make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256) and writes what it finds into README.md
 
 PBRT is a pbrt-v3 whose film has been told to write moments: where the environment variable
 PBRT_MOMENTS names a file, each pixel's mean (R, G, B), unbiased variance of one sample and number of
@@ -14,6 +15,7 @@ all the same, for which that pbrt-v3 takes footprints for as many samples as PBR
 import math
 import os
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -486,6 +488,59 @@ def render_reference(pbrt, name):
               [values[y * SIZE:(y + 1) * SIZE] for y in range(SIZE)], int(values[0][6]))
 
 
+# What scenes show where their names do not say it.
+SHOWN = {
+    'camera-realistic': 'camera realistic, wide open',
+    'camera-realistic-exposed': 'camera realistic, weights by exposure',
+    'filtering-ewa': 'imagemap filtered by EWA, with bump map',
+    'filtering-trilinear': 'imagemap filtered trilinearly, with bump map',
+    'light-cylinder': 'diffuse area light, a cylinder',
+    'material-disney': 'material disney, reflecting',
+    'material-disney-below': 'material disney, scatterdistance',
+    'material-disney-glass': 'material disney, spectrans',
+    'material-disney-thin': 'material disney, thin',
+    'material-hair': 'material hair, on quadrics',
+    'material-hair-curves': 'material hair, on curves',
+    'material-subsurface': 'material subsurface, smooth',
+    'material-subsurface-rough': 'material subsurface, rough',
+    'medium-camera': 'medium homogeneous, about camera and lights',
+    'medium-endless': 'medium homogeneous, without an end',
+    'medium-grid': 'medium heterogeneous',
+    'motion-camera': 'ActiveTransform of the camera',
+    'motion-instance': 'ActiveTransform of instances',
+    'motion-shape': 'ActiveTransform of shapes',
+    'shape-curve': 'shape curve: flat, cylinder, ribbon; splitdepth',
+    'shape-curve-stretched': 'shape curve, under a transform that stretches',
+}
+
+
+def write_table(program, samples):
+    output = subprocess.run([program, '--gtest_filter=*LookAsInPbrt*'], stdout=subprocess.PIPE, text=True,
+                            env={**os.environ, 'LULL_PLUGIN_SAMPLES': samples}).stdout
+    found = {}
+    for name, estimator, ratio, sigma, pixels, tiles in re.findall(
+            r'^(\S+) +(pbrt-v3|combined) +energy (\S+) \((\S+) sigma\), pixels out (\S+) %, tiles out (\S+) %$',
+            output, re.M):
+        found.setdefault(name, {})[estimator] = (f'{ratio} ({sigma})', pixels, tiles)
+    missing = set(SCENES) - set(found)
+    if missing:
+        sys.exit('not in the output: ' + ' '.join(sorted(missing)))
+    rows = ''
+    for name, by in sorted(found.items()):
+        theirs, ours = by['pbrt-v3'], by['combined']
+        rows += f'| {SHOWN.get(name, name.replace("-", " ", 1))} | [{name}](scenes/{name}.pbrt) | {theirs[0]} | ' \
+                f'{ours[0]} | {theirs[1]}, {ours[1]} | {theirs[2]}, {ours[2]} |\n'
+    path = os.path.join(HERE, 'README.md')
+    with open(path) as file:
+        text = file.read()
+    with open(path, 'w') as file:
+        file.write(text[:text.index('| plug-in |')] + f'''| plug-in | scene | energy, `--estimator pbrt-v3` | `combined` | % of pixels out | % of tiles out |
+|---|---|---|---|---|---|
+{rows}
+{len(found)} scenes, {samples} spp.
+''')
+
+
 def main():
     if sys.argv[1:] == ['scenes']:
         write_scenes()
@@ -493,6 +548,8 @@ def main():
         for name in sys.argv[3:] or SCENES:
             print(name, flush=True)
             render_reference(sys.argv[2], name)
+    elif len(sys.argv) in (3, 4) and sys.argv[1] == 'table':
+        write_table(sys.argv[2], (sys.argv[3:] or ['256'])[0])
     else:
         sys.exit(__doc__)
 
