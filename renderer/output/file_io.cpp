@@ -14,17 +14,10 @@
 
 namespace lull {
 
-namespace {
-
 namespace fs = std::filesystem;
 
-[[noreturn]] void Fail(const std::string& path, const std::string& reason) {
-    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
-}
-
-[[noreturn]] void FailWithErrno(const std::string& path, int error = errno) {
-    Fail(path, std::strerror(error));
-}
+// What AtomicFile holds. It has linkage, and so must these.
+namespace file_io {
 
 // Owns a descriptor and, while `temporary` is not empty, the file of that name.
 struct OutputFile {
@@ -39,6 +32,26 @@ struct OutputFile {
         if (!temporary.empty()) unlink(temporary.c_str());
     }
 };
+
+// Says what is at the end of the links of `path`: the place to write to, and its status.
+struct Target {
+    fs::path path;
+    fs::file_status status;
+};
+
+}  // namespace file_io
+
+namespace {
+
+using file_io::OutputFile, file_io::Target;
+
+[[noreturn]] void Fail(const std::string& path, const std::string& reason) {
+    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+}
+
+[[noreturn]] void FailWithErrno(const std::string& path, int error = errno) {
+    Fail(path, std::strerror(error));
+}
 
 // Creates a new file beside `target`, hidden and with its extension, so that whoever watches the
 // directory does not take it for a result.
@@ -85,12 +98,6 @@ void SyncDirectory(const fs::path& directory) {
     fsync(fd);
     close(fd);
 }
-
-// Says what is at the end of the links of `path`: the place to write to, and its status.
-struct Target {
-    fs::path path;
-    fs::file_status status;
-};
 
 Target FindTarget(const std::string& path) {
     if (path.empty()) throw Error("cannot write: the file name is empty");
