@@ -10,7 +10,7 @@ namespace lull::test {
 namespace {
 
 // Returns the share of light from `wo` that a Bsdf scatters, from stratified samples.
-Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& wo) {
+Rgb SampledAlbedo(const Bsdf& bsdf, const Vec3f& wo) {
     constexpr int n = 200;
     Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (int i = 0; i < n; ++i)
@@ -30,7 +30,7 @@ TEST(GgxAlbedo, AgreesWithTheLobe) {
             for (const float f0 : {0.f, 0.04f, 1.f}) {
                 const Bsdf bsdf = MakeBsdf({MicrofacetReflection<SchlickInterface>{
                     Rgb(1, 1, 1), TrowbridgeReitz(alpha, alpha), SchlickInterface{f0}}});
-                EXPECT_NEAR(albedo(f0, 1), AlbedoOf(bsdf, wo).x(), 0.01)
+                EXPECT_NEAR(albedo(f0, 1), SampledAlbedo(bsdf, wo).x(), 0.01)
                     << alpha << " " << angle << " " << f0;
             }
         }
@@ -58,7 +58,7 @@ TEST(LayeredReflection, WithWhiteBaseReflectsEverything) {
             for (const double angle : {0., 40., 75., 87.}) {
                 const Bsdf bsdf = MakeBsdf({LayeredReflection(Rgb(1, 1, 1), Rgb::Constant(f0), 1,
                                                               alpha, InterfaceAbove{f0, 1}, 0)});
-                EXPECT_NEAR(AlbedoOf(bsdf, FromAngles(angle)).x(), 1, 0.02)
+                EXPECT_NEAR(SampledAlbedo(bsdf, FromAngles(angle)).x(), 1, 0.02)
                     << alpha << " " << f0 << " " << angle;
             }
 }
@@ -83,7 +83,7 @@ TEST(ThinSpecular, DividesLightByFresnel) {
         {ThinSpecular{Rgb(0.04f, 0.04f, 0.04f), 1, Rgb(1, 1, 1), InterfaceAbove{0.04f, 1}, 0}});
     for (const double angle : {0., 60., 85., 120.}) {
         const Vec3f wo = FromAngles(angle);
-        EXPECT_NEAR(AlbedoOf(bsdf, wo).x(), 1, 1e-3);
+        EXPECT_NEAR(SampledAlbedo(bsdf, wo).x(), 1, 1e-3);
         const auto through = bsdf.Sample(wo, {0.999f, 0.5f}, LobeSet::All);
         ASSERT_TRUE(through);
         EXPECT_TRUE(through->isTransmission);
