@@ -121,8 +121,9 @@ TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
 
 TEST(CommandLine, FiltersImagesWhereAskedFor) {
     const SceneDirectory directory;
-    WritePng(directory.File("stripes.png"),
-             {Rgb::Zero(), Rgb::Ones(), Rgb::Zero(), Rgb::Ones(), Rgb::Zero(), Rgb::Ones()}, 6, 1);
+    const std::vector<Rgb> stripes = {Rgb::Zero(), Rgb::Ones(), Rgb::Zero(),
+                                      Rgb::Ones(), Rgb::Zero(), Rgb::Ones()};
+    WritePng(directory.File("stripes.png"), stripes, 6, 1);
     directory.Write("striped.pbrt",
                     SceneText("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
                               "\"stripes.png\" \"float uscale\" 9\n"
