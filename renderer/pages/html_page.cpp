@@ -1,5 +1,7 @@
 #include "renderer/pages/html_page.h"
 
+#include <fmt/format.h>
+
 #include "renderer/base/color.h"
 #include "renderer/output/image_io.h"
 #include "renderer/output/spp_map.h"
@@ -8,6 +10,8 @@
 namespace lull {
 
 namespace {
+
+constexpr int64_t kMostPagePixels = 4 << 20;  // of a picture
 
 std::string Uri(std::span<const Rgb> pixels, int width, int height) {
     return "data:image/png;base64," + Base64(EncodePng(pixels, width, height));
@@ -80,12 +84,34 @@ std::string MapUri(std::span<const float> values, int width, int height) {
     return Uri(pixels, width, height);
 }
 
-RgbImage ImageOf(const Film& film) {
-    return {film.Region().Width(), film.Region().Height(), film.MeanImage()};
-}
-
 Json CurvesJson(const BlockCurves& curves) {
     return {{"spp", curves.spp}, {"entropy", curves.entropy}, {"noise", curves.noise}};
+}
+
+int PagePictureScale(const PixelRect& region) {
+    int scale = 1;
+    const auto sides = [&](int size) { return int64_t((size + scale - 1) / scale); };
+    while (sides(region.Width()) * sides(region.Height()) > kMostPagePixels) ++scale;
+    return scale;
+}
+
+RgbImage PagePicture(const Film& film) {
+    const PixelRect& region = film.Region();
+    const int scale = PagePictureScale(region);
+    RgbImage picture{
+        (region.Width() + scale - 1) / scale, (region.Height() + scale - 1) / scale, {}};
+    picture.values.reserve(size_t(picture.width) * size_t(picture.height) * 3);
+    FilmView view;
+    for (int y = region.min.y(); y < region.max.y(); y += scale)
+        for (int x = region.min.x(); x < region.max.x(); x += scale) {
+            const Vec2i end = region.max.cwiseMin(Vec2i(x + scale, y + scale));
+            film.Extract({{x, y}, end}, false, &view);
+            const size_t count = view.mean.size() / 3;
+            std::array<double, 3> sum = {};
+            for (size_t i = 0; i < view.mean.size(); ++i) sum[i % 3] += double(view.mean[i]);
+            for (const double s : sum) picture.values.push_back(float(s / double(count)));
+        }
+    return picture;
 }
 
 std::string MakeRenderPage(const Provenance& provenance, const RenderResult& result,
@@ -95,7 +121,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     Json image = {{"name", "image"},
                   {"label", "image (" + provenance.criterion + ")"},
                   {"rule", provenance.criterion},
-                  {"src", PictureUri(ImageOf(film))},
+                  {"src", PictureUri(PagePicture(film))},
                   {"blocks", Json::array()}};
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         const BlockResult& block = result.blocks[i];
@@ -107,6 +133,11 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
                                    {"seconds", block.seconds},
                                    {"ruleSeconds", block.criterionSeconds}});
     }
+    if (const int scale = PagePictureScale(film.Region()); scale > 1)
+        page["notes"] = {fmt::format(
+            "The picture is the mean of {0}x{0} pixels: the image would be too large for a page. "
+            "All pixels are in its PNG and EXR.",
+            scale)};
     page["kind"] = "render";
     page["title"] = provenance.scene;
     page["cap"] = provenance.schedule.cap;

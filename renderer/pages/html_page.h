@@ -22,9 +22,13 @@ std::string MakePage(const Json& data);
 std::string PictureUri(const RgbImage&);
 std::string MapUri(std::span<const float> values, int width, int height);
 
-// Returns the image that the film has, and the pixels of an image.
-RgbImage ImageOf(const Film&);
+// Returns the pixels of an image.
 std::vector<Rgb> PixelsOf(const RgbImage&);
+
+// Return how many pixels, a side, a page shows as one, so that its picture has at most 4 million;
+// and that picture, of the means of so many pixels (less at the right and at the bottom).
+int PagePictureScale(const PixelRect& region);
+RgbImage PagePicture(const Film&);
 
 Json CurvesJson(const BlockCurves&);
 

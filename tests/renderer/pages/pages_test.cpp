@@ -3,6 +3,7 @@
 #include "renderer/pages/bench_page.h"
 #include "renderer/pages/comparison_page.h"
 #include "renderer/pages/embedded.h"
+#include "tests/renderer/output/add_sample.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -130,6 +131,35 @@ TEST(MakeBenchPage, HasThePoints) {
     EXPECT_EQ(data["bench"]["points"][0]["rule"], "fixed");
     EXPECT_TRUE(data["bench"]["points"][0]["psnr"].is_null());
     EXPECT_EQ(data["notes"][0], "a note");
+}
+
+TEST(PagePicture, IsTheImageWhereThatIsSmall) {
+    EXPECT_EQ(PagePictureScale({{0, 0}, {2048, 2048}}), 1);
+    EXPECT_EQ(PagePictureScale({{0, 0}, {3840, 2160}}), 2);
+    EXPECT_EQ(PagePictureScale({{0, 0}, {7680, 4320}}), 3);
+    Film film({{2, 1}, {5, 3}});
+    AddTo(&film, {4, 2}, Rgb(1, 2, 3));
+    EXPECT_EQ(PagePicture(film).values, film.MeanImage());
+}
+
+TEST(PagePicture, IsOfMeansWhereTheImageIsLarge) {
+    const PixelRect region{{10, 20}, {10 + 2901, 20 + 1601}};
+    Film film(region);
+    AddTo(&film, {10, 20}, Rgb(4, 8, 0));
+    AddTo(&film, {11, 21}, Rgb(0, 0, 12));
+    AddTo(&film, region.max - Vec2i(1, 1), Rgb(5, 6, 7));  // alone in its place
+    const RgbImage picture = PagePicture(film);
+    ASSERT_EQ(picture.width, 1451);
+    ASSERT_EQ(picture.height, 801);
+    ASSERT_EQ(picture.values.size(), size_t(1451 * 801 * 3));
+    EXPECT_EQ(std::vector(picture.values.begin(), picture.values.begin() + 4),
+              std::vector<float>({1, 2, 3, 0}));
+    EXPECT_EQ(std::vector(picture.values.end() - 3, picture.values.end()),
+              std::vector<float>({5, 6, 7}));
+    RenderResult result;
+    const Json data = DataOf(MakeRenderPage({}, result, film, {}, {}));
+    EXPECT_EQ(data["width"], 2901);
+    EXPECT_NE(data["notes"][0].get<std::string>().find("2x2"), std::string::npos);
 }
 
 TEST(MakeRenderPage, HasCurvesAndDecisions) {
