@@ -49,6 +49,13 @@ Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* we
     return {position + rotation * ray.o, rotation * ray.d, kInfinity};
 }
 
+Ray Camera::GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
+    const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
+                    : lenses                              ? GenerateRealisticRay(film, lens, weight)
+                                                          : GenerateOtherRay(film, lens);
+    return motion ? Move(ray, time) : ray;
+}
+
 std::optional<Ray> Camera::NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
                                    int axis) const {
     const Vec2f step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);

@@ -41,10 +41,9 @@ struct Camera {
     // times, which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
     Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
         *weight = 1;
-        const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
-                        : lenses ? GenerateRealisticRay(film, lens, weight)
-                                 : GenerateOtherRay(film, lens);
-        return motion ? Move(ray, time) : ray;
+        if (projection == Projection::Perspective && !motion) [[likely]]
+            return GeneratePerspectiveRay(film, lens);
+        return GenerateRareRay(film, lens, time, weight);
     }
     Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time = 0) const {
         float weight;
@@ -61,6 +60,8 @@ struct Camera {
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
+    // Of all but perspective cameras at rest: apart, so that these do not pay for it.
+    Ray GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const;
     Ray Move(const Ray& ray, float time) const;
 };
 
