@@ -76,7 +76,9 @@ typedef struct lull_settings {
     /* Samples per pixel between two pictures of a block, if that is always the same: the first has
      * so many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
      * one when 40 spp have passed since the last that they looked at; "noise" and "paper" look at
-     * 40, 80, 120, ... spp only, and at 20, 60, 100, ... with 20. */
+     * 40, 80, 120, ... spp only, and at 20, 60, 100, ... with 20. The default model compares a
+     * picture with earlier ones, of 1 / sqrt(2) of its spp, 1 / 2, ...: where spp double from one
+     * picture to the next (64, 128, 256), it never comes to a vote. */
     int pass;
     int cap;        /* The spp that the picture has at most, if above 10,000; 0: not known */
     double caution; /* Divides the threshold of visible noise of "entropy", "noise" and the rules
