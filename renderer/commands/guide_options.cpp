@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/choice_option.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/output/progress.h"
 #include "renderer/render/learning_state.h"
@@ -43,16 +44,11 @@ void HeedClock(const std::function<double()>& clock, LearningOptions* options) {
 }  // namespace
 
 void AddGuideOptions(CLI::App& app, GuideOptions* options) {
-    const std::map<std::string, GuideMode> modes = {
-        {"off", GuideMode::Off}, {"auto", GuideMode::Auto}, {"on", GuideMode::On}};
-    auto* guide =
-        app.add_option_function<std::string>(
-               "--guide", [=](const std::string& name) { options->mode = modes.at(name); },
-               "Learn where light comes from and send paths there; auto: where a trial in\n"
-               "the scene shows that it pays, for renders of many samples")
-            ->check(CLI::IsMember(modes))
-            ->type_name("off|auto|on")
-            ->default_str(NameOf(options->mode));
+    auto* guide = AddChoiceOption<GuideMode>(
+        app, "--guide", &options->mode,
+        {{"off", GuideMode::Off}, {"auto", GuideMode::Auto}, {"on", GuideMode::On}}, "off|auto|on",
+        "Learn where light comes from and send paths there; auto: where a trial in\n"
+        "the scene shows that it pays, for renders of many samples");
     app.add_option("--guide-memory", options->megabytes, "MB that what is learned may take")
         ->check(CLI::Range(2, 1 << 16))
         ->type_name("MB")

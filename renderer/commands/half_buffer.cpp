@@ -1,21 +1,17 @@
 #include "renderer/commands/half_buffer.h"
 
-#include <CLI/CLI.hpp>
-
 #include "renderer/base/error.h"
+#include "renderer/commands/choice_option.h"
 
 namespace lull {
 
 void AddHalfBufferOption(CLI::App& app, HalfBuffer* choice) {
-    const std::map<std::string, HalfBuffer> choices = {
-        {"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}};
-    app.add_option_function<std::string>(
-           "--half-buffer", [=](const std::string& name) { *choice = choices.at(name); },
-           "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
-           "may be when going on from a checkpoint")
-        ->check(CLI::IsMember(choices))
-        ->type_name("auto|on|off")
-        ->default_str("auto");
+    AddChoiceOption<HalfBuffer>(
+        app, "--half-buffer", choice,
+        {{"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}},
+        "auto|on|off",
+        "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
+        "may be when going on from a checkpoint");
 }
 
 bool LooksAtHalf(const CriterionFactory& factory, const ScheduleOptions& schedule) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/choice_option.h"
 #include "renderer/measure/recorded_viewpoint.h"
 
 namespace lull {
@@ -42,14 +43,10 @@ Examples:
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
-    const std::map<std::string, StudyProcedure> procedures = {
-        {"adjust", StudyProcedure::Adjust}, {"staircase", StudyProcedure::Staircase}};
-    app.add_option_function<std::string>(
-           "--procedure", [=](const std::string& name) { s->procedure = procedures.at(name); },
-           "How people are asked")
-        ->check(CLI::IsMember(procedures))
-        ->type_name("adjust|staircase")
-        ->default_str("adjust");
+    AddChoiceOption<StudyProcedure>(
+        app, "--procedure", &s->procedure,
+        {{"adjust", StudyProcedure::Adjust}, {"staircase", StudyProcedure::Staircase}},
+        "adjust|staircase", "How people are asked");
     app.add_option("--repeats", s->repeats, "Share of the blocks that are asked twice")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("X")

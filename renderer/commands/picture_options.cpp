@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "renderer/base/memory.h"
+#include "renderer/commands/choice_option.h"
 
 namespace lull {
 
@@ -22,15 +23,11 @@ bool MayBeHalf(const std::string& name) {
 }  // namespace
 
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
-    const std::map<std::string, ToneMap> maps = {{"none", ToneMap::None},
-                                                 {"filmic", ToneMap::Filmic}};
-    app.add_option_function<std::string>(
-           "--tone-map", [=](const std::string& name) { options->toneMap = maps.at(name); },
-           "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
-           "rules judge the picture without it")
-        ->check(CLI::IsMember(maps))
-        ->type_name("none|filmic")
-        ->default_str("none");
+    AddChoiceOption<ToneMap>(
+        app, "--tone-map", &options->toneMap,
+        {{"none", ToneMap::None}, {"filmic", ToneMap::Filmic}}, "none|filmic",
+        "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
+        "rules judge the picture without it");
     app.add_option("--png-bits", options->pngBits, "Bits of each colour of the PNG")
         ->check(CLI::IsMember({8, 16}))
         ->type_name("8|16")

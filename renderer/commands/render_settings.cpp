@@ -8,6 +8,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "renderer/commands/choice_option.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/ranks/job.h"
@@ -15,14 +16,10 @@
 namespace lull {
 
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
-    const std::map<std::string, Estimator> estimators = {{"combined", Estimator::Combined},
-                                                         {"pbrt-v3", Estimator::PbrtV3}};
-    app.add_option_function<std::string>(
-           "--estimator", [=](const std::string& name) { *estimator = estimators.at(name); },
-           "combined: least noise for its time; pbrt-v3: the same noise as pbrt-v3's path")
-        ->check(CLI::IsMember(estimators))
-        ->type_name("combined|pbrt-v3")
-        ->default_str(*estimator == Estimator::Combined ? "combined" : "pbrt-v3");
+    AddChoiceOption<Estimator>(
+        app, "--estimator", estimator,
+        {{"combined", Estimator::Combined}, {"pbrt-v3", Estimator::PbrtV3}}, "combined|pbrt-v3",
+        "combined: least noise for its time; pbrt-v3: the same noise as pbrt-v3's path");
 }
 
 void AddCautionOption(CLI::App& app, double* caution) {

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "renderer/base/memory.h"
+#include "renderer/commands/choice_option.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 
@@ -92,16 +93,12 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     app.add_flag("--substitute", options->compile.substitute,
                  "Replace materials, textures and shapes that are not modelled, with a warning,\n"
                  "instead of refusing the scene");
-    const std::map<std::string, TextureFiltering> filterings = {
-        {"bilinear", TextureFiltering::Bilinear}, {"pbrt-v3", TextureFiltering::PbrtV3}};
-    app.add_option_function<std::string>(
-           "--filtering",
-           [=](const std::string& name) { options->compile.filtering = filterings.at(name); },
-           "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
-           "sees them: trilinear or EWA, from smaller copies, which need memory")
-        ->check(CLI::IsMember(filterings))
-        ->type_name("bilinear|pbrt-v3")
-        ->default_str("bilinear");
+    AddChoiceOption<TextureFiltering>(
+        app, "--filtering", &options->compile.filtering,
+        {{"bilinear", TextureFiltering::Bilinear}, {"pbrt-v3", TextureFiltering::PbrtV3}},
+        "bilinear|pbrt-v3",
+        "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
+        "sees them: trilinear or EWA, from smaller copies, which need memory");
     app.add_option("--exposure", options->exposure,
                    "Brighten the image by so many stops: all values, those of the EXR as well,\n"
                    "are multiplied by 2 to that power, which its header tells")
