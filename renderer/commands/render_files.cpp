@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 
 #include "renderer/output/file_io.h"
@@ -201,10 +202,10 @@ std::string SceneName(const std::string& file) {
 
 void WriteFiles(const RenderFiles& files, const Scene& scene, const Film& film,
                 const Provenance& provenance, const RenderResult& result, const Warnings& warnings,
-                const std::vector<BlockHistory>& histories, const ExtraLayers& extra,
+                const std::vector<BlockHistory>& histories, ExtraLayers extra,
                 const PictureOptions& pictures) {
     ExrImage exr = MakeExr(scene, film, provenance, result);
-    exr.channels.insert(exr.channels.end(), extra.channels.begin(), extra.channels.end());
+    std::ranges::move(extra.channels, std::back_inserter(exr.channels));
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, pictures);
     WriteExr(files.exr, exr, MeansOf(film), SppOf(film));

@@ -32,7 +32,7 @@ std::string SceneName(const std::string& file);
 // name ends in .html as a page, which shows the curves in `histories`. Throws Error.
 void WriteFiles(const RenderFiles&, const Scene&, const Film&, const Provenance&,
                 const RenderResult&, const Warnings&, const std::vector<BlockHistory>& histories,
-                const ExtraLayers& extra, const PictureOptions&);
+                ExtraLayers extra, const PictureOptions&);
 
 // Writes an image as EXR and PNG, as of a render whose block i, of those in `blocks`, took spp[i].
 void WriteImage(const std::string& exr, const std::string& png, const Scene&, const RgbImage&,
