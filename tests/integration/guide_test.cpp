@@ -39,7 +39,7 @@ TEST(GuideOption, KilledWhileLearningComesToTheSameBits) {
     const std::string parts =
         render + "-o parts.exr --threads 2 --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
     // Right after the first round, and then at several moments.
-    Outcome outcome = RunAndSignal(directory, parts, "KILL", "c.h5");
+    Outcome outcome = RunAndSignal(directory, parts, SIGKILL, "c.h5");
     EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
     for (int kill = 0; kill < 3 && outcome.exitCode == 137; ++kill)
         outcome =
@@ -94,7 +94,7 @@ TEST(GuideOption, RefusesWhatItCannotGuide) {
 TEST(GuideOption, GoesOnOnlyWithTheSameGuide) {
     const SceneDirectory directory;
     const std::string render = "LULL render room.pbrt -o a.exr --spp 4000 --checkpoint c.h5 ";
-    RunAndSignal(directory, render + "--checkpoint-interval 0.1 --guide on", "KILL", "c.h5");
+    RunAndSignal(directory, render + "--checkpoint-interval 0.1 --guide on", SIGKILL, "c.h5");
     const auto errorOf = [&](const std::string& more) {
         const Outcome outcome = RunShell(directory, render + "--resume " + more);
         EXPECT_EQ(outcome.exitCode, 1) << more;

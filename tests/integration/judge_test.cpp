@@ -48,14 +48,12 @@ TEST(Judge, GoesOnWhereItWasInterrupted) {
         "LULL judge scene.pbrt --resolution 80x80 --block 40 --cap 400 --threads 1 --quiet "
         "--checkpoint-interval 0.1 -o ";
     const Outcome interrupted =
-        RunAndSignal(directory, command + "a.html", "INT", "a.html.checkpoint");
-    if (interrupted.exitCode != 0) {  // it can have been too fast
-        EXPECT_EQ(interrupted.exitCode, 130) << interrupted.err;
-        EXPECT_TRUE(Contains(interrupted.err, "goes on from a.html.checkpoint"));
-        EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
-        const Outcome resumed = RunShell(directory, command + "a.html");
-        EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
-    }
+        RunAndSignal(directory, command + "a.html", SIGINT, "a.html.checkpoint");
+    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
+    EXPECT_TRUE(Contains(interrupted.err, "goes on from a.html.checkpoint"));
+    EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
+    const Outcome resumed = RunShell(directory, command + "a.html");
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
     EXPECT_EQ(RunShell(directory, command + "b.html").exitCode, 0);
     EXPECT_EQ(StudyIn(ReadBytes(directory.File("a.html"))),
               StudyIn(ReadBytes(directory.File("b.html"))));

@@ -121,7 +121,7 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     const std::string render =
         "LULL render scene.pbrt --quiet " + options + "--threads 2 -o parts.exr --checkpoint c.h5 ";
     const Outcome interrupted =
-        RunAndSignal(directory, render + "--checkpoint-interval 0.1", "TERM", "c.h5");
+        RunAndSignal(directory, render + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
     // Not without the same layers.
     const Outcome other = RunShell(directory,

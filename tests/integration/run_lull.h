@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <csignal>
+
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -30,15 +32,12 @@ inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& a
     return RunShell(directory, "LULL " + arguments);
 }
 
-// Runs `command`, which keeps its state in the file `checkpoint`, and sends it a signal `delay`
-// seconds after that file is there.
+// Runs `command`, which begins with LULL and keeps its state in the file `checkpoint`, and sends it
+// `signal` at the moment when that file has been written.
 inline Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
-                            const std::string& signal, const std::string& checkpoint,
-                            double delay = 0) {
-    return RunShell(
-        directory, fmt::format("{} & p=$!; while kill -0 $p && [ ! -e '{}' ]; do sleep 0.02; done; "
-                               "sleep {:.3f}; kill -{} $p; wait $p",
-                               command, checkpoint, delay, signal));
+                            int signal, const std::string& checkpoint) {
+    return RunShell(directory, fmt::format("LD_PRELOAD='{}' RENAMED_FILE='{}' RENAMED_SIGNAL={} {}",
+                                           SIGNAL_AT_RENAME, checkpoint, signal, command));
 }
 
 // A small scene that renders at once; `world` is what is in it.

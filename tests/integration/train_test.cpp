@@ -52,7 +52,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
     const std::string larger = "train data.h5 --human human.csv --units 64,32 --epochs 40 --quiet ";
     EXPECT_EQ(RunLull(directory, larger + "-o whole.h5").exitCode, 0);
     const Outcome part =
-        RunAndSignal(directory, "LULL " + larger + "-o part.h5 --checkpoint-interval 0.1", "INT",
+        RunAndSignal(directory, "LULL " + larger + "-o part.h5 --checkpoint-interval 0.1", SIGINT,
                      "part.h5.checkpoint");
     ASSERT_EQ(part.exitCode, 130) << part.err;
     EXPECT_EQ(part.out, "");
@@ -171,7 +171,7 @@ TEST(Train, GoesOnWithASearch) {
         return lines;
     };
     const std::vector<std::string> whole = figures();
-    const Outcome part = RunAndSignal(directory, "LULL " + options, "INT", "s.csv.checkpoint", 0.1);
+    const Outcome part = RunAndSignal(directory, "LULL " + options, SIGINT, "s.csv.checkpoint");
     ASSERT_EQ(part.exitCode, 130) << part.err;
     EXPECT_LT(figures().size(), whole.size());
     // Other options are another search.
