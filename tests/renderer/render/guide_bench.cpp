@@ -70,6 +70,7 @@ void BenchGuide(benchmark::State& state, const std::string& file) {
     LearningOptions learningOptions;
     learningOptions.sampler = SamplerKind::Random;
     learningOptions.cap = FromEnvironment("LULL_BENCH_CAP", 1000);
+    learningOptions.megabytes = FromEnvironment("LULL_BENCH_MEMORY", learningOptions.megabytes);
     for (auto _ : state) {
         Learning learning;
         const PixelRect region{{0, 0}, {side, side}};
