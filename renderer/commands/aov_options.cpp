@@ -79,10 +79,8 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
         ->needs(aov);
 }
 
-std::optional<AovFilm> MakeAovFilm(const AovSet& wanted, const PixelRect& region, int ranks) {
+std::optional<AovFilm> MakeAovFilm(const AovSet& wanted, const PixelRect& region) {
     if (!wanted.Any()) return {};
-    if (ranks > 1)
-        throw Error("--aov: several ranks cannot make layers; render them by one process");
     constexpr int64_t kBytes = sizeof(AovPixel) + 2 * 13 * sizeof(float);
     CheckMemory(region.Area() * kBytes,
                 fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),

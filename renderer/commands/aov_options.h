@@ -14,8 +14,8 @@ namespace lull {
 void AddAovOptions(CLI::App& app, AovSet* wanted);
 
 // Makes the film of the layers; nothing where none is wanted. Throws Error where the memory cannot
-// hold it, and on several ranks.
-std::optional<AovFilm> MakeAovFilm(const AovSet& wanted, const PixelRect& region, int ranks);
+// hold it.
+std::optional<AovFilm> MakeAovFilm(const AovSet& wanted, const PixelRect& region);
 
 // Says in words which layers are wanted, for checkpoints and headers.
 std::string TextOf(const AovSet& wanted);

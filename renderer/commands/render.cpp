@@ -226,9 +226,7 @@ ExitCode RunRender(Options options, Job* job) {
                   !factory.logRatios.empty());
     if (leads) CheckWritable(files, settings.scene.file);
     if (leads) CheckCheckpoint(settings.checkpoint);
-    if (options.aovs.Any() && options.guide.mode != GuideMode::Off)
-        throw Error("--aov: guided paths cannot make layers; leave --guide out");
-    std::optional<AovFilm> layers = MakeAovFilm(options.aovs, region, job->Count());
+    std::optional<AovFilm> layers = MakeAovFilm(options.aovs, region);
     AovFilm* const aovs = layers ? &*layers : nullptr;
     const std::unique_ptr<Display> display = MakeDisplay(
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
@@ -287,12 +285,14 @@ ExitCode RunRender(Options options, Job* job) {
     WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide, aovs);
     ShareAmongRanks(job, &renderOptions);
     job->Begin(TextOf(identity) + (film.HasHalf() ? "half" : ""));
-    const SampleSource source = learning->figures.isUsed ? SamplesOf(*scene, learning->guide)
-                                                         : SamplesOf(*scene, settings.estimator);
+    const bool isGuided = learning->figures.isUsed;
+    const SampleSource source =
+        isGuided ? SamplesOf(*scene, learning->guide) : SamplesOf(*scene, settings.estimator);
     const RenderResult result =
         Render(source, renderOptions, &film, interrupted ? &*interrupted : nullptr,
                {.aovs = aovs,
-                .aovSource = AovSamplesOf(*scene, settings.estimator, options.aovs),
+                .aovSource = isGuided ? AovSamplesOf(*scene, learning->guide, options.aovs)
+                                      : AovSamplesOf(*scene, settings.estimator, options.aovs),
                 .display = display.get()});
     job->End();
     if (!leads) return kDone;

@@ -83,15 +83,14 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, bool hasCl
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
                    const RenderState* interrupted, const RenderExtras& extras)
     : Executor(source, options, film, interrupted,
-               StartsOf(interrupted, bool(options.secondsLeft), *film), {}) {
-    this->extras = extras;
-}
+               StartsOf(interrupted, bool(options.secondsLeft), *film), {}, extras) {}
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
                    const RenderState* interrupted, std::span<const BlockStart> starts,
-                   TileShare share)
+                   TileShare share, const RenderExtras& extras)
     : source(source),
       options(options),
+      extras(extras),
       film(film),
       share(std::move(share)),
       secondsBefore(interrupted ? interrupted->seconds : 0),

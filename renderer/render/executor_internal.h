@@ -40,7 +40,7 @@ class Executor {
 
     // For one of several ranks: takes the tiles of the share. `starts` is where blocks are.
     Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-             std::span<const BlockStart> starts, TileShare);
+             std::span<const BlockStart> starts, TileShare, const RenderExtras& extras);
 
     // Begins anew where blocks are now, with no task at work: passes under way are given out once
     // more, of which pixels keep what they have.
@@ -74,7 +74,7 @@ class Executor {
 
     const SampleSource& source;
     const RenderOptions& options;
-    RenderExtras extras = {};  // none on several ranks
+    const RenderExtras extras;
     Film* film;
     TileShare share;
     const Clock::time_point start = Clock::now();

@@ -14,6 +14,8 @@ using AovSource =
 // Returns the scene as such a source of samples, the same ones as those of SamplesOf(); it must
 // outlive the source.
 AovSource AovSamplesOf(const Scene&, Estimator, const AovSet& wanted);
+// The same with paths that the guide directs, which must outlive the source as well.
+AovSource AovSamplesOf(const Scene&, const Guide&, const AovSet& wanted);
 
 struct RenderExtras {
     // Layers of the same region as the film, and whence the samples of both come. Null: none.
@@ -23,8 +25,9 @@ struct RenderExtras {
     Display* display = nullptr;
 };
 
-// Renders as without extras, to the same bits. Throws std::invalid_argument for layers of another
-// region, and on several ranks.
+// Renders as without extras, to the same bits; layers, too, are the same bits for any number of
+// ranks. Throws std::invalid_argument for layers of another region, and for a display on several
+// ranks.
 RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
                     const RenderState* interrupted, const RenderExtras&);
 

@@ -19,9 +19,9 @@ bool ComesBefore(const PixelRect& a, const PixelRect& b) {
 
 RankExecutor::RankExecutor(const SampleSource& source, const RenderOptions& options, Film* film,
                            const RenderState* interrupted, std::span<const BlockStart> starts,
-                           tbb::task_arena* arena)
+                           const RenderExtras& extras, tbb::task_arena* arena)
     : Executor(source, options, film, interrupted, starts,
-               {options.peers->Rank(), EvenDeal(options.peers->Count())}),
+               {options.peers->Rank(), EvenDeal(options.peers->Count())}, extras),
       peers(*options.peers),
       ranks(options.peers->Count()),
       arena(arena) {}

@@ -65,12 +65,13 @@ std::vector<std::byte> PackCollect(bool undo) {
     return std::move(writer.bytes);
 }
 
-std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
-                                  const Film& film) {
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
+                                  const AovFilm* aovs) {
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
     std::vector<FilmPixel> pixels;
     std::vector<double> sums;
+    std::vector<AovPixel> aovPixels;
     for (const PixelRect& tile : tiles) {
         pixels.clear();
         CopyPixels(film, tile, &pixels);
@@ -84,6 +85,10 @@ std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles
         writer.Put(pixels.back().count);
         writer.Put(rejected);
         writer.PutAll(std::span<const double>(sums));
+        if (!aovs) continue;
+        aovPixels.clear();
+        aovs->Copy(tile, &aovPixels);
+        writer.PutAll(std::span<const AovPixel>(aovPixels));
     }
     return std::move(writer.bytes);
 }
@@ -125,7 +130,8 @@ int GetBlock(StateReader& reader, size_t blocks) {
     return block;
 }
 
-void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film) {
+void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
+               AovFilm* aovs) {
     for (const PixelRect& tile : tiles) {
         std::vector<FilmPixel> pixels(size_t(tile.Area()));
         const auto count = reader.Get<uint32_t>();
@@ -136,6 +142,10 @@ void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* f
             if (film->HasHalf()) reader.GetAll(std::span<double>(pixel.halfSum));
         }
         SetPixels(pixels.data(), tile, film);
+        if (!aovs) continue;
+        std::vector<AovPixel> aovPixels(pixels.size());
+        reader.GetAll(std::span(aovPixels));
+        aovs->Set(aovPixels.data(), tile);
     }
     reader.Finish();
 }

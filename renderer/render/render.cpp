@@ -9,6 +9,7 @@
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/rank_executor_internal.h"
 #include "renderer/transport/first_hit.h"
+#include "renderer/transport/guided_path_tracer.h"
 
 namespace lull {
 
@@ -16,12 +17,13 @@ namespace {
 
 // This thread speaks with the other ranks, so the arena has none of its places for it.
 RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& options, Film* film,
-                             const RenderState* interrupted, int threads) {
+                             const RenderState* interrupted, const RenderExtras& extras,
+                             int threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads) + 1);
     tbb::task_arena arena(threads, 0);
     RenderResult result = options.peers->Rank() == 0
-                              ? LeadRanks(source, options, film, interrupted, &arena)
-                              : FollowRanks(source, options, film, &arena);
+                              ? LeadRanks(source, options, film, interrupted, extras, &arena)
+                              : FollowRanks(source, options, film, extras, &arena);
     result.threads = threads * options.peers->Count();
     return result;
 }
@@ -41,9 +43,8 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
     if (extras.aovs && !(extras.aovs->Region() == film->Region()))
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
-    if (!alone && (extras.aovs || extras.display))
-        throw std::invalid_argument("several ranks have neither layers nor a viewer");
-    if (!alone) return RenderWithPeers(source, options, film, interrupted, threads);
+    if (!alone && extras.display) throw std::invalid_argument("several ranks have no viewer");
+    if (!alone) return RenderWithPeers(source, options, film, interrupted, extras, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
     RenderResult result =
@@ -67,6 +68,17 @@ AovSource AovSamplesOf(const Scene& scene, Estimator estimator, const AovSet& wa
     return [&scene, estimator, throughSpecular = wanted.throughSpecular](
                Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
         return RenderSample(scene, estimator, sampler, pixel, index, throughSpecular, firstHit);
+    };
+}
+
+AovSource AovSamplesOf(const Scene& scene, const Guide& guide, const AovSet& wanted) {
+    if (!wanted.FirstHits())
+        return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
+            return RenderGuidedSample(scene, guide, sampler, pixel, index);
+        };
+    return [&, throughSpecular = wanted.throughSpecular](Sampler& sampler, const Vec2i& pixel,
+                                                         uint32_t index, FirstHit* firstHit) {
+        return RenderGuidedSample(scene, guide, sampler, pixel, index, throughSpecular, firstHit);
     };
 }
 

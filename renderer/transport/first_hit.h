@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/output/aov_film.h"
+#include "renderer/transport/guide.h"
 #include "renderer/transport/path_tracer.h"
 
 namespace lull {
@@ -13,5 +14,10 @@ namespace lull {
 PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
                         const Vec2i& pixel, uint32_t index, bool throughSpecular,
                         FirstHit* firstHit);
+
+// Does the same beside RenderGuidedSample().
+PathSample RenderGuidedSample(const Scene& scene, const Guide& guide, Sampler& sampler,
+                              const Vec2i& pixel, uint32_t index, bool throughSpecular,
+                              FirstHit* firstHit);
 
 }  // namespace lull

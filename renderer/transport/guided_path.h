@@ -46,8 +46,10 @@ class Guided {
         return fraction * guide.Pdf(leaf, w) + (1 - fraction) * bsdfPdf;
     }
 
-    bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, const Rgb& L, Sampler& sampler,
-                 Path* path, bool* isTransmission) {
+    // Inlined, so that the path needs not lie in memory.
+    [[gnu::always_inline]] bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit,
+                                        const Rgb& L, Sampler& sampler, Path* path,
+                                        bool* isTransmission) {
         *isTransmission = false;
         Vec2f u = sampler.Get2D();
         float bsdfPdf, guidePdf = 0;

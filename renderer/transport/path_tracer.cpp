@@ -124,7 +124,7 @@ template <typename Guiding>
 
 // Carries the ray on behind an interface. As with pbrt-v3's path integrator, which blocks shadow
 // rays there, lights behind it are seen only by rays for which emission counts in full.
-void GoThrough(const SurfaceInteraction& hit, Path* path) {
+[[gnu::always_inline]] inline void GoThrough(const SurfaceInteraction& hit, Path* path) {
     path->ray = hit.SpawnRay(path->ray.d);
     path->pdf = 0;
     path->wentThrough = true;
@@ -256,6 +256,17 @@ PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sample
             return VolumeRadiance(scene, estimator, sampler, ray, film, lens, time, &recorder);
         Unguided unguided;
         return Trace(scene, estimator, sampler, ray, film, lens, time, unguided, recorder);
+    };
+    return TakeSample(scene, sampler, pixel, index, radiance, firstHit);
+}
+
+PathSample RenderGuidedSample(const Scene& scene, const Guide& guide, Sampler& sampler,
+                              const Vec2i& pixel, uint32_t index, bool throughSpecular,
+                              FirstHit* firstHit) {
+    const auto radiance = [&](const Ray& ray, const Vec2f& film, const Vec2f& lens, float time) {
+        FirstHitRecorder recorder(scene.camera, ray, time, throughSpecular, firstHit);
+        Guided guided(guide, nullptr, 1);
+        return Trace(scene, Estimator::Combined, sampler, ray, film, lens, time, guided, recorder);
     };
     return TakeSample(scene, sampler, pixel, index, radiance, firstHit);
 }

@@ -135,6 +135,30 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
 }
 
+// What is seen first does not depend on where paths are sent afterwards.
+TEST_F(LayersTest, GuidesLeaveThemAsTheyAre) {
+    const std::string options = std::string(kAll) + "--spp 64 ";
+    Render(options + "-o plain.exr");
+    Render(options + "--guide on --threads 1 -o guided.exr");
+    Render(options + "--guide on --threads 2 -o again.exr");
+    EXPECT_TRUE(SameChannels("guided.exr", "again.exr"));
+    const ExrImage plain = ReadExr(directory.File("plain.exr")),
+                   guided = ReadExr(directory.File("guided.exr"));
+    ASSERT_EQ(guided.channels.size(), 17u);
+    EXPECT_NE(guided.Find("R")->values, plain.Find("R")->values);
+    for (const ExrChannel& c : plain.channels) {
+        if (c.name == "R" || c.name == "G" || c.name == "B" || c.name == "noise") continue;
+        const std::vector<float>& values = guided.Find(c.name)->values;
+        for (size_t i = 0; i < values.size(); ++i)
+            ASSERT_NEAR(values[i], c.values[i], 1e-4f * std::max(1.f, std::abs(c.values[i])))
+                << c.name;
+    }
+    // A render of few samples, for which learning does not pay, has them too.
+    Render(std::string(kAll) + "--spp 8 -o plain.exr");
+    Render(std::string(kAll) + "--spp 8 --guide auto -o auto.exr");
+    EXPECT_TRUE(SameChannels("plain.exr", "auto.exr"));
+}
+
 TEST_F(LayersTest, AreRefusedWhereTheyCannotBe) {
     const Outcome unknown = RunLull(directory, "render scene.pbrt --aov albedo,colour");
     EXPECT_EQ(unknown.exitCode, 2);

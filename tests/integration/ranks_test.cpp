@@ -39,6 +39,16 @@ struct RanksTest : testing::Test {
                 << a << " " << b;
     }
 
+    void ExpectSameLayers(const std::string& a, const std::string& b) {
+        ExpectSame(a, b);
+        const ExrImage x = ReadExr(directory.File(a + ".exr")),
+                       y = ReadExr(directory.File(b + ".exr"));
+        ASSERT_EQ(x.channels.size(), 17u);
+        ASSERT_EQ(y.channels.size(), 17u);
+        for (const ExrChannel& channel : x.channels)
+            EXPECT_EQ(y.Find(channel.name)->values, channel.values) << channel.name;
+    }
+
     // Returns the lines of a bench without what depends on the machine.
     std::string WithoutSeconds(const std::string& csv) {
         std::istringstream lines(ReadBytes(directory.File(csv)));
@@ -56,13 +66,11 @@ struct RanksTest : testing::Test {
     TemporaryDirectory directory;
 };
 
-TEST_F(RanksTest, RefuseLayersAndViewers) {
-    for (const char* option : {"--aov noise", "--display 127.0.0.1:9"}) {
-        const Outcome outcome = Run(Ranks(2) + kRender + kShort + option);
-        EXPECT_NE(outcome.exitCode, 0);
-        EXPECT_TRUE(Contains(outcome.err, "render")) << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "one process")) << outcome.err;
-    }
+TEST_F(RanksTest, RefuseViewers) {
+    const Outcome outcome = Run(Ranks(2) + kRender + kShort + "--display 127.0.0.1:9");
+    EXPECT_NE(outcome.exitCode, 0);
+    EXPECT_TRUE(Contains(outcome.err, "render")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "one process")) << outcome.err;
 }
 
 TEST_F(RanksTest, ComeToTheSameBits) {
@@ -82,6 +90,25 @@ TEST_F(RanksTest, LearnTheSame) {
     const Outcome outcome = Run(Ranks(2) + render + "-o some.exr");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     ExpectSame("one", "some");
+}
+
+TEST_F(RanksTest, ShareLayers) {
+    const std::string render =
+        std::string(kRender) + "--aov albedo,normal,depth,position,object,material,noise ";
+    const std::string guided = render + "--guide on --spp 32 ";
+    ASSERT_EQ(Run(guided + "-o one.exr").exitCode, 0);
+    ASSERT_EQ(Run(Ranks(3) + guided + "-o some.exr").exitCode, 0);
+    ExpectSameLayers("one", "some");
+
+    const std::string whole = render + "--stop lnoise:0.3 --cap 500 ";
+    ASSERT_EQ(Run(whole + "-o one.exr").exitCode, 0);
+    const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
+    const Outcome interrupted =
+        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
+    const Outcome resumed = Run(Ranks(3) + parts);
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSameLayers("one", "parts");
 }
 
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {

@@ -14,16 +14,7 @@ const PixelRect kRegion = {{5, 3}, {75, 63}};
 
 PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
     const PathSample sample = SyntheticSample(sampler, pixel, index);
-    const Vec2f u = sampler.Get2D();
-    *hit = {.albedo = Rgb(u.x(), u.y(), 0.1f),
-            .normal = Vec3f(u.y(), 0, 1),
-            .position = Vec3f(1e5f * u.x(), 1, 2),
-            .depth = u.x(),
-            .object = index,
-            .material = uint32_t(pixel.x()),
-            .found = u.x() < 0.7f,
-            .weight = 1,
-            .offset2 = u.y()};
+    *hit = SyntheticHit(sampler, pixel, index);
     return sample;
 }
 
@@ -48,10 +39,6 @@ struct Rendered {
         result = Render(SyntheticSample, options, &film, interrupted, extras);
     }
 };
-
-bool SameLayers(const AovFilm& a, const AovFilm& b) {
-    return std::equal(a.Pixels().begin(), a.Pixels().end(), b.Pixels().begin(), b.Pixels().end());
-}
 
 // Adds the same samples one by one.
 AovFilm Expected(const Film& film, const AovSet& wanted) {

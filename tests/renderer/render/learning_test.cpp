@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "renderer/input/pbrt_parser.h"
+#include "renderer/render/extras.h"
 #include "renderer/render/learning_state.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
@@ -136,6 +137,42 @@ TEST(Learning, KeepsTheMeanAndLowersTheVariance) {
     EXPECT_EQ(guided.rejected, 0);
     EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
     EXPECT_LT(guided.variance, 0.8 * plain.variance);
+}
+
+// Asking for layers changes no guided sample, and what is seen first does not depend on the guide,
+// in mirrors and through glass neither.
+TEST(Learning, LayersAreThoseWithout) {
+    const auto scene = MakeScene(kRoom);
+    const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 250));
+    ASSERT_TRUE(learning.figures.isUsed);
+    for (const bool throughSpecular : {false, true}) {
+        const AovSet wanted{.depth = true, .throughSpecular = throughSpecular};
+        const AovSource guided = AovSamplesOf(*scene, learning.guide, wanted),
+                        plain = AovSamplesOf(*scene, Estimator::Combined, wanted);
+        Sampler a(SamplerKind::Sobol, 1), b = a, c = a;
+        for (uint32_t k = 0; k < 1000; ++k) {
+            const Vec2i pixel(int(k % 16), int(k / 16 % 16));
+            FirstHit hit, usual;
+            const Rgb with = guided(a, pixel, k, &hit).radiance,
+                      without = SamplesOf(*scene, learning.guide)(b, pixel, k).radiance;
+            for (int channel = 0; channel < 3; ++channel)
+                ASSERT_EQ(with[channel], without[channel]);
+            plain(c, pixel, k, &usual);
+            ASSERT_EQ(hit.found, usual.found);
+            ASSERT_EQ(hit.object, usual.object);
+            ASSERT_EQ(hit.material, usual.material);
+            ASSERT_NEAR(hit.depth, usual.depth, 1e-4f);
+            ASSERT_TRUE(hit.albedo.isApprox(usual.albedo, 1e-4f)) << k;
+            ASSERT_TRUE(hit.normal.isApprox(usual.normal, 1e-4f));
+        }
+    }
+    // Noise needs no first hits.
+    Sampler a(SamplerKind::Sobol, 1), b = a;
+    const AovSource noise = AovSamplesOf(*scene, learning.guide, {.noise = true});
+    FirstHit hit;
+    EXPECT_EQ(noise(a, {3, 4}, 5, &hit).radiance.x(),
+              SamplesOf(*scene, learning.guide)(b, {3, 4}, 5).radiance.x());
+    EXPECT_FALSE(hit.found);
 }
 
 // Inside a closed sphere of albedo r that emits e, radiance is e / (1 - r) everywhere.

@@ -55,6 +55,7 @@ class QueuePeers final : public Peers {
 // What a render came to at rank 0.
 struct Shared {
     std::unique_ptr<Film> film;
+    std::unique_ptr<AovFilm> layers;
     RenderResult result;
     RenderState state;  // the last that a checkpoint was shown
     int64_t bytes = 0;
@@ -78,9 +79,18 @@ using SourceOfRank = std::function<SampleSource(int rank)>;
 
 SampleSource SameForAll(int) { return SyntheticSample; }
 
+AovSource WithHits(const SampleSource& source) {
+    return [source](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+        const PathSample sample = source(sampler, pixel, index);
+        *hit = SyntheticHit(sampler, pixel, index);
+        return sample;
+    };
+}
+
 // Renders with `ranks` ranks; 0: without peers.
 Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
-                    const SourceOfRank& sourceOf = SameForAll, std::chrono::milliseconds nap = {}) {
+                    const SourceOfRank& sourceOf = SameForAll, std::chrono::milliseconds nap = {},
+                    bool withLayers = false) {
     Shared shared;
     Mailboxes mail;
     mail.nap = nap;
@@ -94,14 +104,20 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
         if (rank == 0) options.onCheckpoint = [&](const RenderState& s) { shared.state = s; };
         if (change) change(&options, rank);
         auto film = std::make_unique<Film>(kImage, FilmOptions{.grid = GridOf(options.schedule)});
+        auto layers = std::make_unique<AovFilm>(kImage, AovSet{.depth = true});
         const RenderState* state = nullptr;
         if (before && rank == 0) {
             *film = *before->film;
+            *layers = *before->layers;
             state = &before->state;
         }
-        RenderResult result = Render(sourceOf(rank), options, film.get(), state);
+        const SampleSource source = sourceOf(rank);
+        RenderExtras extras;
+        if (withLayers) extras = {.aovs = layers.get(), .aovSource = WithHits(source)};
+        RenderResult result = Render(source, options, film.get(), state, extras);
         if (rank > 0) return;
         shared.film = std::move(film);
+        shared.layers = std::move(layers);
         shared.result = std::move(result);
     };
     std::vector<std::thread> others;
@@ -308,6 +324,82 @@ TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
     EXPECT_TRUE(SamePixels(*moved.film, *reference.film));
     EXPECT_EQ(StopsOf(moved), StopsOf(reference));
     EXPECT_GT(checkpoints, 0);
+}
+
+Shared RenderLayers(int ranks, const Change& change = {}, const Shared* before = nullptr,
+                    const SourceOfRank& sourceOf = SameForAll) {
+    return RenderShared(ranks, change, before, sourceOf, {}, true);
+}
+
+void ExpectSameLayers(const Shared& shared, const Shared& reference, int ranks) {
+    EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
+    EXPECT_TRUE(SameLayers(*shared.layers, *reference.layers)) << ranks;
+    EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+}
+
+TEST(Ranks, ShareLayers) {
+    const Shared reference = RenderLayers(0);
+    EXPECT_TRUE(SamePixels(*reference.film, *RenderShared(0).film));
+    for (const auto& [ranks, threads] : {std::pair(1, 2), {2, 3}, {3, 4}, {3, 7}})
+        ExpectSameLayers(
+            RenderLayers(ranks, [n = threads](RenderOptions* o, int) { o->threads = n; }),
+            reference, ranks);
+}
+
+TEST(Ranks, GoOnWithTheLayersOfOthers) {
+    const Shared reference = RenderLayers(0);
+    for (const auto& [first, second] : {std::pair(1, 3), {3, 2}, {2, 0}}) {
+        const Shared begun = RenderLayers(first, [first = first](RenderOptions* o, int rank) {
+            if (rank != first - 1) return;
+            o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), first = first] {
+                return ++*calls > 150 / first;
+            };
+        });
+        ASSERT_TRUE(begun.result.cancelled);
+        ExpectSameLayers(RenderLayers(second, {}, &begun), reference, second);
+    }
+}
+
+TEST(Ranks, MoveLayersWithTheirTiles) {
+    const auto source =
+        SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
+    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0; };
+    ExpectSameLayers(RenderLayers(3, change, nullptr, source), RenderLayers(0), 3);
+}
+
+// Passes that the time does not suffice for are undone in the layers of all ranks.
+TEST(Ranks, UndoLayers) {
+    const int64_t time = kImage.Area() * 35;
+    bool undone = false;
+    for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
+        std::atomic<int64_t> taken = 0;
+        const auto source = [&](int) -> SampleSource {
+            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+                if (++taken > time && index % 20 == 0)
+                    std::this_thread::sleep_for(std::chrono::microseconds(100));
+                return SyntheticSample(sampler, pixel, index);
+            };
+        };
+        const Shared timed = RenderLayers(
+            3,
+            [&](RenderOptions* o, int rank) {
+                o->schedule.tileSize = 4;
+                o->makeCriterion = nullptr;
+                o->secondsLeft = [&, rank] { return rank > 0 ? 1 : double(time - taken); };
+            },
+            nullptr, source);
+        undone = timed.film->SampleCount() < taken;
+        const Shared again = RenderLayers(0, [&](RenderOptions* o, int) {
+            o->schedule.smallestSide = 0;
+            o->makeCriterion = [&](const BlockInfo& block) {
+                return std::make_unique<ScriptedCriterion>(
+                    timed.result.blocks[size_t(block.index)].block.spp);
+            };
+        });
+        EXPECT_TRUE(SamePixels(*timed.film, *again.film));
+        EXPECT_TRUE(SameLayers(*timed.layers, *again.layers));
+    }
+    EXPECT_TRUE(undone);
 }
 
 }  // namespace

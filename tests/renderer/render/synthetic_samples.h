@@ -1,9 +1,10 @@
 // Gives tests samples without a scene.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
-#include "renderer/render/render.h"
+#include "renderer/render/extras.h"
 
 namespace lull {
 
@@ -17,6 +18,20 @@ inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t
     return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
 }
 
+// Says of a synthetic sample what it has met first. The sampler is where the sample has left it.
+inline FirstHit SyntheticHit(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+    const Vec2f u = sampler.Get2D();
+    return {.albedo = Rgb(u.x(), u.y(), 0.1f),
+            .normal = Vec3f(u.y(), 0, 1),
+            .position = Vec3f(1e5f * u.x(), 1, 2),
+            .depth = u.x(),
+            .object = index,
+            .material = uint32_t(pixel.x()),
+            .found = u.x() < 0.7f,
+            .weight = 1,
+            .offset2 = u.y()};
+}
+
 // Says whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {
     if (!(a.Region() == b.Region())) return false;
@@ -26,6 +41,10 @@ inline bool SamePixels(const Film& a, const Film& b) {
             if (p.sum != q.sum || p.halfSum != q.halfSum || p.count != q.count) return false;
         }
     return a.RejectedCount() == b.RejectedCount();
+}
+
+inline bool SameLayers(const AovFilm& a, const AovFilm& b) {
+    return std::ranges::equal(a.Pixels(), b.Pixels());
 }
 
 // Stops at the spp that it is given, and notes what it was shown.
