@@ -2,10 +2,10 @@
 """Renders pbrt-v3 scenes with several programs, and says how long each takes to the same error.
 
     apt-get install python3-numpy python3-openimageio
-    tests/side_by_side/against_pbrt.py OUT --lull "before=OLD/lull" --lull "now=NEW/lull" \\
-        --lull "guided=NEW/lull --guide on" [--pbrt PBRT] SCENE.pbrt...
+    tests/side_by_side/against_pbrt.py OUT --lull "before=OLD/lull --sampler sobol" \\
+        --lull "now=NEW/lull --sampler sobol" [--pbrt PBRT] SCENE.pbrt...
 
-Every program renders each of --spp, with one thread and its own default sampler (pbrt-v3: halton).
+Every program renders each of --spp, with one thread; pbrt-v3 with its default sampler, halton.
 The error is the mean square of what lightness (CIE 1976, 0 to 100) is off, against two references of
 the last --lull without its options: the mean product of both differences, in which the references'
 own noise has no part. Seconds are those of processors, without loading, which is what the line
