@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/output/image_io.h"
-#include "tests/integration/run_lull.h"
+#include "tests/integration/run_and_signal.h"
 
 namespace lull {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "renderer/output/image_io.h"
-#include "tests/integration/run_lull.h"
+#include "tests/integration/run_and_signal.h"
 
 namespace lull {
 namespace {

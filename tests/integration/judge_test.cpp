@@ -3,7 +3,7 @@
 
 #include "stopping/learning/dataset.h"
 #include "stopping/rules/thresholds.h"
-#include "tests/integration/run_lull.h"
+#include "tests/integration/run_and_signal.h"
 #include "tests/stopping/learning/example_answers.h"
 
 namespace lull {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/output/image_io.h"
-#include "tests/integration/run_lull.h"
+#include "tests/integration/run_and_signal.h"
 #include "tests/renderer/output/viewer_server.h"
 
 namespace lull {

@@ -5,7 +5,7 @@
 
 #include "renderer/output/image_io.h"
 #include "stopping/learning/dataset.h"
-#include "tests/integration/run_lull.h"
+#include "tests/integration/run_and_signal.h"
 
 namespace lull {
 namespace {

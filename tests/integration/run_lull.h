@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <csignal>
-
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -30,14 +28,6 @@ inline Outcome RunShell(const TemporaryDirectory& directory, std::string command
 
 inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& arguments) {
     return RunShell(directory, "LULL " + arguments);
-}
-
-// Runs `command`, which begins with LULL and keeps its state in the file `checkpoint`, and sends it
-// `signal` at the moment when that file has been written.
-inline Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
-                            int signal, const std::string& checkpoint) {
-    return RunShell(directory, fmt::format("LD_PRELOAD='{}' RENAMED_FILE='{}' RENAMED_SIGNAL={} {}",
-                                           SIGNAL_AT_RENAME, checkpoint, signal, command));
 }
 
 // A small scene that renders at once; `world` is what is in it.
