@@ -23,6 +23,7 @@ std::string MakeBenchPage(const std::string& title, const Provenance& provenance
                               {"label", "reference"},
                               {"src", PictureUri(reference)},
                               {"blocks", Json::array()}});
+    NotePictureScale(reference.width, reference.height, &page);
     Json list = Json::array();
     for (const BenchPoint& point : points) {
         Json json = FiguresJson(point.figures);

@@ -167,6 +167,7 @@ std::string MakeComparisonPage(const ComparisonReport& report) {
             page["images"][i]["flipSrc"] =
                 MapUri(image.flip, image.image.width, image.image.height);
     }
+    NotePictureScale(report.comparison.region.Width(), report.comparison.region.Height(), &page);
     return MakePage(page);
 }
 

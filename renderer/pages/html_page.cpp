@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "renderer/base/color.h"
 #include "renderer/output/image_io.h"
 #include "renderer/output/spp_map.h"
@@ -15,6 +18,30 @@ constexpr int64_t kMostPagePixels = 4 << 20;  // of a picture
 
 std::string Uri(std::span<const Rgb> pixels, int width, int height) {
     return "data:image/png;base64," + Base64(EncodePng(pixels, width, height));
+}
+
+// Returns how many squares of `scale` pixels a side there are along `size` pixels, the last less.
+int Shrunk(int size, int scale) { return (size + scale - 1) / scale; }
+
+// Returns the means of such squares, row by row, of values with so many channels a pixel.
+std::vector<float> Shrink(std::span<const float> values, int width, int height, int channels,
+                          int scale) {
+    std::vector<float> means;
+    means.reserve(size_t(Shrunk(width, scale)) * size_t(Shrunk(height, scale)) * size_t(channels));
+    for (int top = 0; top < height; top += scale)
+        for (int left = 0; left < width; left += scale)
+            for (int c = 0; c < channels; ++c) {
+                const int right = std::min(left + scale, width),
+                          bottom = std::min(top + scale, height);
+                double sum = 0;
+                for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x)
+                        sum += double(
+                            values[size_t(channels) * (size_t(y) * size_t(width) + size_t(x)) +
+                                   size_t(c)]);
+                means.push_back(float(sum / ((right - left) * (bottom - top))));
+            }
+    return means;
 }
 
 }  // namespace
@@ -73,45 +100,51 @@ std::vector<Rgb> PixelsOf(const RgbImage& image) {
 }
 
 std::string PictureUri(const RgbImage& image) {
-    return Uri(PixelsOf(image), image.width, image.height);
+    const int scale = PagePictureScale(image.width, image.height);
+    const RgbImage shown{Shrunk(image.width, scale), Shrunk(image.height, scale),
+                         Shrink(image.values, image.width, image.height, 3, scale)};
+    return Uri(PixelsOf(shown), shown.width, shown.height);
 }
 
 std::string MapUri(std::span<const float> values, int width, int height) {
+    const int scale = PagePictureScale(width, height);
     std::vector<Rgb> pixels;
-    pixels.reserve(values.size());
-    for (const float value : values)
+    for (const float value : Shrink(values, width, height, 1, scale))
         pixels.push_back(Viridis(value).unaryExpr([](float v) { return LinearFromSrgb(v); }));
-    return Uri(pixels, width, height);
+    return Uri(pixels, Shrunk(width, scale), Shrunk(height, scale));
 }
 
 Json CurvesJson(const BlockCurves& curves) {
     return {{"spp", curves.spp}, {"entropy", curves.entropy}, {"noise", curves.noise}};
 }
 
-int PagePictureScale(const PixelRect& region) {
+int PagePictureScale(int width, int height) {
     int scale = 1;
-    const auto sides = [&](int size) { return int64_t((size + scale - 1) / scale); };
-    while (sides(region.Width()) * sides(region.Height()) > kMostPagePixels) ++scale;
+    while (int64_t(Shrunk(width, scale)) * Shrunk(height, scale) > kMostPagePixels) ++scale;
     return scale;
 }
 
 RgbImage PagePicture(const Film& film) {
     const PixelRect& region = film.Region();
-    const int scale = PagePictureScale(region);
-    RgbImage picture{
-        (region.Width() + scale - 1) / scale, (region.Height() + scale - 1) / scale, {}};
+    const int width = region.Width(), scale = PagePictureScale(width, region.Height());
+    RgbImage picture{Shrunk(width, scale), Shrunk(region.Height(), scale), {}};
     picture.values.reserve(size_t(picture.width) * size_t(picture.height) * 3);
     FilmView view;
-    for (int y = region.min.y(); y < region.max.y(); y += scale)
-        for (int x = region.min.x(); x < region.max.x(); x += scale) {
-            const Vec2i end = region.max.cwiseMin(Vec2i(x + scale, y + scale));
-            film.Extract({{x, y}, end}, false, &view);
-            const size_t count = view.mean.size() / 3;
-            std::array<double, 3> sum = {};
-            for (size_t i = 0; i < view.mean.size(); ++i) sum[i % 3] += double(view.mean[i]);
-            for (const double s : sum) picture.values.push_back(float(s / double(count)));
-        }
+    for (int y = region.min.y(); y < region.max.y(); y += scale) {
+        const int end = std::min(y + scale, region.max.y());
+        film.Extract({{region.min.x(), y}, {region.max.x(), end}}, false, &view);
+        std::ranges::copy(Shrink(view.mean, width, end - y, 3, scale),
+                          std::back_inserter(picture.values));
+    }
     return picture;
+}
+
+void NotePictureScale(int width, int height, Json* page) {
+    if (const int scale = PagePictureScale(width, height); scale > 1)
+        (*page)["notes"].push_back(fmt::format(
+            "Pictures show the means of {0}x{0} pixels: whole ones would be too large for a page. "
+            "All pixels are in the PNG and EXR files, and in all figures.",
+            scale));
 }
 
 std::string MakeRenderPage(const Provenance& provenance, const RenderResult& result,
@@ -133,11 +166,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
                                    {"seconds", block.seconds},
                                    {"ruleSeconds", block.criterionSeconds}});
     }
-    if (const int scale = PagePictureScale(film.Region()); scale > 1)
-        page["notes"] = {fmt::format(
-            "The picture is the mean of {0}x{0} pixels: the image would be too large for a page. "
-            "All pixels are in its PNG and EXR.",
-            scale)};
+    NotePictureScale(film.Region().Width(), film.Region().Height(), &page);
     page["kind"] = "render";
     page["title"] = provenance.scene;
     page["cap"] = provenance.schedule.cap;

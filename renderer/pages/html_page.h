@@ -19,6 +19,7 @@ std::string Base64(std::span<const std::byte>);
 std::string MakePage(const Json& data);
 
 // Return pictures as data URIs: an image as a display shows it; values in [0, 1] in false colours.
+// What is larger than PagePictureScale() allows is shown by its means.
 std::string PictureUri(const RgbImage&);
 std::string MapUri(std::span<const float> values, int width, int height);
 
@@ -27,8 +28,11 @@ std::vector<Rgb> PixelsOf(const RgbImage&);
 
 // Return how many pixels, a side, a page shows as one, so that its picture has at most 4 million;
 // and that picture, of the means of so many pixels (less at the right and at the bottom).
-int PagePictureScale(const PixelRect& region);
+int PagePictureScale(int width, int height);
 RgbImage PagePicture(const Film&);
+
+// Says so in the page's notes, where pictures of that size are not shown as they are.
+void NotePictureScale(int width, int height, Json* page);
 
 Json CurvesJson(const BlockCurves&);
 

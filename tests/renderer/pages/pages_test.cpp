@@ -117,6 +117,44 @@ TEST(MakeComparisonPage, HasPicturesAndErrorMaps) {
     EXPECT_FALSE(data["images"][2].contains("flipSrc"));
 }
 
+// Returns how many pixels a picture has: its header is known before it is decoded.
+Vec2i SizeOf(const std::string& uri) {
+    const std::string head = "data:image/png;base64,", digits = uri.substr(head.size(), 32);
+    std::string bytes;
+    for (size_t i = 0, bits = 0, have = 0; i < digits.size(); ++i) {
+        const char c = digits[i];
+        bits = bits << 6 | size_t(c >= 'a'   ? c - 'a' + 26
+                                  : c >= 'A' ? c - 'A'
+                                  : c >= '0' ? c - '0' + 52
+                                  : c == '+' ? 62
+                                             : 63);
+        if ((have += 6) >= 8) bytes += char(bits >> (have -= 8) & 255);
+    }
+    const auto number = [&](size_t at) {
+        return int(uint8_t(bytes[at + 2])) << 8 | int(uint8_t(bytes[at + 3]));
+    };
+    return {number(16), number(20)};
+}
+
+// Whatever is compared, the page can be opened.
+TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
+    ComparisonReport report = TwoImages();
+    report.notes = {"a note"};
+    report.comparison.region = {{10, 20}, {10 + 2901, 20 + 1601}};
+    for (ComparedImage& image : report.comparison.images) {
+        image.image = {2901, 1601, std::vector<float>(2901 * 1601 * 3, 0.5f)};
+        if (!image.flip.empty()) image.flip.assign(2901 * 1601, 0.25f);
+    }
+    const Json data = DataOf(MakeComparisonPage(report));
+    EXPECT_EQ(data["width"], 2901);  // blocks are where they are
+    EXPECT_EQ(data["notes"][0], "a note");
+    EXPECT_TRUE(Contains(data["notes"][1].get<std::string>(), "2x2"));
+    for (const Json& image : data["images"]) EXPECT_EQ(SizeOf(image["src"]), Vec2i(1451, 801));
+    EXPECT_EQ(SizeOf(data["images"][0]["flipSrc"]), Vec2i(1451, 801));
+    EXPECT_EQ(SizeOf(PictureUri({3, 2, std::vector<float>(18)})), Vec2i(3, 2));
+    EXPECT_EQ(DataOf(MakeComparisonPage(TwoImages()))["notes"].size(), 0u);
+}
+
 TEST(MakeBenchPage, HasThePoints) {
     BenchPoint point;
     point.rule = "fixed";
@@ -134,9 +172,9 @@ TEST(MakeBenchPage, HasThePoints) {
 }
 
 TEST(PagePicture, IsTheImageWhereThatIsSmall) {
-    EXPECT_EQ(PagePictureScale({{0, 0}, {2048, 2048}}), 1);
-    EXPECT_EQ(PagePictureScale({{0, 0}, {3840, 2160}}), 2);
-    EXPECT_EQ(PagePictureScale({{0, 0}, {7680, 4320}}), 3);
+    EXPECT_EQ(PagePictureScale(2048, 2048), 1);
+    EXPECT_EQ(PagePictureScale(3840, 2160), 2);
+    EXPECT_EQ(PagePictureScale(7680, 4320), 3);
     Film film({{2, 1}, {5, 3}});
     AddTo(&film, {4, 2}, Rgb(1, 2, 3));
     EXPECT_EQ(PagePicture(film).values, film.MeanImage());
