@@ -7,6 +7,7 @@ set(lull_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/lull)
 file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
 
 install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull)
 install(FILES ${models} DESTINATION ${lull_data}/models)
 install(TARGETS lull_stopping EXPORT lullTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES stopping/embedding/include/lull/stopping.h

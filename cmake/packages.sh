@@ -1,10 +1,10 @@
 # Names the Debian packages that lull needs and installs those that are missing; to be sourced.
 
 build_packages="g++ cmake ninja-build libcli11-dev libdraco-dev libeigen3-dev libembree-dev libfmt-dev
-    libhdf5-dev libimath-dev libmeshoptimizer-dev libopenimageio-dev libtbb-dev libtinygltf-dev
-    nlohmann-json3-dev zlib1g-dev"
-test_packages="clang-format dpkg-dev file libbenchmark-dev libgtest-dev libopenexr-dev libopenmpi-dev
-    libpng-dev openmpi-bin pybind11-dev python3-dev python3-numpy"
+    libhdf5-dev libimath-dev libmeshoptimizer-dev libopenexr-dev libopenimageio-dev libpng-dev
+    libtbb-dev libtinygltf-dev nlohmann-json3-dev zlib1g-dev"
+test_packages="clang-format dpkg-dev file libbenchmark-dev libgtest-dev libopenmpi-dev openmpi-bin
+    pybind11-dev python3-dev python3-numpy"
 
 # install_packages NAME...: does nothing, not even a call of apt-get, where all are there.
 install_packages() {

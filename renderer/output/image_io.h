@@ -1,4 +1,5 @@
-// Reads and writes image files. All names of OpenImageIO are in image_io.cpp.
+// Reads and writes image files. What each format needs is in images/; OpenImageIO is in a module of
+// its own (renderer/formats), which is loaded where a file is neither PNG nor OpenEXR.
 #pragma once
 
 #include <functional>
@@ -12,12 +13,12 @@
 
 namespace lull {
 
-// Reads the first image of a file of any format that OpenImageIO knows. 8-bit, half and float
-// texels stay as they are, all else becomes float (16-bit integers: 0 to 1). Values are neither
-// linearised nor multiplied by alpha. Of more than 4 channels, or of 4 of which the last is not
-// alpha, only the first 3 are read; an EXR's data window is the image, as in pbrt-v3. Throws
-// Error with the path and the reason: missing, unreadable, truncated, larger than 2^16 a side, or
-// a size that the file is too short for.
+// Reads the first image of a file: PNG, OpenEXR, or any other format that OpenImageIO knows. 8-bit,
+// half and float texels stay as they are, all else becomes float (16-bit integers: 0 to 1). Values
+// are neither linearised nor multiplied by alpha. Of 4 channels and more the first 4 are read where
+// the last of these is alpha, and else the first 3; an EXR's data window is the image, as in
+// pbrt-v3. Throws Error with the path and the reason: missing, unreadable, truncated, larger than
+// 2^16 a side, a size that the file is too short for, or a format whose module is not installed.
 Image ReadImage(const std::string& path);
 
 // Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,
@@ -56,8 +57,8 @@ using RowSource = std::function<void(int y, std::span<float> values)>;
 // Writes the same where the channels of `image` have no values: they come row by row, from the top.
 void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
-// Reads an EXR with all its channels and those attributes that ExrAttribute can hold. Throws
-// Error as ReadImage does.
+// Reads an EXR with all its channels and those attributes that ExrAttribute can hold; of another
+// format what ReadImage() reads, as channels R, G, B, A or Y, A. Throws Error as that does.
 ExrImage ReadExr(const std::string& path);
 
 // Encodes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,

@@ -6,6 +6,7 @@
 #include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/output/image_io.h"
 #include "renderer/scene/lens_file.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
@@ -69,6 +70,24 @@ void FuzzLens(std::span<const char> bytes) {
     } catch (const Error&) {
     }
 }
+
+// Reads bytes as an image of the format that has this signature.
+void FuzzImage(std::span<const char> bytes, std::string_view signature) {
+    std::string image(bytes.begin(), bytes.end());
+    image.replace(0, signature.size(), signature);
+    try {
+        ReadImage("input", "", std::as_bytes(std::span(image)));
+    } catch (const Error&) {
+    }
+    const std::string path = WriteInput(image);
+    try {
+        ReadExr(path);
+    } catch (const Error&) {
+    }
+}
+
+void FuzzPng(std::span<const char> bytes) { FuzzImage(bytes, "\x89PNG\r\n\x1a\n"); }
+void FuzzExr(std::span<const char> bytes) { FuzzImage(bytes, "\x76\x2f\x31\x01"); }
 
 // What the parameters of a scene are read into, without the structure that rays are traced in.
 void FuzzScene(std::span<const char> bytes) {
@@ -160,6 +179,8 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"ply", FuzzPly},
             {"bsdf", FuzzBsdf},
             {"lens", FuzzLens},
+            {"png", FuzzPng},
+            {"exr", FuzzExr},
             {"scene", FuzzScene},
             {"model", FuzzModel},
             {"keras_config", FuzzKerasConfig},

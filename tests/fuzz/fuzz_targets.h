@@ -16,9 +16,9 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Lists the targets: pbrt, gltf, ply, bsdf, lens, scene, model, keras_config, thresholds, answers
-// and grid. Most of what `model` finds is in the HDF5 library, which does not withstand files made
-// to harm it.
+// Lists the targets: pbrt, gltf, ply, bsdf, lens, png, exr, scene, model, keras_config, thresholds,
+// answers and grid. Most of what `model` finds is in the HDF5 library, which does not withstand
+// files made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 
 }  // namespace lull

@@ -64,6 +64,19 @@ TEST(Install, RunsWhereItIsMoved) {
     // The rule reads its model before anything is rendered.
     Do(tree, "TREE/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
     EXPECT_TRUE(std::filesystem::exists(tree.File("out.png")));
+    // The module of all formats but PNG and OpenEXR is found, and missed by name.
+    tree.Write("a.pfm", "PF\n1 1\n-1.0\n" + std::string(12, '\0'));
+    tree.Write("lit.pbrt", SceneText("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
+                                     "\"a.pfm\"\nMaterial \"matte\" \"texture Kd\" \"t\"\n" +
+                                     std::string(kSphere)));
+    const std::string render = "TREE/bin/lull render lit.pbrt --spp 1 --quiet -o lit.exr";
+    Do(tree, render);
+    Do(tree, "rm \"$(find TREE -name formats.so)\"");
+    Do(tree, "! " + render + " 2>err");
+    const std::string err = ReadBytes(tree.File("err"));
+    EXPECT_TRUE(Contains(err, "lit.pbrt:") && Contains(err, "a.pfm") && Contains(err, "formats.so"))
+        << err;
+    Do(tree, "TREE/bin/lull render scene.pbrt --spp 1 --quiet -o out.exr");
     for (const char* file :
          {"include/lull/stopping.h", "share/lull/models/entropy.h5", "share/lull/models/noise.h5",
           "share/lull/models/paper.h5", "share/doc/lull/copyright"})

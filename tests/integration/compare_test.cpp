@@ -1,6 +1,4 @@
 // Runs `lull compare` and `lull bench` as their help describes them.
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -109,17 +107,21 @@ TEST(Compare, TakesPicturesForDisplays) {
 
 TEST(Compare, ReadsJpegAndGreyPictures) {
     const SceneDirectory directory;
-    OIIO::ImageSpec grey(64, 64, 1, OIIO::TypeDesc::UINT8),
-        colour(64, 64, 3, OIIO::TypeDesc::UINT8);
-    const auto write = [&](const char* name, const OIIO::ImageSpec& spec) {
-        const std::vector<uint8_t> texels(size_t(64 * 64 * spec.nchannels), 128);
-        const auto out = OIIO::ImageOutput::create(directory.File(name));
-        ASSERT_TRUE(out && out->open(directory.File(name), spec));
-        ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, texels.data()));
-        out->close();
-    };
-    write("grey.png", grey);
-    write("colour.JPG", colour);
+    // Both 64x64 of the one value 128, which a JPEG's coefficients, all 0, stand for: each is a
+    // code of one bit, and so is the end of a block.
+    directory.Write(
+        "grey.png",
+        FromHex(
+            "89504e470d0a1a0a0000000d49484452000000400000004008000000008f022e02000000294944415478da"
+            "edcc411100000c0220a31bdd10fbed2000e951040281402010080402814020107c0f06df6d007970ba79fa"
+            "0000000049454e44ae426082"));
+    directory.Write("colour.JPG",
+                    FromHex("ffd8ffdb004300") + std::string(64, '\x08') +
+                        FromHex("ffc00011080040004003011100021100031100"
+                                "ffc400140001" +
+                                std::string(32, '0') + "ffc400141001" + std::string(32, '0') +
+                                "ffda000c03010002000300003f00") +
+                        std::string(48, '\0') + FromHex("ffd9"));
     const Outcome outcome =
         RunLull(directory, "compare --automatic grey.png --reference colour.JPG -o both");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

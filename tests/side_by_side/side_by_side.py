@@ -46,7 +46,7 @@ class Scene:
             self.model = os.path.join(self.folder, self.name + '.glb')
             sky = os.path.join(self.folder, 'environment.exr')
             if not os.path.exists(self.model):
-                subprocess.run([os.path.join(o.build, 'tests/side_by_side/pbrt_to_gltf'), path,
+                subprocess.run([os.path.join(o.build, 'tests/pbrt_to_gltf'), path,
                                 self.model, sky], check=True, stdout=subprocess.DEVNULL)
             self.environment = sky if os.path.exists(sky) else None
 

@@ -1,6 +1,5 @@
 #include "stopping/signals/attributes26.h"
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "stopping/signals/haar_shrinkage.h"
 #include "stopping/signals/lightness.h"
+#include "tests/stopping/read_png.h"
 #include "tests/stopping/shared_data.h"
 
 namespace lull {
@@ -29,12 +29,8 @@ TEST(Attributes26, AgreeOnARealImage) {
     LULL_SHARED_FILE(imagePath, "golden/bathroom_00010.png");
     LULL_SHARED_FILE(valuesPath, "golden/attributes26_bathroom.json");
     const nlohmann::json golden = ReadJson(valuesPath);
-    const auto file = OIIO::ImageInput::open(imagePath);
-    ASSERT_TRUE(file);
-    ASSERT_EQ(file->spec().width, 800);
-    ASSERT_EQ(file->spec().height, 800);
-    std::vector<uint8_t> srgb(800 * 800 * 3);
-    ASSERT_TRUE(file->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, srgb.data()));
+    const std::vector<uint8_t> srgb = ReadPng(imagePath, 800, 800);
+    ASSERT_EQ(srgb.size(), 800u * 800 * 3);
     std::vector<double> whole(800 * 800);
     Lightness(srgb, whole);
 

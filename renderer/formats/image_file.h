@@ -1,0 +1,44 @@
+// What readers of all image formats have in common. The module of other formats, which is loaded
+// while the program runs, shares this header with it and nothing else.
+#pragma once
+
+#include <cstddef>
+
+namespace lull {
+
+enum class TexelType { Byte, Half, Float };
+
+constexpr size_t SizeOf(TexelType type) {
+    return type == TexelType::Byte ? 1 : type == TexelType::Half ? 2 : 4;
+}
+
+// Says what Read() gives: 8-bit, half and float texels are as they are in the file, all else
+// becomes float (16-bit integers: 0 to 1).
+struct ImageShape {
+    int width = 0, height = 0;  // as the file says, however absurd
+    int channels = 0;           // that are read; see CountChannels()
+    TexelType type = TexelType::Byte;
+};
+
+// Holds an image file of which only the header has been read.
+class ImageFile {
+  public:
+    virtual ~ImageFile() = default;
+    virtual ImageShape Shape() const = 0;
+    // Reads all texels once: rows from the top, channels side by side, alpha unassociated. Throws
+    // std::runtime_error with the reason, without the path.
+    virtual void Read(void* texels) = 0;
+};
+
+// Returns how many channels of a file are read: of 4 and more the first 4 if the last of them is
+// alpha, else the first 3. The first alpha is channel `alpha`; -1: there is none.
+constexpr int CountChannels(int channels, int alpha) {
+    return channels < 4 ? channels : alpha == 3 ? 4 : 3;
+}
+
+// The type of the module's one function, LullOpenImage: opens the file `path` or, where `bytes` is
+// not null, that memory, for which the extension of `path` names the format. The bytes must outlive
+// what is returned, which belongs to the caller. Throws std::runtime_error as Read() does.
+using OpenImageFunction = ImageFile*(const char* path, const std::byte* bytes, size_t size);
+
+}  // namespace lull

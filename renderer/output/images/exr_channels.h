@@ -1,0 +1,17 @@
+// Puts the channels of an EXR, which are in the order of the alphabet there, into that of colours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lull {
+
+// Sorts "layer.name"s by layer, of which "" is the first, and those of a layer as OpenImageIO does:
+// R, G, B, Y, A, Z and the like, then all else by name; where there is X with Y or Z: R, G, B, X,
+// Y, Z, A, then all else.
+void SortChannels(std::vector<std::string>* names);
+
+// Says whether "layer.name" is alpha.
+bool IsAlpha(const std::string& name);
+
+}  // namespace lull

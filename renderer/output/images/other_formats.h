@@ -1,0 +1,18 @@
+// Opens images of the formats that the program does not read by itself.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "renderer/formats/image_file.h"
+
+namespace lull {
+
+// Opens the file `path` or, where there are bytes, these, for which the extension of `path` names
+// the format. The first call loads the module, which takes 0.2 s. Throws std::runtime_error with
+// the reason, without the path: the module is not there, or it cannot read the file.
+std::unique_ptr<ImageFile> OpenOtherFormat(const std::string& path,
+                                           std::span<const std::byte> bytes = {});
+
+}  // namespace lull

@@ -1,0 +1,33 @@
+// Calls libpng, which leaves its functions by longjmp() where something is wrong.
+#pragma once
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstdio>
+
+namespace lull {
+
+// Holds what libpng says when it gives up.
+struct PngError {
+    char message[128] = "";
+};
+
+// For png_create_read_struct() and png_create_write_struct(), with a PngError.
+[[noreturn]] inline void OnPngError(png_structp png, png_const_charp message) {
+    auto* error = static_cast<PngError*>(png_get_error_ptr(png));
+    std::snprintf(error->message, sizeof(error->message), "%s", message);
+    png_longjmp(png, 1);
+}
+inline void OnPngWarning(png_structp, png_const_charp) {}
+
+// Calls `call`, which calls libpng; false where that gives up. As it is left in the middle, `call`
+// must own nothing.
+template <typename Call>
+bool TryPng(png_structp png, const Call& call) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    call();
+    return true;
+}
+
+}  // namespace lull
