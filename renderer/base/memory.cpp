@@ -1,12 +1,15 @@
 #include "renderer/base/memory.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <new>
+#include <vector>
 
 namespace lull {
 
@@ -42,6 +45,44 @@ int64_t AvailableInGroup() {
     return limit == kUnknown || taken == kUnknown ? kUnknown : limit - taken;
 }
 
+constexpr uintptr_t kLargePage = uintptr_t(1) << 21;
+
+uintptr_t RoundedUp(uintptr_t at) { return (at + kLargePage - 1) / kLargePage * kLargePage; }
+
+// Holds a range of addresses that belongs to no file.
+struct AnonymousRange {
+    uintptr_t begin, end;
+    uintptr_t kibibytesInUse;
+};
+
+// Lists what the process has to read and write beside files. Addresses that are only reserved, as
+// sanitizers do by the terabyte, are not in use.
+std::vector<AnonymousRange> AnonymousRanges() {
+    std::vector<AnonymousRange> ranges;
+    std::ifstream in("/proc/self/smaps");
+    bool isWanted = false;
+    for (std::string line; std::getline(in, line);) {
+        uintptr_t begin, end, inode, kibibytes;
+        char access[5] = {};
+        if (std::sscanf(line.c_str(), "%lx-%lx %4s %*s %*s %lu", &begin, &end, access, &inode) ==
+            4) {
+            isWanted = inode == 0 && std::string(access) == "rw-p";
+            if (isWanted) ranges.push_back({begin, end, 0});
+        } else if (isWanted && std::sscanf(line.c_str(), "Rss: %lu kB", &kibibytes) == 1) {
+            ranges.back().kibibytesInUse = kibibytes;
+        }
+    }
+    return ranges;
+}
+
+// Says whether nine tenths of a large page's addresses are in memory.
+bool IsNearlyAllInUse(uintptr_t at, std::vector<unsigned char>* pages) {
+    if (mincore(reinterpret_cast<void*>(at), kLargePage, pages->data()) != 0) return false;
+    const auto inUse =
+        std::count_if(pages->begin(), pages->end(), [](unsigned char page) { return page & 1; });
+    return size_t(inUse) * 10 >= pages->size() * 9;
+}
+
 }  // namespace
 
 int64_t AvailableMemory() {
@@ -59,5 +100,27 @@ void CheckMemory(int64_t bytes, const std::string& what, const std::string& reme
         throw Error(loc, fmt::format("{} needs {:.1f} GB of memory, {:.1f} GB are available; {}",
                                      what, double(bytes) / 1e9, double(available) / 1e9, remedy));
 }
+
+void MoveIntoLargePages() {
+    constexpr int kCollapse = 25;  // MADV_COLLAPSE, which older headers do not name
+    std::vector<unsigned char> pages(kLargePage / uintptr_t(sysconf(_SC_PAGESIZE)));
+    for (const AnonymousRange& range : AnonymousRanges()) {
+        if (range.kibibytesInUse * 1024 < (range.end - range.begin) / 2) continue;
+        for (uintptr_t at = RoundedUp(range.begin); at + kLargePage <= range.end; at += kLargePage)
+            if (IsNearlyAllInUse(at, &pages))
+                madvise(reinterpret_cast<void*>(at), kLargePage, kCollapse);  // or stays as it is
+    }
+}
+
+LazyZeros::LazyZeros(size_t bytes) {
+    const size_t space = bytes + kLargePage;
+    void* p = mmap(nullptr, space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED) throw std::bad_alloc();
+    mapping = {p, Unmap{space}};
+    data = reinterpret_cast<void*>(RoundedUp(reinterpret_cast<uintptr_t>(p)));
+    if (bytes >= kLargePage) madvise(data, bytes, MADV_HUGEPAGE);
+}
+
+void LazyZeros::Unmap::operator()(void* p) const { munmap(p, bytes); }
 
 }  // namespace lull

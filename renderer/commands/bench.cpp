@@ -117,8 +117,7 @@ Job Prepare(const Options& options, bool leads) {
         job.externalImages.push_back(ReadImageOfSize(external.file, input.region));
     if (leads) CheckWritable(options.output + ".csv");
     if (leads && !options.report.empty()) CheckWritable(options.report);
-    job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
-    input.warnings.Summarize();
+    job.scene = CompileScene(settings, &input);
     job.sceneHash = SceneHash(input.description);
     job.provenance = MakeProvenance(settings, *job.scene, input.film);
     return job;

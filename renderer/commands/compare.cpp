@@ -98,8 +98,7 @@ Job Prepare(const CompareOptions& options, bool leads) {
     }
     if (leads) CheckOutputs(options);
     if (leads) CheckCheckpoint(settings.checkpoint);
-    job.scene = Compile(input.description, MakeCompileOptions(settings), input.warnings);
-    input.warnings.Summarize();
+    job.scene = CompileScene(settings, &input);
     job.warnings = input.warnings.Counts();
     job.provenance = MakeProvenance(settings, *job.scene, input.film);
     job.provenance.criterion = automatic.rule;

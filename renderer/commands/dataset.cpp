@@ -106,9 +106,7 @@ ExitCode RunDataset(const Options& options, Job* job) {
         return kDone;
     }
 
-    const std::unique_ptr<const Scene> scene =
-        Compile(input.description, MakeCompileOptions(settings), input.warnings);
-    input.warnings.Summarize();
+    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
     const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));

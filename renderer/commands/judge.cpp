@@ -69,9 +69,7 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
         dataset = ReadDatasetIfThere(options.record);
     }
 
-    const std::unique_ptr<const Scene> scene =
-        Compile(input.description, MakeCompileOptions(settings), input.warnings);
-    input.warnings.Summarize();
+    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion =
         fmt::format("judge:{}{}", fmt::join(levels, ","), records ? ":record" : "");

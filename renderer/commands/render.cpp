@@ -231,9 +231,7 @@ ExitCode RunRender(Options options, Job* job) {
     const std::unique_ptr<Display> display = MakeDisplay(
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
 
-    const std::unique_ptr<const Scene> scene =
-        Compile(input.description, MakeCompileOptions(settings), input.warnings);
-    input.warnings.Summarize();
+    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
 
     Provenance provenance = MakeProvenance(settings, *scene, input.film);
     provenance.criterion = factory.rule;

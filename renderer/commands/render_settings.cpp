@@ -8,6 +8,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
@@ -62,10 +63,13 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     app.add_flag("--json-progress", s->jsonProgress, "Print progress as JSON, an object a line");
 }
 
-CompileOptions MakeCompileOptions(const RenderSettings& settings) {
+std::unique_ptr<const Scene> CompileScene(const RenderSettings& settings, SceneInput* input) {
     CompileOptions options = settings.scene.compile;
     options.lightsAsPbrtV3 = settings.estimator == Estimator::PbrtV3;
-    return options;
+    auto scene = Compile(input->description, options, input->warnings);
+    input->warnings.Summarize();
+    MoveIntoLargePages();
+    return scene;
 }
 
 int FixedSpp(const std::string& rule) {

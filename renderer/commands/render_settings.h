@@ -28,9 +28,10 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 // Adds --caution.
 void AddCautionOption(CLI::App& app, double* caution);
 
-// Returns the options of the scene as the others change them: with pbrt-v3's estimator lights are
-// chosen by pbrt-v3's tables, however many there are.
-CompileOptions MakeCompileOptions(const RenderSettings&);
+// Compiles the scene for a render, prints how often there was each of its warnings, and has it lie
+// in memory where it is quick to read. With pbrt-v3's estimator lights are chosen by pbrt-v3's
+// tables, however many there are. Throws Error.
+std::unique_ptr<const Scene> CompileScene(const RenderSettings&, SceneInput*);
 
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);

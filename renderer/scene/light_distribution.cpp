@@ -30,7 +30,7 @@ LightDistribution::LightDistribution(std::span<const float> weights)
     : lightCount(int(weights.size())) {
     AllocateTables();
     const std::vector<float> sums = Normalized({weights.begin(), weights.end()});
-    std::copy(sums.begin(), sums.end(), tables.get());
+    std::copy(sums.begin(), sums.end(), tables);
 }
 
 LightDistribution::LightDistribution(int count, const Bounds3f& bounds)
@@ -55,8 +55,8 @@ LightDistribution::LightDistribution(int count, const Bounds3f& bounds)
 
 void LightDistribution::AllocateTables() {
     const size_t voxels = size_t(resolution.x()) * resolution.y() * resolution.z();
-    tables.reset(static_cast<float*>(std::calloc(voxels * lightCount, sizeof(float))));
-    if (!tables) throw std::bad_alloc();
+    memory = LazyZeros(voxels * lightCount * sizeof(float));
+    tables = static_cast<float*>(memory.Data());
 }
 
 Bounds3f LightDistribution::VoxelBounds(size_t voxel) const {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <span>
 
+#include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
 #include "renderer/scene/light_hierarchy.h"
 
@@ -64,7 +65,7 @@ class LightDistribution {
     template <typename Contribution>
     LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
         const size_t voxel = VoxelOf(p);
-        const std::span<float> sums(tables.get() + voxel * lightCount, lightCount);
+        const std::span<float> sums(tables + voxel * lightCount, lightCount);
         // A table that is not made yet is all zeros; its last sum, written last, tells.
         std::atomic_ref<float> last(sums.back());
         if (last.load(std::memory_order_acquire) == 0) [[unlikely]]
@@ -72,9 +73,12 @@ class LightDistribution {
         return LightChoice(sums);
     }
 
-    // Starts to load the table of p, which is usually far away in memory.
+    // Starts to load the table of p, which is usually far away in memory: its first sums and the
+    // last one, which Lookup() looks at.
     void Prefetch(const Vec3f& p) const {
-        __builtin_prefetch(tables.get() + VoxelOf(p) * lightCount);
+        const float* table = tables + VoxelOf(p) * lightCount;
+        lull::Prefetch(table);
+        lull::Prefetch(table + lightCount - 1);
     }
 
   private:
@@ -123,18 +127,15 @@ class LightDistribution {
     std::vector<float> RunningSums(std::vector<float> contributions) const;
     void AllocateTables();
 
-    struct Free {
-        void operator()(float* p) const { std::free(p); }
-    };
-
     int lightCount = 0;
     Bounds3f bounds;
     Vec3i resolution = Vec3i::Ones();
     Vec3f voxelsPerUnit = Vec3f::Zero();
     std::vector<HaltonPoint> points;
-    // One table after another, voxels in x, y, z order. From calloc, so that only the pages of
-    // voxels that paths visit take memory.
-    std::unique_ptr<float[], Free> tables;
+    // One table after another, voxels in x, y, z order. Only pages of voxels that paths visit take
+    // memory.
+    LazyZeros memory;
+    float* tables = nullptr;
     mutable std::array<std::mutex, kLocks> locks;
 };
 

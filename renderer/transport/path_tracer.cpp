@@ -149,12 +149,12 @@ Rgb Trace(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& 
             break;
         }
         firstHit.Advance(found.t);
+        scene.lights.Prefetch(path.ray.o + found.t * path.ray.d);
         const Shape& shape = scene.shapes.shapes[found.shape];
         if (isLast && shape.firstLight < 0 && !firstHit.Wanted()) break;
         SurfaceInteraction hit;
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         scene.shapes.Interact(path.ray, found, needs, &hit, time);
-        scene.lights.Prefetch(hit.p);
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, film, lens, time, scene.camera.sampleSpacing, &hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
