@@ -45,8 +45,16 @@ constexpr float Gamma(int n) {
     return (n * e) / (1 - n * e);
 }
 
-inline float NextFloatUp(float v) { return std::nextafterf(v, kInfinity); }
-inline float NextFloatDown(float v) { return std::nextafterf(v, -kInfinity); }
+// Returns the float next to v on the side that `step` points to, v itself where step is 0. As
+// std::nextafter for finite v, but without a call or a branch.
+inline float NextFloatTowards(float step, float v) {
+    const auto bits = std::bit_cast<int32_t>(v + 0.f);  // of -0: those of 0
+    const int32_t away = (step > 0) - (step < 0);       // in value
+    // The bits of negative floats count down. Below 0 lies the least negative one.
+    constexpr int32_t kLeastNegative = std::numeric_limits<int32_t>::min() + 1;
+    const int32_t next = bits + (bits < 0 ? -away : away);
+    return std::bit_cast<float>(bits == 0 && away < 0 ? kLeastNegative : next);
+}
 
 inline bool IsBlack(const Rgb& c) { return c.x() == 0 && c.y() == 0 && c.z() == 0; }
 inline bool IsFinite(const Rgb& c) {
@@ -112,14 +120,9 @@ struct Ray {
 inline Vec3f OffsetRayOrigin(const Vec3f& p, const Vec3f& error, const Vec3f& n, const Vec3f& w) {
     const float d = n.cwiseAbs().dot(error);
     const Vec3f offset = w.dot(n) < 0 ? Vec3f(-d * n) : Vec3f(d * n);
-    Vec3f q = p + offset;
-    for (int i = 0; i < 3; ++i) {
-        if (offset[i] > 0)
-            q[i] = NextFloatUp(q[i]);
-        else if (offset[i] < 0)
-            q[i] = NextFloatDown(q[i]);
-    }
-    return q;
+    const Vec3f q = p + offset;
+    return {NextFloatTowards(offset.x(), q.x()), NextFloatTowards(offset.y(), q.y()),
+            NextFloatTowards(offset.z(), q.z())};
 }
 
 }  // namespace lull
