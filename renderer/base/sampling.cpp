@@ -49,7 +49,7 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf(values.size(
     // What lies behind it must not be chosen for what rounding has left of 1.
     for (int i = last + 1; i <= n; ++i) cdf[i] = 1;
 
-    const int entries = (n + kGuideStep - 1) / kGuideStep;
+    const int entries = DistributionTables::EntriesFor(n);
     int i = 0;
     for (int k = 0; k < entries; ++k) {
         // One place early, as k / entries and u * entries round differently.
@@ -58,29 +58,19 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf(values.size(
     }
 }
 
-float Distribution1D::SampleContinuous(float u, float* pdf, int* offset) const {
-    const int i = Find(u);
-    *offset = i;
-    *pdf = Pmf(i) * Count();
-    const float width = Pmf(i);
-    const float t = width > 0 ? std::clamp((u - cdf[i]) / width, 0.f, kOneMinusEpsilon) : 0.5f;
-    return std::min((i + t) / Count(), kOneMinusEpsilon);
-}
-
-Distribution2D::Distribution2D(std::span<const float> values, int nu, int nv) {
+Distribution2D::Distribution2D(std::span<const float> values, int nu, int nv)
+    : nu(nu), entries(DistributionTables::EntriesFor(nu)) {
+    cdfs.reserve(size_t(nv) * size_t(nu + 1));
+    guides.reserve(size_t(nv) * size_t(entries));
     std::vector<float> rowIntegrals;
     for (int v = 0; v < nv; ++v) {
-        conditional.emplace_back(values.subspan(size_t(v) * nu, nu));
-        rowIntegrals.push_back(conditional.back().Integral());
+        const Distribution1D row(values.subspan(size_t(v) * nu, nu));
+        const DistributionTables tables = row.Tables();
+        cdfs.insert(cdfs.end(), tables.cdf, tables.cdf + nu + 1);
+        guides.insert(guides.end(), tables.guide, tables.guide + entries);
+        rowIntegrals.push_back(row.Integral());
     }
     marginal = Distribution1D(rowIntegrals);
-}
-
-Vec2f Distribution2D::SampleContinuous(const Vec2f& u) const {
-    float pdf;
-    int row, column;
-    const float v = marginal.SampleContinuous(u.y(), &pdf, &row);
-    return {conditional[row].SampleContinuous(u.x(), &pdf, &column), v};
 }
 
 }  // namespace lull

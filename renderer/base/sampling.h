@@ -37,6 +37,38 @@ inline float PowerHeuristic(float f, float g) {
 // Returns the index-th element of the van der Corput sequence in `base`, in [0, 1).
 float RadicalInverse(int base, uint64_t index);
 
+// Refers to the tables of a piecewise-constant density over [0, 1): the running sums of the
+// probabilities of `count` elements, from 0 to 1, and a guide to them.
+struct DistributionTables {
+    // A guide entry stands for so many elements: a scan stays within a cache line or two.
+    static constexpr int kGuideStep = 4;
+
+    const float* cdf;  // count + 1
+    const int* guide;  // EntriesFor(count): where to begin for u = k / entries
+    int count;
+
+    static int EntriesFor(int count) { return (count + kGuideStep - 1) / kGuideStep; }
+    float Pmf(int i) const { return cdf[i + 1] - cdf[i]; }
+    // Returns where the search for u begins, which is seldom far from what it finds.
+    int Begin(float u) const {
+        const int entries = EntriesFor(count);
+        return guide[std::min(int(u * float(entries)), entries - 1)];
+    }
+    // Returns the i with cdf[i] <= u < cdf[i + 1], from Begin(u) onwards (cutpoint method, Chen and
+    // Asau 1974).
+    int FindFrom(int begin, float u) const {
+        int i = begin;
+        while (cdf[i + 1] <= u && i < count - 1) ++i;
+        return i;
+    }
+    // Returns the place of u in [0, 1), which lies in element i.
+    float PlaceIn(int i, float u) const {
+        const float width = Pmf(i);
+        const float t = width > 0 ? std::clamp((u - cdf[i]) / width, 0.f, kOneMinusEpsilon) : 0.5f;
+        return std::min((i + t) / count, kOneMinusEpsilon);
+    }
+};
+
 // Represents a piecewise-constant density over [0, 1), proportional to nonnegative values.
 // All-zero (or non-finite) values give the uniform density. Only running sums are kept, and all
 // probabilities are their differences: exactly what sampling with them does.
@@ -59,36 +91,53 @@ class Distribution1D {
         return i;
     }
     // Chooses a place in [0, 1); `pdf` receives the density, `offset` the element it lies in.
-    float SampleContinuous(float u, float* pdf, int* offset) const;
+    float SampleContinuous(float u, float* pdf, int* offset) const {
+        *offset = Find(u);
+        *pdf = Pmf(*offset) * Count();
+        return Tables().PlaceIn(*offset, u);
+    }
+    DistributionTables Tables() const { return {cdf.data(), guide.data(), Count()}; }
 
   private:
-    // A guide entry stands for so many elements: a scan stays within a cache line or two.
-    static constexpr int kGuideStep = 4;
-
-    // Returns the i with cdf[i] <= u < cdf[i + 1], from the guide's entry for u onwards (cutpoint
-    // method, Chen and Asau 1974).
     int Find(float u) const {
-        const int entries = int(guide.size());
-        int i = guide[std::min(int(u * float(entries)), entries - 1)];
-        while (cdf[i + 1] <= u && i < Count() - 1) ++i;
-        return i;
+        const DistributionTables tables = Tables();
+        return tables.FindFrom(tables.Begin(u), u);
     }
 
-    std::vector<float> cdf;  // from 0 to 1
-    std::vector<int> guide;  // where to begin for u = k / entries
+    std::vector<float> cdf;
+    std::vector<int> guide;
     float integral = 0;
 };
 
-// Represents a piecewise-constant density over the unit square, row-major in v.
+// Represents a piecewise-constant density over the unit square, row-major in v. All rows' tables
+// lie one after another, so that where to look follows from the row without another look.
 class Distribution2D {
   public:
     Distribution2D() = default;
     Distribution2D(std::span<const float> values, int nu, int nv);
 
-    Vec2f SampleContinuous(const Vec2f& u) const;
+    // Chooses a place. `expect(column, row)` is told as soon as it is known about which element
+    // that will be, so that what is kept of it elsewhere can be fetched meanwhile; the row is
+    // right.
+    template <typename Expect>
+    Vec2f SampleContinuous(const Vec2f& u, const Expect& expect) const {
+        const DistributionTables rows = marginal.Tables();
+        const int row = rows.FindFrom(rows.Begin(u.y()), u.y());
+        const DistributionTables columns{cdfs.data() + size_t(row) * size_t(nu + 1),
+                                         guides.data() + size_t(row) * size_t(entries), nu};
+        const int begin = columns.Begin(u.x());
+        expect(begin, row);
+        const int column = columns.FindFrom(begin, u.x());
+        return {columns.PlaceIn(column, u.x()), rows.PlaceIn(row, u.y())};
+    }
+    Vec2f SampleContinuous(const Vec2f& u) const {
+        return SampleContinuous(u, [](int, int) {});
+    }
 
   private:
-    std::vector<Distribution1D> conditional;
+    int nu = 0, entries = 0;  // of a row
+    std::vector<float> cdfs;  // rows of nu + 1
+    std::vector<int> guides;  // rows of `entries`
     Distribution1D marginal;
 };
 

@@ -1,6 +1,7 @@
 #include "renderer/scene/lights/environment_map.h"
 
 #include "renderer/base/color.h"
+#include "renderer/base/memory.h"
 #include "renderer/scene/image_lookup.h"
 
 namespace lull {
@@ -77,6 +78,17 @@ std::array<float, 4> EnvironmentMap::Corners(int i, int j) const {
         image.texels);
 }
 
+void EnvironmentMap::Prefetch(int i, int j) const {
+    const int j1 = j + 1 == image.height ? 0 : j + 1;
+    std::visit(
+        [&](const auto& texels) {
+            for (const int y : {j, j1})
+                lull::Prefetch(&texels[(size_t(y) * size_t(image.width) + size_t(i)) *
+                                       size_t(image.channels)]);
+        },
+        image.texels);
+}
+
 float EnvironmentMap::CellWeight(const std::array<float, 4>& corners, int u, int v) const {
     constexpr float kLeast = 0.1f;
     const float brightness = CellBrightness(corners, u, v);
@@ -85,7 +97,7 @@ float EnvironmentMap::CellWeight(const std::array<float, 4>& corners, int u, int
 
 Vec2f EnvironmentMap::Sample(const Vec2f& u, float* pdf) const {
     // Choose a quad.
-    const Vec2f p = quads.SampleContinuous(u);
+    const Vec2f p = quads.SampleContinuous(u, [&](int i, int j) { Prefetch(i, j); });
     const float x = p.x() * float(image.width), y = p.y() * float(image.height);
     const int i = std::min(int(x), image.width - 1), j = std::min(int(y), image.height - 1);
     float tx = x - float(i), ty = y - float(j);

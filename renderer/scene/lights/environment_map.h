@@ -38,6 +38,9 @@ class EnvironmentMap {
     // (i + 1, j + 1), where the last neighbours the first.
     std::array<float, 4> Corners(int i, int j) const;
 
+    // Starts to load them.
+    void Prefetch(int i, int j) const;
+
     // Returns what the density of a cell is in proportion to, but for its solid angle. The dark
     // keeps some: what scatters light but is never sampled, as shading normals make, needs it.
     float CellWeight(const std::array<float, 4>& corners, int u, int v) const;

@@ -1,6 +1,8 @@
 // Tests the small things everything uses: geometry, color and the counting of warnings.
 #include <gtest/gtest.h>
 
+#include <new>
+#include <numeric>
 #include <thread>
 
 #include "renderer/base/color.h"
@@ -26,6 +28,30 @@ TEST(OffsetRayOrigin, LeavesTheErrorBoxOnTheRightSide) {
     }
     const Vec3f p(1, 2, 3);
     EXPECT_EQ(OffsetRayOrigin(p, Vec3f::Zero(), Vec3f(0, 0, 1), Vec3f(0, 0, 1)), p);
+}
+
+TEST(NextFloatTowards, IsTheNextFloat) {
+    test::Random random(9);
+    std::vector<float> values = {0,
+                                 -0.f,
+                                 1,
+                                 -1,
+                                 0x1p-149f,
+                                 -0x1p-149f,
+                                 0x1p-126f,
+                                 -0x1p-126f,
+                                 0x1.fffffep127f,
+                                 -0x1.fffffep127f,
+                                 2,
+                                 -2};
+    for (int k = 0; k < 10000; ++k)
+        values.push_back(std::ldexp(random.Float() - 0.5f, int(random.Float() * 250) - 125));
+    for (const float v : values) {
+        EXPECT_EQ(NextFloatTowards(0.5f, v), std::nextafter(v, kInfinity)) << v;
+        EXPECT_EQ(NextFloatTowards(-1e30f, v), std::nextafter(v, -kInfinity)) << v;
+        EXPECT_EQ(NextFloatTowards(0, v), v);
+        EXPECT_EQ(NextFloatTowards(-0.f, v), v);
+    }
 }
 
 TEST(CoordinateSystem, IsOrthonormalAndRightHanded) {
@@ -145,6 +171,28 @@ TEST(Warnings, CountsFromManyThreads) {
     }
     EXPECT_EQ(shown, 2);
     EXPECT_EQ(warnings.Counts(), (std::map<std::string, int>{{"even", 2000}, {"odd", 2000}}));
+}
+
+TEST(LazyZeros, AreZerosThatCanBeWritten) {
+    for (const size_t bytes : {size_t(4), size_t(100), size_t(5) << 20}) {
+        const LazyZeros memory(bytes);
+        auto* const data = static_cast<unsigned char*>(memory.Data());
+        EXPECT_EQ(reinterpret_cast<uintptr_t>(data) % 4096, 0u);
+        for (size_t i = 0; i < bytes; i += 97) {
+            ASSERT_EQ(data[i], 0);
+            data[i] = 1;
+        }
+        ASSERT_EQ(data[bytes - 1] & ~1, 0);
+    }
+    EXPECT_EQ(LazyZeros().Data(), nullptr);
+    EXPECT_THROW(LazyZeros(size_t(1) << 60), std::bad_alloc);
+}
+
+TEST(LargePages, ChangeNothingInMemory) {
+    std::vector<uint32_t> numbers(size_t(3) << 20);
+    std::iota(numbers.begin(), numbers.end(), 7u);
+    MoveIntoLargePages();
+    for (size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(numbers[i], uint32_t(i) + 7);
 }
 
 }  // namespace

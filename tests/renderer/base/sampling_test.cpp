@@ -232,8 +232,14 @@ TEST(Distribution2D, SamplesInProportion) {
     Random random(6);
     std::vector<int64_t> cells(expected.size());
     for (int k = 0; k < kSamples; ++k) {
-        const Vec2f p = d.SampleContinuous(random.Point());
+        int column = -1, row = -1;  // as told beforehand
+        const Vec2f p = d.SampleContinuous(random.Point(), [&](int c, int r) {
+            column = c;
+            row = r;
+        });
         ASSERT_TRUE(p.minCoeff() >= 0 && p.maxCoeff() < 1);
+        ASSERT_NEAR(p.y() * kNv, row + 0.5f, 0.5001f);
+        ASSERT_TRUE(column >= 0 && float(column) < p.x() * kNu + 1e-4f);
         ++cells[int(p.y() * kNv) * kNu + int(p.x() * kNu)];
     }
     EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
