@@ -233,7 +233,7 @@ void Interact(const Curves& curves, uint32_t primitive, const Ray& worldRay, con
         curves.errorPerWidth * width + Gamma(5) * (ray.o.cwiseAbs() + (found.t * ray.d).cwiseAbs());
     if (curves.place) {
         const Vec3f n = TransformNormal(curves.place->shapeFromWorld, hit->n);
-        FinishQuadricHit(*curves.place, hit->p, hit->pError, hit);
+        FinishQuadricHit(*curves.place, hit->p, hit->pError, kNeedsTangents, hit);
         hit->n = n;
     }
     hit->n.stableNormalize();

@@ -20,7 +20,7 @@ std::optional<float> Intersect(const Disk& disk, const Ray& worldRay) {
     return float(t);
 }
 
-void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds,
+void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds needs,
               SurfaceInteraction* hit) {
     Vec3f p = ShapeRay(disk.place, worldRay)(t).cast<float>();
     p.z() = disk.height;
@@ -35,7 +35,7 @@ void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds,
     // The cross product of the tangents would underflow at the centre; the normal is known.
     hit->dpdu = Vec3f(1, 0, 0);
     hit->dpdv = Vec3f(0, 1, 0);
-    FinishQuadricHit(disk.place, p, Vec3f::Zero(), hit);
+    FinishQuadricHit(disk.place, p, Vec3f::Zero(), needs, hit);
     hit->dpdu = TransformVector(disk.place.worldFromShape, dpdu);
     hit->dpdv = TransformVector(disk.place.worldFromShape, dpdv);
     hit->surfaceDpdu = hit->dpdu;

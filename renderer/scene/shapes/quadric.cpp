@@ -21,13 +21,14 @@ PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& e
 }
 
 void FinishQuadricHit(const QuadricPlacement& place, const Vec3f& pShape, const Vec3f& errorShape,
-                      SurfaceInteraction* hit) {
+                      SurfaceNeeds needs, SurfaceInteraction* hit) {
     const Mat4d& m = place.worldFromShape;
     std::tie(hit->p, hit->pError) = TransformWithError(m, pShape, errorShape);
     hit->n = hit->dpdu.cross(hit->dpdv).normalized();
     hit->n = TransformNormal(place.shapeFromWorld, hit->n).normalized();
     if (place.flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
+    if (!(needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))) return;
     hit->dpdu = TransformVector(m, hit->dpdu);
     hit->dpdv = TransformVector(m, hit->dpdv);
     hit->surfaceDpdu = hit->dpdu;

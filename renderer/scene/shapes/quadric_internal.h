@@ -14,10 +14,10 @@ Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper)
 // Transforms a point with absolute error bounds, and bounds the error of the result.
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error);
 
-// Turns hit->dpdu ... dndv, given in shape space, and the point into world space and derives the
-// normals.
+// Turns the point and, where they are needed, hit->dpdu ... dndv, given in shape space, into world
+// space and derives the normals, for which dpdu and dpdv must always be there.
 void FinishQuadricHit(const QuadricPlacement&, const Vec3f& pShape, const Vec3f& errorShape,
-                      SurfaceInteraction* hit);
+                      SurfaceNeeds, SurfaceInteraction* hit);
 
 // Holds a ray in shape space, in double; the direction keeps its length so that t is the same.
 struct ShapeRay {

@@ -175,7 +175,7 @@ void Interact(const Revolved& shape, const Ray& worldRay, float t, SurfaceNeeds 
     // The cross product of the tangents would vanish on the axis; the normal is known.
     CoordinateSystem(n.cast<float>(), &hit->dpdu, &hit->dpdv);
     const Vec3f point = p.cast<float>();
-    FinishQuadricHit(shape.place, point, Gamma(5) * point.cwiseAbs(), hit);
+    FinishQuadricHit(shape.place, point, Gamma(5) * point.cwiseAbs(), needs, hit);
     hit->dpdu = TransformVector(shape.place.worldFromShape, dpdu.cast<float>());
     hit->dpdv = TransformVector(shape.place.worldFromShape, dpdv.cast<float>());
     hit->surfaceDpdu = hit->dpdu;

@@ -57,24 +57,25 @@ void Interact(const Sphere& sphere, const Ray& worldRay, float t, SurfaceNeeds n
     const float r = sphere.radius;
     Vec3f p = (ShapeRay(sphere.place, worldRay)(t).normalized() * double(r)).cast<float>();
     if (p.x() == 0 && p.y() == 0) p.x() = 1e-5f * r;
-    const float phi = Azimuth(p.x(), p.y());
     const float thetaMin = std::acos(std::clamp(std::min(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
     const float thetaMax = std::acos(std::clamp(std::max(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
     const float theta = std::acos(std::clamp(p.z() / r, -1.f, 1.f));
     const float zRadius = std::hypot(p.x(), p.y());
     const float cosPhi = p.x() / zRadius, sinPhi = p.y() / zRadius;
     const float dTheta = thetaMax - thetaMin, phiMax = sphere.phiMax;
-    hit->uv = {phi / phiMax, (theta - thetaMin) / dTheta};
+    if (needs & (kNeedsUv | kNeedsSecondUv))
+        hit->uv = {Azimuth(p.x(), p.y()) / phiMax, (theta - thetaMin) / dTheta};
     hit->dpdu = {-phiMax * p.y(), phiMax * p.x(), 0};
     hit->dpdv = dTheta * Vec3f(p.z() * cosPhi, p.z() * sinPhi, -r * std::sin(theta));
-    hit->dndu = hit->dndv = Vec3f::Zero();
     if (needs & kNeedsNormalDerivatives) {
         // The normal is p / r up to its sign, so its derivatives are those of p.
         const float sign = hit->dpdu.cross(hit->dpdv).dot(p) < 0 ? -1.f : 1.f;
         hit->dndu = sign / r * hit->dpdu;
         hit->dndv = sign / r * hit->dpdv;
+    } else {
+        hit->dndu = hit->dndv = Vec3f::Zero();
     }
-    FinishQuadricHit(sphere.place, p, Gamma(5) * p.cwiseAbs(), hit);
+    FinishQuadricHit(sphere.place, p, Gamma(5) * p.cwiseAbs(), needs, hit);
 }
 
 std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const Vec2f& u) {
