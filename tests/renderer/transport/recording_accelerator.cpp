@@ -104,13 +104,27 @@ RTCScene AdmitPackets(const Scene& scene) {
 }
 
 template <int width>
-size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOcclusion) {
+size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOcclusion,
+                    bool areCoherent) {
     const auto trace = [&](auto function, const int* valid, auto* packet) {
 #if RTC_VERSION_MAJOR >= 4
-        function(valid, world, packet, nullptr);
+        RTCRayQueryFlags flags =
+            areCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+        if constexpr (std::is_same_v<decltype(packet), typename Packet<width>::RayHit*>) {
+            RTCIntersectArguments arguments;
+            rtcInitIntersectArguments(&arguments);
+            arguments.flags = flags;
+            function(valid, world, packet, &arguments);
+        } else {
+            RTCOccludedArguments arguments;
+            rtcInitOccludedArguments(&arguments);
+            arguments.flags = flags;
+            function(valid, world, packet, &arguments);
+        }
 #else
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
+        if (areCoherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         function(valid, world, &context, packet);
 #endif
     };
@@ -138,7 +152,7 @@ size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOc
     return hits;
 }
 
-template size_t TracePackets<8>(RTCScene, std::span<const RecordedRay>, bool);
-template size_t TracePackets<16>(RTCScene, std::span<const RecordedRay>, bool);
+template size_t TracePackets<8>(RTCScene, std::span<const RecordedRay>, bool, bool);
+template size_t TracePackets<16>(RTCScene, std::span<const RecordedRay>, bool, bool);
 
 }  // namespace lull

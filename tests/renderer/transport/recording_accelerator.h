@@ -27,8 +27,10 @@ extern thread_local RayLog* rayLog;
 // traced one at a time find the same as before. Returns the scene in Embree's form.
 RTCScene AdmitPackets(const Scene& scene);
 
-// Traces the rays in packets of 8 or 16, gathering each packet first. Returns how many hit.
+// Traces the rays in packets of 8 or 16, gathering each packet first; `areCoherent` tells Embree
+// that those of a packet go nearly the same way. Returns how many hit.
 template <int width>
-size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOcclusion);
+size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOcclusion,
+                    bool areCoherent);
 
 }  // namespace lull

@@ -4,6 +4,10 @@
 //   order   path     as the render traced them
 //           bounce   those of the same bounce together: what a wavefront would trace
 //           sorted   within each bounce by the octant of the direction, then along a Morton curve
+//           first    as path, only the rays of the camera and the shadow rays of what they hit:
+//           those
+//                    that packets could have without sorting, the samples of a pixel together;
+//                    "of render" is how much faster than now a whole render could be with them
 //   width   1        through the accelerator, one at a time, as in a render
 //           8, 16    in Embree's packets; gathering them counts, but no hit is handed on
 // The packets of path/8 and path/16 hold rays that follow from each other, so no render could have
@@ -37,7 +41,8 @@ constexpr int kSide = 128;    // pixels
 constexpr int kTileSize = 8;  // small, as in renders
 constexpr int kRounds = 5;
 
-constexpr std::array<const char*, 3> kOrders = {"path", "bounce", "sorted"};
+constexpr std::array<const char*, 4> kOrders = {"path", "bounce", "sorted", "first"};
+constexpr size_t kFirst = 3;
 constexpr std::array<int, 3> kWidths = {1, 8, 16};
 
 double ThreadSeconds() {
@@ -60,7 +65,7 @@ struct Timing {
 };
 
 struct Measurement {
-    size_t samples, nearestCount, occlusionCount;
+    size_t samples, nearestCount, occlusionCount, firstNearestCount, firstOcclusionCount;
     Timing render, sort;
     struct Variant {
         Timing nearest, occlusion;
@@ -137,10 +142,15 @@ std::vector<RecordedRay> SortSpatially(std::span<const RecordedRay> rays) {
     return sorted;
 }
 
+std::vector<RecordedRay> OnlyFirst(std::vector<RecordedRay> rays) {
+    std::erase_if(rays, [](const RecordedRay& ray) { return ray.bounce > 0; });
+    return rays;
+}
+
 size_t Trace(const Scene& scene, RTCScene world, std::span<const RecordedRay> rays,
-             bool isOcclusion, int width) {
-    if (width == 8) return TracePackets<8>(world, rays, isOcclusion);
-    if (width == 16) return TracePackets<16>(world, rays, isOcclusion);
+             bool isOcclusion, int width, bool areCoherent) {
+    if (width == 8) return TracePackets<8>(world, rays, isOcclusion, areCoherent);
+    if (width == 16) return TracePackets<16>(world, rays, isOcclusion, areCoherent);
     size_t hits = 0;
     Hit hit;
     for (const auto& entry : rays)
@@ -164,6 +174,9 @@ Measurement MeasureScene(const std::string& file) {
     std::array<std::vector<RecordedRay>, kOrders.size()> nearest, occlusion;
     nearest[0] = log.nearest, nearest[1] = SortByBounce(log.nearest);
     occlusion[0] = log.occlusion, occlusion[1] = SortByBounce(log.occlusion);
+    nearest[kFirst] = OnlyFirst(log.nearest), occlusion[kFirst] = OnlyFirst(log.occlusion);
+    m.firstNearestCount = nearest[kFirst].size();
+    m.firstOcclusionCount = occlusion[kFirst].size();
     for (int round = 0; round < kRounds; ++round) {
         m.render.Measure([&] { return RenderImage(*scene, samplesPerPixel, nullptr), 0; });
         m.sort.Measure([&] {
@@ -173,10 +186,12 @@ Measurement MeasureScene(const std::string& file) {
         });
         for (size_t i = 0; i < kOrders.size(); ++i)
             for (size_t j = 0; j < kWidths.size(); ++j) {
-                m.variants[i][j].nearest.Measure(
-                    [&] { return Trace(*scene, world, nearest[i], false, kWidths[j]); });
-                m.variants[i][j].occlusion.Measure(
-                    [&] { return Trace(*scene, world, occlusion[i], true, kWidths[j]); });
+                m.variants[i][j].nearest.Measure([&] {
+                    return Trace(*scene, world, nearest[i], false, kWidths[j], i == kFirst);
+                });
+                m.variants[i][j].occlusion.Measure([&] {
+                    return Trace(*scene, world, occlusion[i], true, kWidths[j], i == kFirst);
+                });
             }
     }
     return m;
@@ -198,19 +213,26 @@ void ReportRender(benchmark::State& state, const std::string& file) {
     state.counters["traversal"] = m.variants[0][0].Seconds() / m.render.seconds;
 }
 
-// Reports rays/s of both kinds; "gain" is the speed over path/1, without the time of any sorting;
-// "differing" is the share of rays by which the number of hits differs from that of path/1.
+// Reports rays/s of both kinds; "gain" is the speed over that of the same rays one at a time (in
+// the order of the paths), without the time of any sorting; "differing" is the share of rays by
+// which the number of hits differs from that.
 void ReportVariant(benchmark::State& state, const std::string& file, size_t order, size_t width) {
     const Measurement& m = MeasurementOf(file);
-    const auto &v = m.variants[order][width], &single = m.variants[0][0];
+    const auto &v = m.variants[order][width], &single = m.variants[order == kFirst ? kFirst : 0][0];
     for (auto _ : state) state.SetIterationTime(v.Seconds());
+    const bool isFirst = order == kFirst;
+    const auto nearest = double(isFirst ? m.firstNearestCount : m.nearestCount);
+    const auto occlusion = double(isFirst ? m.firstOcclusionCount : m.occlusionCount);
     const double hits = double(v.nearest.hits + v.occlusion.hits);
     const double singleHits = double(single.nearest.hits + single.occlusion.hits);
-    state.counters["Mrays/s"] = 1e-6 * double(m.RayCount()) / v.Seconds();
-    state.counters["nearest"] = 1e-6 * double(m.nearestCount) / v.nearest.seconds;
-    state.counters["occlusion"] = 1e-6 * double(m.occlusionCount) / v.occlusion.seconds;
+    state.counters["Mrays/s"] = 1e-6 * (nearest + occlusion) / v.Seconds();
+    state.counters["nearest"] = 1e-6 * nearest / v.nearest.seconds;
+    state.counters["occlusion"] = 1e-6 * occlusion / v.occlusion.seconds;
     state.counters["gain"] = single.Seconds() / v.Seconds();
-    state.counters["differing"] = std::abs(hits - singleHits) / double(m.RayCount());
+    state.counters["differing"] = std::abs(hits - singleHits) / (nearest + occlusion);
+    if (isFirst)
+        state.counters["of render"] =
+            m.render.seconds / (m.render.seconds - (single.Seconds() - v.Seconds()));
 }
 
 void ReportSort(benchmark::State& state, const std::string& file) {
