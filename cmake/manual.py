@@ -15,6 +15,7 @@ VALUE = re.compile(r"^(?P<name>.*?)"
                    r"(?::(?P<check>(?:INT|UINT|FLOAT|POSITIVE|NONNEGATIVE)\b.*?|\{.*?\})"
                    r"|(?<=[A-Z.])(?P<file>[a-z0-9]*):FILE)?"
                    r"(?:=(?P<default>\S*))?(?P<repeated> \.\.\.)?$")
+CHOICES = re.compile(r"[a-z0-9-]+(\|[a-z0-9-]+)+")  # a value that is one of these words
 RELATION = re.compile(r" (Needs|Excludes): (.*?)(?= Needs:| Excludes:|$)")
 # How a long head goes on, where a text cannot begin.
 GOES_ON = re.compile(r"Needs:|Excludes:|REQUIRED|in \[|\[|- |\d|\.\.\.")
@@ -31,7 +32,8 @@ class Option:
         value = VALUE.match(RELATION.sub("", " " + rest).strip())
         check = value["check"] or ""
         self.value = value["name"] + (value["file"] or "") + (value["repeated"] or "")
-        self.choices = check[1:-1].split(",") if check.startswith("{") else []
+        self.choices = (check[1:-1].split(",") if check.startswith("{") else
+                        self.value.split("|") if CHOICES.fullmatch(self.value) else [])
         self.text = text
         limits = re.search(r"\[(\S+) - (\S+)\]", check)
         if limits:

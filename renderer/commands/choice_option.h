@@ -7,6 +7,12 @@
 
 namespace lull {
 
+// Checks that a value is one of the choices, without a word in the help: the type's name has them.
+template <typename Choices>
+CLI::Validator OneOf(const Choices& choices) {
+    return CLI::IsMember(choices).description("");
+}
+
 // Adds an option that sets *value, which must outlive the parsing, to what `choices` has for the
 // name that is given. What *value is before is the default that the help shows, and one of them;
 // `names` are the choices in the order in which people read them, "off|auto|on".
@@ -20,7 +26,7 @@ CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
     return app
         .add_option_function<std::string>(
             option, [=](const std::string& name) { *value = choices.at(name); }, help)
-        ->check(CLI::IsMember(choices))
+        ->check(OneOf(choices))
         ->type_name(names)
         ->default_str(original);
 }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
 #include "renderer/commands/render_settings.h"
@@ -74,14 +75,11 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("RULE");
     AddCautionOption(app, &o->caution);
     app.add_flag("--rivals", o->rivals, "Judge the rules that have one setting");
-    const std::map<std::string, ChooseBy> choices = {{"error", ChooseBy::AbsoluteError},
-                                                     {"critical", ChooseBy::CriticalError}};
-    app.add_option_function<std::string>(
-           "--choose-by", [o, choices](const std::string& s) { o->chooseBy = choices.at(s); },
-           "What the setting of a rival makes least: error (default), or the\n"
-           "critical error at 2 %")
-        ->check(CLI::IsMember(choices))
-        ->type_name("error|critical");
+    AddChoiceOption<ChooseBy>(
+        app, "--choose-by", &o->chooseBy,
+        {{"error", ChooseBy::AbsoluteError}, {"critical", ChooseBy::CriticalError}},
+        "error|critical",
+        "What the setting of a rival makes least: the error, or the critical error at 2 %");
     app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

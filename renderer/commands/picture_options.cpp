@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <set>
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
@@ -29,7 +30,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
         "rules judge the picture without it");
     app.add_option("--png-bits", options->pngBits, "Bits of each colour of the PNG")
-        ->check(CLI::IsMember({8, 16}))
+        ->check(OneOf(std::set{8, 16}))
         ->type_name("8|16")
         ->capture_default_str();
     app.add_flag("--exr-half", options->exrHalf,

@@ -52,7 +52,7 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         app.add_option_function<std::string>(
                "--sampler", [s, samplers](const std::string& n) { s->sampler = samplers.at(n); },
                "Where sample positions come from [as the scene says]")
-            ->check(CLI::IsMember(samplers))
+            ->check(OneOf(samplers))
             ->type_name("random|sobol");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Another seed gives other, equally good, samples")

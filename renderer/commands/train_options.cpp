@@ -4,7 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <set>
 #include <stdexcept>
+
+#include "renderer/commands/choice_option.h"
 
 namespace lull {
 
@@ -120,8 +123,8 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
     AddNumber(app, "--k", &s->k, 1, 1000, "Steps in a window");
     AddNumber(app, "--n", &s->n, 1, 1000000, "Spp between the steps");
     app.add_option("--m", s->m, "Sub-blocks that entropies are computed of")
-        ->check(CLI::IsMember({4, 25, 100, 400}))
-        ->type_name("N")
+        ->check(OneOf(std::set{4, 25, 100, 400}))
+        ->type_name("4|25|100|400")
         ->capture_default_str();
     AddNames(app, "--features,--channels", ParseFeatures, &s->features,
              "What the network is given [H]");

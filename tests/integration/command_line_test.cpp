@@ -59,6 +59,21 @@ TEST(CommandLine, HelpsAndTellsItsVersion) {
     }
 }
 
+// Choices are named once, with what is chosen where nothing is said.
+TEST(CommandLine, HelpNamesChoices) {
+    const TemporaryDirectory directory;
+    for (const auto& [command, option] : {std::pair("render", "--guide off|auto|on=off "),
+                                          {"render", "--png-bits 8|16=8 "},
+                                          {"evaluate", "--choose-by error|critical=error"},
+                                          {"train", "--m 4|25|100|400=100 "}}) {
+        const Outcome outcome = RunLull(directory, std::string(command) + " --help");
+        EXPECT_TRUE(Contains(outcome.out, option)) << outcome.out;
+    }
+    const Outcome wrong = RunLull(directory, "render scene.pbrt --png-bits 12");
+    EXPECT_EQ(wrong.exitCode, 2);
+    EXPECT_TRUE(Contains(wrong.err, "12 not in {8,16}")) << wrong.err;
+}
+
 TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
     const SceneDirectory directory;
     for (const char* output : {"image.exr", "image.png"}) {
