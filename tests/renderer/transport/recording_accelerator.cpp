@@ -135,7 +135,7 @@ size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOc
         const int count = int(std::min<size_t>(width, rays.size() - first));
         for (int i = 0; i < width; ++i) {
             valid[i] = i < count ? -1 : 0;
-            const RTCRay r = MakeRay(rays[first + std::min(i, count - 1)].ray);
+            const RTCRay r = MakeRay(rays[first + std::min(i, count - 1)].ray, 0);
             p.ray.org_x[i] = r.org_x, p.ray.org_y[i] = r.org_y, p.ray.org_z[i] = r.org_z;
             p.ray.dir_x[i] = r.dir_x, p.ray.dir_y[i] = r.dir_y, p.ray.dir_z[i] = r.dir_z;
             p.ray.tnear[i] = r.tnear, p.ray.tfar[i] = r.tfar, p.ray.time[i] = r.time;
