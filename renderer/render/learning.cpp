@@ -24,9 +24,8 @@ uint64_t SeedOf(uint64_t seed, int round) {
 // Cells that the first round has to record in.
 constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
 
-// What a vertex costs with a guide over without, and what the product of variance and work has to
-// fall below for auto to guide (renderer/GUIDING.md).
-constexpr double kVertexCost = 1.25, kWorthwhile = 0.9;
+// What a vertex costs with a guide over without (renderer/GUIDING.md).
+constexpr double kVertexCost = 1.45;
 
 int RoundSamples(int round) { return kFirstRound << round; }
 int SamplesUntil(int round) { return kFirstRound * ((1 << round) - 1); }
@@ -163,10 +162,10 @@ bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& o
     learning->figures.varianceError = trial->error;
     learning->figures.vertices = trial->vertices;
     const double work = trial->vertices * kVertexCost;
-    const bool pays = (trial->variance + 2 * trial->error) * work < kWorthwhile;
+    const bool pays = (trial->variance + 2 * trial->error) * work < 1;
     return Finish(pays,
-                  fmt::format("variance times work is {} {:.2f} of what it is without",
-                              pays ? "at most" : "not surely below", kWorthwhile),
+                  fmt::format("variance times work is {} what it is without",
+                              pays ? "below" : "not surely below"),
                   learning);
 }
 
