@@ -176,16 +176,21 @@ TEST(Ranks, ShowCriteriaTheSame) {
     }
 }
 
+// Returns what cancels the last of the ranks after a while.
+auto SignalToLast(int ranks) {
+    return [ranks](RenderOptions* o, int rank) {
+        if (rank != ranks - 1) return;
+        o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), ranks] {
+            return ++*calls > 150 / ranks;
+        };
+    };
+}
+
 // Interrupted with some ranks, by a signal to one of them, and taken up by others.
 TEST(Ranks, GoOnFromCheckpointsOfOthers) {
     const Shared reference = RenderShared(0);
     for (const auto& [first, second] : {std::pair(1, 3), {2, 0}, {4, 2}}) {
-        const Shared begun = RenderShared(first, [first = first](RenderOptions* o, int rank) {
-            if (rank != first - 1) return;
-            o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), first = first] {
-                return ++*calls > 150 / first;
-            };
-        });
+        const Shared begun = RenderShared(first, SignalToLast(first));
         ASSERT_TRUE(begun.result.cancelled);
         EXPECT_LT(begun.film->SampleCount(), reference.film->SampleCount());
         const Shared ended = RenderShared(second, {}, &begun);
@@ -197,11 +202,18 @@ TEST(Ranks, GoOnFromCheckpointsOfOthers) {
 TEST(Ranks, PauseForCheckpoints) {
     const Shared reference = RenderShared(0);
     std::atomic<int> checkpoints = 0;
-    const Shared shared = RenderShared(3, [&](RenderOptions* o, int rank) {
+    const auto change = [&](RenderOptions* o, int rank) {
         if (rank > 0) return;
         o->checkpointInterval = 0.002;
         o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
-    });
+    };
+    // Takes many times the interval, however fast the machine is.
+    const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        if (pixel.x() == kImage.min.x() && index % 5 == 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return SyntheticSample(sampler, pixel, index);
+    };
+    const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
     EXPECT_GT(checkpoints, 2);
     EXPECT_TRUE(SamePixels(*shared.film, *reference.film));
     EXPECT_EQ(StopsOf(shared), StopsOf(reference));
@@ -349,12 +361,7 @@ TEST(Ranks, ShareLayers) {
 TEST(Ranks, GoOnWithTheLayersOfOthers) {
     const Shared reference = RenderLayers(0);
     for (const auto& [first, second] : {std::pair(1, 3), {3, 2}, {2, 0}}) {
-        const Shared begun = RenderLayers(first, [first = first](RenderOptions* o, int rank) {
-            if (rank != first - 1) return;
-            o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), first = first] {
-                return ++*calls > 150 / first;
-            };
-        });
+        const Shared begun = RenderLayers(first, SignalToLast(first));
         ASSERT_TRUE(begun.result.cancelled);
         ExpectSameLayers(RenderLayers(second, {}, &begun), reference, second);
     }
