@@ -16,16 +16,15 @@ is there already is not rendered again. Not part of CI.
 """
 
 import argparse
-import json
 import os
 import re
 import shlex
-import subprocess
 import sys
 
 import numpy as np
 
 from pictures import lightness, read
+from seconds import Seconds
 
 
 class Scene:
@@ -36,28 +35,16 @@ class Scene:
         self.name = os.path.basename(os.path.dirname(self.path))
         self.folder = os.path.join(os.path.abspath(o.out), self.name)
         os.makedirs(self.folder, exist_ok=True)
-        self.log = os.path.join(self.folder, 'seconds.json')
-        self.seconds = json.load(open(self.log)) if os.path.exists(self.log) else {}
+        self.seconds = Seconds(os.path.join(self.folder, 'seconds.json'))
 
     def file(self, name):
         return os.path.join(self.folder, name + '.exr')
 
-    def run(self, name, command):
-        """Runs `command`, which makes the image `name`, unless that is there; notes its seconds."""
-        if name in self.seconds:
-            return
-        run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        _, status, used = os.wait4(run.pid, 0)
-        if status != 0:
-            sys.exit('failed: ' + ' '.join(command))
-        self.seconds[name] = used.ru_utime + used.ru_stime
-        with open(self.log, 'w') as f:
-            json.dump(self.seconds, f, indent=1)
-
     def lull(self, name, program, spp, *how):
         size = '%dx%d' % (self.o.side, self.o.side)
-        self.run(name, [*program, 'render', self.path, '-o', self.file(name), '--resolution', size,
-                        '--spp', str(spp), '--threads', '1', '--quiet', *how])
+        self.seconds.run(name, [*program, 'render', self.path, '-o', self.file(name),
+                                '--resolution', size, '--spp', str(spp), '--threads', '1',
+                                '--quiet', *how])
 
     def pbrt(self, name, spp):
         """Renders the scene with another size and sampler, beside links to the files it needs."""
@@ -76,7 +63,8 @@ class Scene:
         scene = os.path.join(self.folder, name + '.pbrt')
         with open(scene, 'w') as f:
             f.write(text)
-        self.run(name, [self.o.pbrt, '--quiet', '--nthreads=1', '--outfile', self.file(name), scene])
+        self.seconds.run(name, [self.o.pbrt, '--quiet', '--nthreads=1', '--outfile',
+                                self.file(name), scene])
 
     def render(self):
         o = self.o

@@ -24,6 +24,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from pictures import lightness, read
+from seconds import Seconds
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAMS = ('lull', 'cycles')
@@ -39,8 +40,7 @@ class Scene:
         self.name = parts[-2] if stem == 'scene' else stem
         self.folder = os.path.join(os.path.abspath(o.out), self.name)
         os.makedirs(self.folder, exist_ok=True)
-        self.log = os.path.join(self.folder, 'seconds.json')
-        self.seconds = json.load(open(self.log)) if os.path.exists(self.log) else {}
+        self.seconds = Seconds(os.path.join(self.folder, 'seconds.json'))
         self.model, self.environment = self.path, o.environment and os.path.abspath(o.environment)
         if path.endswith('.pbrt'):
             self.model = os.path.join(self.folder, self.name + '.glb')
@@ -53,26 +53,15 @@ class Scene:
     def file(self, name):
         return os.path.join(self.folder, name + '.exr')
 
-    def note(self, name, seconds):
-        self.seconds[name] = seconds
-        with open(self.log, 'w') as f:
-            json.dump(self.seconds, f, indent=1)
-
     def lull(self, name, *how):
         """Renders with lull unless that has been done."""
-        if name in self.seconds:
-            return
         command = [os.path.join(self.o.build, 'renderer/lull'), 'render', self.model, '-o',
                    self.file(name), '--resolution', '%dx%d' % (self.o.width, self.o.height),
                    '--block', str(self.o.block), '--threads', '2', '--quiet', '--max-depth',
                    str(self.o.bounces + 1), *how]
         if self.environment:
             command += ['--environment', self.environment]
-        run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        _, status, used = os.wait4(run.pid, 0)
-        if status != 0:
-            sys.exit('failed: ' + ' '.join(command))
-        self.note(name, used.ru_utime + used.ru_stime)
+        self.seconds.run(name, command)
 
     def cycles(self, runs):
         """Renders with Cycles, in one Blender, what has not been done of (name, spp, seed,
@@ -92,7 +81,7 @@ class Scene:
             tail = tail[-30:] + [line]
             if line.startswith('RESULT '):
                 result = json.loads(line[7:])
-                self.note(result['name'], result['seconds'])
+                self.seconds.note(result['name'], result['seconds'])
         if run.wait() != 0:
             sys.exit(''.join(tail))
 
