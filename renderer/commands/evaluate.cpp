@@ -32,7 +32,8 @@ rules are run on what was recorded, without rendering: every pass up to 400 spp,
 Rules for --stop: learned[:NAME|:MODEL.h5], entropy[:T], lnoise[:T], dammertz[:T], cycles:T,
 luxtile:T, fixed:N and thresholds:FILE. --rivals runs entropy, lnoise, dammertz, cycles and luxtile,
 each with the one setting that is best on the other viewpoints (leave one out); "setting" says
-which, and for all what would be best on all of them.
+which, and for all what would be best on all of them. "entropy, mask" is entropy with two settings
+that are chosen so: its threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
 
 Columns:
   views   how many viewpoints, and in them

@@ -76,8 +76,7 @@ std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks,
     std::vector<JudgedRule> rules;
     if (judged.rivals)
         for (Rival& rival : JudgeRivals(blocks, judged.chooseBy, judged.grid))
-            rules.push_back(
-                {rival.rule, fmt::format("{:.3g}", rival.bestOfAll), std::move(rival.viewpoints)});
+            rules.push_back({rival.rule, rival.bestOfAll, std::move(rival.viewpoints)});
     for (const std::string& rule : judged.rules)
         rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, judged.context), "")});
     const bool anyShort = std::ranges::any_of(

@@ -9,33 +9,52 @@ namespace lull {
 
 namespace {
 
-// Names a rule that has one setting, with the range in which it can be of use: beyond it, every
-// block stops at once or never.
+// Names a rule that has one threshold, with the range in which it can be of use: beyond it, every
+// block stops at once or never. Where there are `masks`, one of them is chosen as well.
 struct RivalRule {
     const char* name;
     ErrorRule error;
     double largest, least;
+    std::span<const double> masks = {};
 };
+
+// What NoiseVisibility::mask may be, the default first; the last hides nothing.
+constexpr double kMasks[] = {40, 8, 12, 16, 24, 1e9};
+
 constexpr RivalRule kErrorRules[] = {{"dammertz", ErrorRule::Dammertz, 1, 1e-4},
                                      {"luxtile", ErrorRule::LuxTile, 1, 1e-4},
                                      {"lnoise", ErrorRule::LNoise, 50, 0.01},
-                                     {"entropy", ErrorRule::Entropy, 50, 0.01}};
+                                     {"entropy", ErrorRule::Entropy, 50, 0.01},
+                                     {"entropy, mask", ErrorRule::Entropy, 50, 0.01, kMasks}};
 
-std::vector<double> SettingsOf(const RivalRule& rule) {
-    std::vector<double> settings;
-    for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back(t);
+// Says with what a rule is run; `mask` counts in kMasks, -1 where there is none to choose.
+struct Setting {
+    double threshold = 0;
+    int mask = -1;
+};
+
+std::vector<Setting> SettingsOf(const RivalRule& rule) {
+    std::vector<Setting> settings;
+    const int masks = int(rule.masks.size());
+    for (int mask = masks > 0 ? 0 : -1; mask < masks; ++mask)
+        for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back({t, mask});
     return settings;
 }
 
-std::string Text(double setting) {
+std::string Text(double number) {
     char text[32];
     const auto end =
-        std::to_chars(text, text + sizeof(text), setting, std::chars_format::general, 3).ptr;
+        std::to_chars(text, text + sizeof(text), number, std::chars_format::general, 3).ptr;
     return std::string(text, end);
 }
 
+std::string Text(const Setting& setting) {
+    if (setting.mask < 0) return Text(setting.threshold);
+    return Text(setting.threshold) + ", " + Text(kMasks[setting.mask]);
+}
+
 // Runs a setting over block number `index`; without verdicts if `brief`.
-using Run = std::function<RuleOutcome(size_t index, double setting, bool brief)>;
+using Run = std::function<RuleOutcome(size_t index, const Setting& setting, bool brief)>;
 
 double Cost(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
     const bool critical = chooseBy == ChooseBy::CriticalError;
@@ -48,12 +67,12 @@ double Cost(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
 // Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
 std::vector<std::vector<double>> Costs(std::span<const JudgedBlock> blocks,
                                        std::span<const size_t> begins,
-                                       std::span<const double> settings, const Run& run,
+                                       std::span<const Setting> settings, const Run& run,
                                        ChooseBy chooseBy, int grid) {
     std::vector<std::vector<double>> costs;
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
         std::vector<double>& row = costs.emplace_back();
-        for (const double setting : settings) {
+        for (const Setting& setting : settings) {
             ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint};
             for (size_t i = begins[v]; i < begins[v + 1]; ++i)
                 viewpoint.blocks.push_back(
@@ -66,8 +85,8 @@ std::vector<std::vector<double>> Costs(std::span<const JudgedBlock> blocks,
 
 // Returns the setting of the least mean cost over all viewpoints but `left` (-1: none is left out),
 // the first among equals.
-double Best(const std::vector<std::vector<double>>& costs, std::span<const double> settings,
-            int left) {
+Setting Best(const std::vector<std::vector<double>>& costs, std::span<const Setting> settings,
+             int left) {
     std::vector<double> sums(settings.size(), 0);
     for (size_t v = 0; v < costs.size(); ++v)
         for (size_t s = 0; s < settings.size(); ++s)
@@ -76,12 +95,12 @@ double Best(const std::vector<std::vector<double>>& costs, std::span<const doubl
 }
 
 Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
-                 std::span<const size_t> begins, std::span<const double> settings, const Run& run,
+                 std::span<const size_t> begins, std::span<const Setting> settings, const Run& run,
                  ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
-    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Best(costs, settings, -1)};
+    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Text(Best(costs, settings, -1))};
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
-        const double setting = Best(costs, settings, int(v));
+        const Setting setting = Best(costs, settings, int(v));
         ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
             ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = Text(setting)});
         for (size_t i = begins[v]; i < begins[v + 1]; ++i)
@@ -91,12 +110,19 @@ Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
     return rival;
 }
 
-Run MakeRun(std::span<const JudgedBlock> blocks, ErrorRule rule) {
-    std::vector<ErrorSeries> series;
-    for (const JudgedBlock& block : blocks)
-        series.push_back(MakeErrorSeries(*block.recording, rule));
-    return [=](size_t index, double setting, bool brief) {
-        return SimulateErrorRule(blocks[index], series[index], setting, brief);
+// Runs a rule over recordings, each of which it reads once for each mask.
+Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rule) {
+    std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
+    for (size_t m = 0; m < std::max<size_t>(rule.masks.size(), 1); ++m) {
+        NoiseVisibility visibility;
+        if (!rule.masks.empty()) visibility.mask = rule.masks[m];
+        std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
+        for (const JudgedBlock& block : blocks)
+            ofBlocks.push_back(MakeErrorSeries(*block.recording, rule.error, visibility));
+    }
+    return [=](size_t index, const Setting& setting, bool brief) {
+        const std::vector<ErrorSeries>& ofBlocks = series[size_t(std::max(setting.mask, 0))];
+        return SimulateErrorRule(blocks[index], ofBlocks[index], setting.threshold, brief);
     };
 }
 
@@ -113,12 +139,13 @@ std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy cho
     std::vector<Rival> rivals;
     for (const RivalRule& rule : kErrorRules)
         rivals.push_back(JudgeRival(rule.name, blocks, begins, SettingsOf(rule),
-                                    MakeRun(blocks, rule.error), chooseBy, grid));
-    const Run cycles = [&](size_t index, double setting, bool brief) {
-        return SimulateCycles(blocks[index], setting, brief);
+                                    MakeRun(blocks, rule), chooseBy, grid));
+    const Run cycles = [&](size_t index, const Setting& setting, bool brief) {
+        return SimulateCycles(blocks[index], setting.threshold, brief);
     };
-    rivals.push_back(
-        JudgeRival("cycles", blocks, begins, kCyclesThresholds, cycles, chooseBy, grid));
+    std::vector<Setting> settings;
+    for (const double threshold : kCyclesThresholds) settings.push_back({threshold});
+    rivals.push_back(JudgeRival("cycles", blocks, begins, settings, cycles, chooseBy, grid));
     return rivals;
 }
 

@@ -1,4 +1,4 @@
-// Gives each simple rule the best chance: its one setting is chosen on other viewpoints.
+// Gives each simple rule the best chance: its setting is chosen on other viewpoints.
 #pragma once
 
 #include <span>
@@ -14,16 +14,20 @@ namespace lull {
 enum class ChooseBy { AbsoluteError, CriticalError };
 
 struct Rival {
-    std::string rule;  // "dammertz", "cycles", "luxtile", "lnoise" or "entropy"
+    // "dammertz", "luxtile", "lnoise", "entropy", "cycles", or "entropy, mask": that with the mask
+    // of its visible noise chosen as well.
+    std::string rule;
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
-    double bestOfAll = 0;  // the best setting on all viewpoints: what to use on new ones
+    // The best setting on all viewpoints: what to use on new ones. A threshold, to three digits;
+    // "threshold, mask" for "entropy, mask".
+    std::string bestOfAll;
 };
 
-// Runs the rules dammertz, cycles, luxtile, lnoise and entropy over recorded blocks (those of one
-// viewpoint follow each other), each viewpoint with the setting that does best on the others; of
-// equally good ones the one that takes the fewest samples. Settings are kCyclesThresholds, else
-// steps of 1 %. Throws std::invalid_argument if there are fewer than two viewpoints.
+// Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
+// with the setting that does best on the others; of equally good ones the one that takes the fewest
+// samples. Thresholds are kCyclesThresholds, else steps of 1 %; masks are 8, 12, 16, 24, 40 and
+// none (1e9). Throws std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid);
 
 }  // namespace lull

@@ -95,7 +95,8 @@ Simulator ThresholdsSimulator(const std::string& path) {
 }
 
 // Returns what the rule `entropy` compares with its threshold.
-std::vector<double> EntropyErrors(const BlockRecording& recording) {
+std::vector<double> EntropyErrors(const BlockRecording& recording,
+                                  const NoiseVisibility& visibility) {
     std::vector<double> errors;
     DropHistory history;
     for (int i = 0; i < recording.Count(); ++i) {
@@ -104,7 +105,7 @@ std::vector<double> EntropyErrors(const BlockRecording& recording) {
         if (EntropyRuleLooks(spp, recording.spp.front())) {
             const std::span<const float> h = recording.Values(i, "h100");
             visible = AddVisible(spp, std::vector<double>(h.begin(), h.end()),
-                                 LightnessOf(recording, i), NoiseVisibility(), &history);
+                                 LightnessOf(recording, i), visibility, &history);
         }
         errors.push_back(visible ? MeanVisible(*visible) : std::numeric_limits<double>::infinity());
     }
@@ -113,11 +114,12 @@ std::vector<double> EntropyErrors(const BlockRecording& recording) {
 
 }  // namespace
 
-ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule) {
+ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule,
+                            const NoiseVisibility& visibility) {
     const bool votes = rule == ErrorRule::LNoise || rule == ErrorRule::Entropy;
     ErrorSeries series{.needed = votes ? VoteCounter().needed : 1};
     if (rule == ErrorRule::Entropy) {
-        series.errors = EntropyErrors(recording);
+        series.errors = EntropyErrors(recording, visibility);
         return series;
     }
     const auto lux = MakeLuxTile(1);  // says at which spp it looks

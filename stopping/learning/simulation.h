@@ -25,7 +25,9 @@ struct ErrorSeries {
     std::vector<double> errors = {};  // of each record; infinite where the rule does not look
     int needed = 1;                   // errors below the threshold in a row that stop the block
 };
-ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule);
+// `visibility` is for ErrorRule::Entropy.
+ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule,
+                            const NoiseVisibility& visibility = {});
 
 // Returns the record at which a threshold stops the block; -1: none.
 int FirstBelow(const ErrorSeries& series, double threshold);

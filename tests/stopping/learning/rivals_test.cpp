@@ -48,10 +48,10 @@ TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
         const std::vector<Rival> rivals = JudgeRivals(blocks.judged, chooseBy, 40);
-        ASSERT_EQ(rivals.size(), 5u);
+        ASSERT_EQ(rivals.size(), 6u);
         const Rival& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
-        EXPECT_NEAR(noise.bestOfAll, 0.51, 0.02);
+        EXPECT_NEAR(std::stod(noise.bestOfAll), 0.51, 0.02);
         ASSERT_EQ(noise.viewpoints.size(), 3u);
         const Judgement best = Judge(noise.viewpoints, {.grid = 40, .margins = {2}});
         EXPECT_EQ(best.blocks, 9);
@@ -76,7 +76,7 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
         const Rival &x = Find(before, rule), &y = Find(after, rule);
         EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
         EXPECT_NE(x.bestOfAll, y.bestOfAll) << rule;
-        EXPECT_LT(x.bestOfAll, y.bestOfAll) << rule;
+        EXPECT_LT(std::stod(x.bestOfAll), std::stod(y.bestOfAll)) << rule;
     }
 }
 
@@ -84,9 +84,44 @@ TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     const Blocks blocks;
     // Both settings of cycles are wrong by half; the coarser comes first.
     const Rival cycles = Find(JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40), "cycles");
-    EXPECT_EQ(cycles.bestOfAll, kCyclesThresholds[2]);
+    EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
     EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.judged[1].human / 2);
+}
+
+TEST(Rivals, ChooseTheMaskAsWell) {
+    // Blocks of different detail, whose people see noise masked with 12 until it is below 1.
+    Blocks blocks;
+    const double lightness = 50;
+    for (size_t i = 0; i < 9; ++i) {
+        const double amplitude = 2 + 0.1 * double(i), detail = 15.0 * double(i % 3);
+        BlockRecording& recording = blocks.recordings[i];
+        SetChannel(&recording, "lightness", [=](int) { return lightness; });
+        SetChannel(&recording, "deviation", [=](int) { return detail; });
+        // The fall since half of the spp is amplitude^2 / spp.
+        SetChannel(&recording, "h100", [=](int spp) { return amplitude * amplitude / spp; });
+        const auto seen = [=](int spp) {
+            const double drop[] = {amplitude / std::sqrt(spp)};
+            const SubBlockLightness picture{.mean = {float(lightness)},
+                                            .deviation = {float(detail)}};
+            return VisibleDrop(drop, picture, spp, {.mask = 12})[0];
+        };
+        int human = 20;
+        while (seen(human) >= 1) human += 20;
+        blocks.judged[i].human = human;
+    }
+    const auto rivals = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    const Rival& masked = Find(rivals, "entropy, mask");
+    EXPECT_TRUE(masked.bestOfAll.ends_with(", 12")) << masked.bestOfAll;
+    for (const ViewpointOutcome& viewpoint : masked.viewpoints) {
+        EXPECT_TRUE(viewpoint.setting.ends_with(", 12")) << viewpoint.setting;
+        EXPECT_NEAR(std::stod(viewpoint.setting), 1, 0.05);
+    }
+    const auto error = [&](const char* rule) {
+        return Judge(Find(rivals, rule).viewpoints, {}).absoluteError;
+    };
+    EXPECT_LT(error("entropy, mask"), 150);
+    EXPECT_GT(error("entropy"), 3 * error("entropy, mask"));
 }
 
 TEST(Rivals, NeedTwoViewpoints) {
