@@ -137,9 +137,8 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
         throw Error(options.file +
                     ": is no glTF file; --camera and --orbit are for these, as a "
                     "pbrt-v3 scene has one camera");
-    Description description =
-        isGltf ? ParseGltf(options.file, options.view, warnings)
-               : ParsePbrt(options.file, {.substitute = options.compile.substitute}, warnings);
+    Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
+                                     : ParsePbrt(options.file, warnings);
     if (options.exposure != 0) SetExposure(options.exposure, &description);
     if (!options.environment.empty())
         SetEnvironment(options.environment, options.environmentRotation, &description);

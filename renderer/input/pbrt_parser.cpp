@@ -71,8 +71,8 @@ const Directive& FindDirective(const Token& token) {
 
 }  // namespace
 
-Description ParsePbrt(const std::string& file, const ParseOptions& options, Warnings& warnings) {
-    PbrtBuilder builder(file, options, warnings);
+Description ParsePbrt(const std::string& file, Warnings& warnings) {
+    PbrtBuilder builder(file, warnings);
     Token token;
     while ((token = builder.lexer.Take()).kind != TokenKind::End) {
         const Directive& directive = FindDirective(token);

@@ -8,17 +8,10 @@
 
 namespace lull {
 
-struct ParseOptions {
-    // Leaves out what is not modelled with a counted warning instead of an error. Of what the
-    // parser itself judges that is nothing at present: plug-ins are judged where the scene is
-    // compiled.
-    bool substitute = false;
-};
-
 // Reads the scene in `file` and the files it includes; relative names in them start at the
 // directory of `file`. Parameters of plug-ins are not judged here. A shape's material is always a
 // valid index: a plain "matte" is added where a shape comes before any material. Throws Error,
 // with file and line, at whatever is wrong or not modelled.
-Description ParsePbrt(const std::string& file, const ParseOptions& options, Warnings& warnings);
+Description ParsePbrt(const std::string& file, Warnings& warnings);
 
 }  // namespace lull

@@ -30,11 +30,11 @@ std::string WriteInput(std::span<const char> bytes) {
 
 void FuzzPbrt(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    for (const bool substitute : {false, true}) try {
-            Warnings warnings;
-            ParsePbrt(path, {.substitute = substitute}, warnings);
-        } catch (const Error&) {
-        }
+    try {
+        Warnings warnings;
+        ParsePbrt(path, warnings);
+    } catch (const Error&) {
+    }
 }
 
 void FuzzGltf(std::span<const char> bytes) {
@@ -94,7 +94,7 @@ void FuzzScene(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings;
     try {
-        const Description d = ParsePbrt(path, {.substitute = true}, warnings);
+        const Description d = ParsePbrt(path, warnings);
         const TextureTable textures(d, true, warnings);
         const MaterialTable materials(d, textures, true, warnings);
         const ShapeTable shapes(d, textures, true, warnings);

@@ -21,7 +21,7 @@ std::unique_ptr<const Scene> MakeScene(const KnownScene& known) {
         "Integrator \"path\" {}\nWorldBegin\n{}\nWorldEnd\n",
         known.camera, known.fov, known.size, known.size, known.integrator, known.world);
     Warnings warnings;
-    const Description description = ParsePbrt(directory.Write("case.pbrt", text), {}, warnings);
+    const Description description = ParsePbrt(directory.Write("case.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     return Compile(description, options, warnings);

@@ -84,7 +84,7 @@ std::unique_ptr<const Scene> Load(const std::string& name, TextureFiltering filt
     CompileOptions options;
     options.filtering = filtering;
     const fs::path file = fs::path(LULL_PLUGINS_DIR) / "scenes" / (name + ".pbrt");
-    return Compile(ParsePbrt(file.string(), {}, warnings), options, warnings);
+    return Compile(ParsePbrt(file.string(), warnings), options, warnings);
 }
 
 class Plugins : public testing::TestWithParam<std::string> {};

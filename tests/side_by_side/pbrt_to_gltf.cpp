@@ -93,7 +93,7 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
 
 void Convert(const std::string& scene, const std::string& output, const std::string& environment) {
     Warnings warnings([](const std::string& message) { fmt::print(stderr, "{}\n", message); });
-    const Description description = ParsePbrt(scene, {.substitute = true}, warnings);
+    const Description description = ParsePbrt(scene, warnings);
     if (!description.motions.empty() || description.movingCameraFromWorld)
         warnings.Add({}, "what moves stands where it starts");
     const Mat4d gltfFromWorld = GltfFromWorld(description);

@@ -25,8 +25,8 @@ const char* ScopeName(int kind) {
 
 }  // namespace
 
-PbrtBuilder::PbrtBuilder(const std::string& file, const ParseOptions& options, Warnings& warnings)
-    : lexer(file), warnings(warnings), options(options) {
+PbrtBuilder::PbrtBuilder(const std::string& file, Warnings& warnings)
+    : lexer(file), warnings(warnings) {
     description.directory = std::filesystem::path(file).parent_path().string();
     context.directory = description.directory;
 }

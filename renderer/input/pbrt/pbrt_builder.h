@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/base/error.h"
 #include "renderer/input/description.h"
 #include "renderer/input/pbrt/pbrt_lexer.h"
 #include "renderer/input/pbrt/pbrt_parameters.h"
 #include "renderer/input/pbrt/pbrt_state.h"
-#include "renderer/input/pbrt_parser.h"
 
 namespace lull {
 
@@ -22,7 +22,7 @@ class PbrtBuilder {
   public:
     enum class Stage { Options, World, Done };
 
-    PbrtBuilder(const std::string& file, const ParseOptions& options, Warnings& warnings);
+    PbrtBuilder(const std::string& file, Warnings& warnings);
 
     // Each reads what follows its name and acts on it; `loc` is the place of that name.
     void Accelerator();
@@ -105,7 +105,6 @@ class PbrtBuilder {
     int CurrentMaterial();
 
     Warnings& warnings;
-    ParseOptions options;
     Description description;
     Stage stage = Stage::Options;
     FileLoc worldBegin;

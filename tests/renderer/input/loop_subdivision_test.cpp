@@ -131,7 +131,7 @@ TEST(LoopSubdivision, KillerooHasItsCounts) {
     const auto scene = SharedFolder() / "pbrt-scenes/killeroo-simple/scene.pbrt";
     if (!std::filesystem::exists(scene)) GTEST_SKIP() << "no shared scene at " << scene;
     Warnings warnings;
-    const Description d = ParsePbrt(scene.string(), {}, warnings);
+    const Description d = ParsePbrt(scene.string(), warnings);
     for (const ShapeEntity& shape : d.shapes) {
         if (shape.name != "loopsubdiv") continue;
         const auto p = shape.parameters.GetFloats(ParameterType::Point3, "P");

@@ -134,7 +134,7 @@ WorldEnd
 // Takes what a scene file says, as far as this layer goes.
 void ReadScene(const std::string& file) {
     Warnings warnings;
-    const Description d = ParsePbrt(file, {}, warnings);
+    const Description d = ParsePbrt(file, warnings);
     for (const ObjectEntity& object : d.objects)
         for (const ShapeEntity& shape : object.shapes)
             if (shape.name == "loopsubdiv" && shape.parameters.GetInt("nlevels", 3) < 6)

@@ -192,7 +192,7 @@ TEST_F(PbrtErrors, Refusals) {
 TEST_F(PbrtErrors, Files) {
     Warnings warnings;
     const auto parse = [&](const std::string& name) {
-        return folder.MessageOf([&] { ParsePbrt(folder.File(name), {}, warnings); });
+        return folder.MessageOf([&] { ParsePbrt(folder.File(name), warnings); });
     };
     EXPECT_EQ(parse("none.pbrt"), "cannot read 'none.pbrt': No such file or directory");
     std::filesystem::create_directory(folder.File("room"));

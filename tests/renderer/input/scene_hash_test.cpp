@@ -28,7 +28,7 @@ std::string HashOf(const std::string& text, const std::string& texture = "pixels
     const TemporaryDirectory directory;
     directory.Write("t.png", texture);
     Warnings warnings;
-    return SceneHash(ParsePbrt(directory.Write("scene.pbrt", text), {}, warnings));
+    return SceneHash(ParsePbrt(directory.Write("scene.pbrt", text), warnings));
 }
 
 std::string Replaced(const std::string& from, const std::string& to) {

@@ -58,7 +58,7 @@ TEST_P(Scenes, MatchTheInventory) {
     const auto file = SharedFolder() / "pbrt-scenes" / expected.file;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared scene at " << file;
     Warnings warnings;
-    const Description d = ParsePbrt(file.string(), {}, warnings);
+    const Description d = ParsePbrt(file.string(), warnings);
     EXPECT_EQ(CountTriangles(d, warnings), expected.triangles);
 
     Counts materials, lights, textures;
@@ -238,7 +238,7 @@ TEST(Scenes, MediumIsReadWithVolpath) {
     const auto file = SharedFolder() / "pbrt-scenes/coffee-splash/scene-volpath.pbrt";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared scene at " << file;
     Warnings warnings;
-    const Description d = ParsePbrt(file.string(), {}, warnings);
+    const Description d = ParsePbrt(file.string(), warnings);
     EXPECT_EQ(d.shapes.size(), 9u);
     EXPECT_EQ(d.media.size(), 1u);
     EXPECT_EQ(warnings.Total(), 0);

@@ -13,10 +13,9 @@ namespace lull {
 
 // Gives a test that parses scenes a directory of its own.
 struct TestFolder : TemporaryDirectory {
-    Description Parse(std::string_view text, Warnings* warnings = nullptr,
-                      const ParseOptions& options = {}) const {
+    Description Parse(std::string_view text, Warnings* warnings = nullptr) const {
         Warnings ignored;
-        return ParsePbrt(Write("scene.pbrt", text), options, warnings ? *warnings : ignored);
+        return ParsePbrt(Write("scene.pbrt", text), warnings ? *warnings : ignored);
     }
 
     // Parses the text between WorldBegin and WorldEnd, on line 1.
@@ -25,8 +24,8 @@ struct TestFolder : TemporaryDirectory {
     }
 
     // Returns the message of the Error that `text` gives, without the folder's name; "" for none.
-    std::string ErrorOf(std::string_view text, const ParseOptions& options = {}) const {
-        return MessageOf([&] { Parse(text, nullptr, options); });
+    std::string ErrorOf(std::string_view text) const {
+        return MessageOf([&] { Parse(text); });
     }
 
     template <typename Function>

@@ -64,7 +64,7 @@ void BenchGuide(benchmark::State& state, const std::string& file) {
     CompileOptions options;
     options.substitute = true;
     options.film.resolution = Vec2i(side, side);
-    const auto scene = Compile(ParsePbrt(file, {.substitute = true}, warnings), options, warnings);
+    const auto scene = Compile(ParsePbrt(file, warnings), options, warnings);
     if (const auto why = WhyNotGuided(*scene, Estimator::Combined))
         return state.SkipWithError(why->c_str());
     LearningOptions learningOptions;

@@ -26,7 +26,7 @@ std::unique_ptr<const Scene> MakeScene(const std::string& world, int size = 16,
                              "] \"integer yresolution\" [" + std::to_string(size) + "]\n" +
                              "Integrator \"path\" \"integer maxdepth\" [" +
                              std::to_string(maxDepth) + "]\nWorldBegin\n" + world + "\nWorldEnd\n";
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     return Compile(d, options, warnings);

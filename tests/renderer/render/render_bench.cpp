@@ -34,7 +34,7 @@ std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& res
     CompileOptions options;
     options.substitute = true;
     options.film.resolution = resolution;
-    return Compile(ParsePbrt(file, {.substitute = true}, warnings), options, warnings);
+    return Compile(ParsePbrt(file, warnings), options, warnings);
 }
 
 // Returns the most memory that this process has had since ForgetPeak(), in MB (Linux only).
@@ -56,7 +56,7 @@ void BenchStart(benchmark::State& state, const std::string& file) {
         ForgetPeak();
         Warnings warnings;
         const auto start = std::chrono::steady_clock::now();
-        const Description description = ParsePbrt(file, {.substitute = true}, warnings);
+        const Description description = ParsePbrt(file, warnings);
         parse += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         CompileOptions options;
         options.substitute = true;

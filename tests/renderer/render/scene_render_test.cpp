@@ -61,7 +61,7 @@ WorldEnd
 std::unique_ptr<const Scene> MakeScene(const char* text, const FilmOverrides& film = {}) {
     const TemporaryDirectory directory;
     Warnings warnings;
-    const Description description = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description description = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.film = film;
     return Compile(description, options, warnings);

@@ -278,7 +278,7 @@ TEST(Curves, StrandsMakeOneShape) {
         "0 2 0 0 3] \"float width\" .1\nObjectBegin \"o\"\n" +
         strand + strand + "ObjectEnd\nObjectInstance \"o\"\nWorldEnd\n";
     Warnings warnings;
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     ASSERT_EQ(d.shapes.size(), 4u);
     EXPECT_EQ(d.shapes[0].strands.size(), 2u);
     EXPECT_EQ(d.shapes[2].strands.size(), 1u);

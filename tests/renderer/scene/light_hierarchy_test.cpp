@@ -145,7 +145,7 @@ std::unique_ptr<const Scene> MakeLights(const std::string& lights, const char* s
         "Camera \"perspective\"\nIntegrator \"path\" \"string lightsamplestrategy\" \"{}\"\n"
         "WorldBegin\n{}\nShape \"sphere\"\nWorldEnd\n",
         strategy, lights);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     options.lightsAsPbrtV3 = lightsAsPbrtV3;

@@ -32,7 +32,7 @@ struct LightScene {
         const std::string text = "Camera \"perspective\"\nWorldBegin\n" + world +
                                  "\nShape \"trianglemesh\" \"integer indices\" [0 1 2] "
                                  "\"point P\" [0 0 -50  .01 0 -50  0 .01 -50]\nWorldEnd\n";
-        const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+        const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
         scene = Compile(d, {}, warnings);
         for (const auto& [kind, count] : warnings.Counts()) ADD_FAILURE() << kind;
     }

@@ -20,7 +20,7 @@ std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::stri
     Warnings warnings;
     const auto d =
         ParsePbrt(directory.Write("test.pbrt", options + "\nWorldBegin\n" + world + "\nWorldEnd\n"),
-                  {}, warnings);
+                  warnings);
     CompileOptions compile;
     compile.threads = 1;
     return Compile(d, compile, warnings);

@@ -201,7 +201,7 @@ std::string ErrorOfWorld(const std::string& world) {
     Warnings warnings;
     try {
         const auto d = ParsePbrt(
-            directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"), {}, warnings);
+            directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"), warnings);
         Compile(d, {}, warnings);
     } catch (const Error& error) {
         return error.what();

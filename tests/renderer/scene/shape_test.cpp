@@ -15,8 +15,8 @@ using test::Random;
 std::unique_ptr<const Scene> MakeScene(const std::string& world) {
     const TemporaryDirectory directory;
     Warnings warnings;
-    const auto d = ParsePbrt(directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"),
-                             {}, warnings);
+    const auto d =
+        ParsePbrt(directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"), warnings);
     CompileOptions options;
     options.threads = 1;
     return Compile(d, options, warnings);

@@ -22,7 +22,7 @@ std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::stri
         "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n{}\n"
         "Camera \"perspective\" \"float fov\" [20]\nWorldBegin\n{}\nWorldEnd\n",
         before, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     return Compile(d, options, warnings);
@@ -185,7 +185,7 @@ TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
                       "Film \"image\" \"integer xresolution\" [4] \"integer yresolution\" [4]\n"
                       "Camera \"environment\"\nWorldBegin\nShape \"sphere\" \"float radius\" [7]\n"
                       "WorldEnd\n"),
-                  {}, warnings);
+                  warnings);
     const auto scene = Compile(d, {}, warnings);
     for (int i = 0; i < 16; ++i) {
         Sampler sampler(SamplerKind::Random, 7);

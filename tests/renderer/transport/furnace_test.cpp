@@ -23,7 +23,7 @@ std::unique_ptr<const Scene> MakeScene(const std::string& world, const char* int
         "Film \"image\" \"integer xresolution\" [{}] \"integer yresolution\" [{}]\n"
         "Integrator \"path\" {}\nWorldBegin\n{}\nWorldEnd\n",
         camera, fov, size, size, integrator, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     auto scene = Compile(d, options, warnings);

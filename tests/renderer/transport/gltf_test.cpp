@@ -148,7 +148,7 @@ TEST(GltfScenes, AgreeWithPbrt) {
                         "Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1\n{}"
                         "AttributeEnd\nWorldEnd\n",
                         180 / kPi, square, square, square)),
-        {}, warnings);
+        warnings);
     constexpr int kSamples = 1000;
     const auto pixelsOf = [](const Scene& scene, uint64_t seed) {
         return MeasurePixels(scene, Estimator::Combined, SamplerKind::Random, kSamples, seed);
@@ -208,7 +208,7 @@ TEST(GltfMaterial, NeverAddsEnergy) {
                                         "Material \"metallicroughness\" {}\n"
                                         "Shape \"sphere\" \"float radius\" [2]\nWorldEnd\n",
                                         c.parameters)),
-            {}, warnings);
+            warnings);
         const auto scene = Compiled(d, 6);
         Total totals[2];
         for (int i = 0; i < 2; ++i) {

@@ -58,7 +58,7 @@ Total Measure(const char* strategy, bool lightsAsPbrtV3, Estimator estimator) {
         "Integrator \"path\" \"string lightsamplestrategy\" \"{}\" \"integer maxdepth\" [3]\n"
         "WorldBegin\n{}\nWorldEnd\n",
         strategy, World());
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
     options.lightsAsPbrtV3 = lightsAsPbrtV3;

@@ -23,7 +23,7 @@ std::unique_ptr<const Scene> MakeMediumScene(const std::string& world,
         "Integrator \"volpath\" \"integer maxdepth\" {}\nLookAt {}\n{}\n"
         "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n{}\nWorldEnd\n",
         depth, view, before, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), {}, warnings);
+    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     auto scene = Compile(d, {}, warnings);
     EXPECT_EQ(warnings.Total(), 0);
     return scene;

@@ -140,7 +140,7 @@ std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estima
     options.lightsAsPbrtV3 = estimator == Estimator::PbrtV3;
     options.film.resolution = Vec2i(128, 128);
     options.filtering = filtering;
-    return Compile(ParsePbrt(file.string(), {}, warnings), options, warnings);
+    return Compile(ParsePbrt(file.string(), warnings), options, warnings);
 }
 
 // Says whether pbrt-v3's texture filtering shows at 128x128, so that the test has to ask for it:

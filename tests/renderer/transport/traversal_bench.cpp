@@ -81,7 +81,7 @@ std::unique_ptr<const Scene> LoadScene(const std::string& file) {
     CompileOptions options;
     options.substitute = true;
     options.film.resolution = Vec2i(kSide, kSide);
-    return Compile(ParsePbrt(file, {.substitute = true}, warnings), options, warnings);
+    return Compile(ParsePbrt(file, warnings), options, warnings);
 }
 
 // Renders the image tile by tile, recording into `log` unless it is null. With the combined
