@@ -1,6 +1,7 @@
 // Interrupts renders in all ways and compares what they come to in the end.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <random>
 
 #include "renderer/output/image_io.h"
@@ -35,15 +36,18 @@ bool SameImages(const TemporaryDirectory& directory, const std::string& a, const
 
 TEST(Interruption, KilledRendersComeToTheSameBits) {
     const SceneDirectory directory;
+    const auto begin = std::chrono::steady_clock::now();
     ASSERT_EQ(RunShell(directory, RenderCommand("-o whole.exr --threads 2")).exitCode, 0);
+    const double whole =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
     std::mt19937 random(1);
     int kills = 0;
     Outcome outcome;
     for (int run = 0; run < 200; ++run) {
-        // At first at random moments, then as long as it takes.
-        const double seconds =
-            kills < 30 ? 0.15 + 0.25 * std::generate_canonical<double, 32>(random) : 600;
+        // At first at random moments, some twentieth of the whole apart, then as long as it takes.
+        const double share = 0.03 + 0.05 * std::generate_canonical<double, 32>(random);
+        const double seconds = kills < 30 ? share * whole : 600;
         outcome = RunShell(
             directory, fmt::format("timeout -s KILL {:.3f} ", seconds) +
                            RenderCommand(fmt::format("-o parts.exr --threads {} --checkpoint c.h5 "
