@@ -16,8 +16,14 @@ constexpr double kCertain = 0.85;
 constexpr double kPointsOfOthers = 4;
 
 double Level(const RuleTrend& rule, const Decision& d) {
-    double level = std::log(d.value / d.threshold);
-    if (rule.kind == RuleTrend::Probability) level += std::log((1 - d.threshold) / (1 - d.value));
+    double level = 0;
+    if (rule.undecided > 0) {
+        level = std::log(*d.noise / rule.undecided);
+    } else {
+        level = std::log(d.value / d.threshold);
+        if (rule.kind == RuleTrend::Probability)
+            level += std::log((1 - d.threshold) / (1 - d.value));
+    }
     return std::isnan(level) ? kMostLevel : std::clamp(level, -kMostLevel, kMostLevel);
 }
 
@@ -29,17 +35,15 @@ T MedianOf(std::vector<T>* values) {
 }
 
 // Bounds a slope to what there can be; probabilities fall as fast as a network likes.
-double Bounded(const RuleTrend& rule, double slope) {
-    return rule.kind == RuleTrend::Probability ? std::clamp(slope, -40.0, -0.2)
-                                               : std::clamp(slope, -2.0, -0.1);
+double Bounded(const StopTrend& trend, double slope) {
+    return trend.IsOfOdds() ? std::clamp(slope, -40.0, -0.2) : std::clamp(slope, -2.0, -0.1);
 }
 
 // Returns the level above which a number says no more.
 double CertainLevel(std::span<const StopTrend> trends) {
     double highest = 0;
     for (const StopTrend& trend : trends)
-        if (trend.Rule().kind == RuleTrend::Probability)
-            highest = std::max(highest, trend.HighestLevel());
+        if (trend.IsOfOdds()) highest = std::max(highest, trend.HighestLevel());
     return highest > 0 ? kCertain * highest : std::numeric_limits<double>::infinity();
 }
 
@@ -49,8 +53,9 @@ double UsualSlope(std::span<const StopTrend> trends, double certain) {
     bool isError = false;
     for (const StopTrend& trend : trends) {
         const StopTrend::Line line = trend.Fit(certain);
-        isError |= trend.LastSpp() > 0 && trend.Rule().kind == RuleTrend::Error;
-        if (line.slope != 0) slopes.push_back(Bounded(trend.Rule(), line.slope));
+        isError |=
+            trend.LastSpp() > 0 && trend.Rule().kind != RuleTrend::Samples && !trend.IsOfOdds();
+        if (line.slope != 0) slopes.push_back(Bounded(trend, line.slope));
     }
     if (slopes.empty()) return isError ? -0.5 : 0;
     return MedianOf(&slopes);
@@ -70,18 +75,32 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
     if (line.level > 0) {
         if (usualSlope == 0) return {stop, true};
         const double own = line.slope == 0 ? 0 : line.points / (line.points + kPointsOfOthers);
-        const double slope = Bounded(trend.Rule(), std::lerp(usualSlope, line.slope, own));
-        stop *= std::exp(std::min(std::min(line.level, certain) / -slope, 50.0));
+        double slope = Bounded(trend, std::lerp(usualSlope, line.slope, own));
+        // On the way to it: the mean of what was seen and what will be in the end.
+        if (trend.Rule().saturates) slope = (slope - 0.5) / 2;
+        stop = trend.SppAt(trend.Abscissa(stop) +
+                           std::min(std::min(line.level, certain) / -slope, 50.0));
     }
     return {stop + trend.VotesLeft(), line.level > certain};
 }
 
 }  // namespace
 
+double StopTrend::Abscissa(double spp) const {
+    const double end = rule.reference > 0 ? 1.0 / rule.reference : 0;
+    return -std::log(std::max(1 / spp - end, 1e-9));
+}
+
+double StopTrend::SppAt(double abscissa) const {
+    const double end = rule.reference > 0 ? 1.0 / rule.reference : 0;
+    return 1 / (std::exp(-abscissa) + end);
+}
+
 void StopTrend::Add(int spp, const Decision& decision) {
+    if (rule.undecided > 0 && !decision.noise) return;
     const double level = Level(rule, decision);
     Bin& bin = bins[size_t(PlaceOf(spp))];
-    bin.logSpp += float(std::log(double(spp)));
+    bin.abscissa += float(Abscissa(spp));
     bin.level += float(level);
     bin.count += 1;
     highest = std::max(highest, level);
@@ -107,7 +126,7 @@ StopTrend::Line StopTrend::Fit(double certain) const {
     for (int i = last; i >= std::max(0, last - 2 * kBinsPerOctave + 1); --i) {
         const Bin& bin = bins[size_t(i)];
         if (bin.count == 0) continue;
-        const Point point{double(bin.logSpp / bin.count), double(bin.level / bin.count)};
+        const Point point{double(bin.abscissa / bin.count), double(bin.level / bin.count)};
         if (!latest) latest = point.y;
         if (point.y <= certain) points.push_back(point);
     }
@@ -119,7 +138,7 @@ StopTrend::Line StopTrend::Fit(double certain) const {
             slopes.push_back((points[i].y - points[j].y) / (points[i].x - points[j].x));
     line.slope = MedianOf(&slopes);
     for (size_t i = 0; i < std::min(points.size(), size_t(kBinsPerOctave)); ++i)
-        levels.push_back(points[i].y + line.slope * (std::log(double(lastSpp)) - points[i].x));
+        levels.push_back(points[i].y + line.slope * (Abscissa(lastSpp) - points[i].x));
     line.level = MedianOf(&levels);
     return line;
 }

@@ -12,17 +12,20 @@
 namespace lull {
 
 // Follows the number that a rule compares for one block, as its level above the threshold: the
-// logarithm of the ratio of both or, of probabilities, of their odds. Takes 2.3 KiB, however long
+// logarithm of the ratio of both or, of probabilities, of their odds; of the noise that a network
+// looks at, where that is all. Takes 2.3 KiB, however long
 // the render.
 class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
-    // Notes what the criterion said when it looked at the block at `spp` > 0, which increases.
+    // Notes what the criterion said when it looked at the block at `spp` > 0, which increases. A
+    // decision without the noise that is followed (one from a checkpoint) says nothing.
     void Add(int spp, const Decision& decision);
 
-    // Describes the last two doublings by a straight line of the level over log(spp). Levels above
-    // `certain` are left out: a network that is as sure as it can be does not say by how much.
+    // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
+    // above `certain` are left out: a network that is as sure as it can be does not say by how
+    // much.
     struct Line {
         double level = 0;  // at the last spp
         double slope = 0;  // 0: not to be seen yet
@@ -32,6 +35,14 @@ class StopTrend {
     double HighestLevel() const { return highest; }  // so far
 
     const RuleTrend& Rule() const { return rule; }
+    // Says whether a level is of odds, which fall as fast as a network likes.
+    bool IsOfOdds() const { return rule.kind == RuleTrend::Probability && rule.undecided == 0; }
+
+    // Converts spp to that over which levels are straight lines, and back: -log(1/spp - 1/N) for a
+    // rule that compares with a picture at N spp, else log(spp).
+    double Abscissa(double spp) const;
+    double SppAt(double abscissa) const;
+
     int LastSpp() const { return lastSpp; }  // 0: the rule has not looked at the block
     double Threshold() const { return threshold; }
     // Returns the spp that the votes in a row still take, at the least.
@@ -42,7 +53,7 @@ class StopTrend {
     static int PlaceOf(int spp);
 
     struct Bin {
-        float logSpp = 0, level = 0, count = 0;  // sums
+        float abscissa = 0, level = 0, count = 0;  // sums
     };
 
     RuleTrend rule;

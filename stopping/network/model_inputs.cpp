@@ -89,14 +89,16 @@ double Pooled(const Pool& pool, std::vector<double> values) {
     return values[below] + (place - double(below)) * (values[above] - values[below]);
 }
 
+// Returns what is added to noise before its logarithm is taken.
+double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.1 : 0.001; }
+
 // Brings values near the unit interval, or to where differences mean the same everywhere.
 double Scaled(Feature feature, double value) {
     if (IsNormalized(feature)) return value;
     if (feature == Feature::Lightness) return value / 100;
     if (feature == Feature::Deviation || feature == Feature::Texture)
         return std::log1p(std::max(value, 0.0) / 4) / 2;
-    if (feature == Feature::VisibleDrop) return std::log(std::max(value, 0.0) + 0.1);
-    return std::log(std::max(value, 0.0) + 0.001);
+    return std::log(std::max(value, 0.0) + LeastNoise(feature));
 }
 
 }  // namespace
@@ -160,6 +162,19 @@ std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettin
             inputs.push_back(Scaled(feature, factor * Pooled(pool, values)));
     }
     return inputs;
+}
+
+bool LooksAtNoiseOnly(const ModelSettings& settings) {
+    return settings.features.size() == 1 && IsNoise(settings.features[0]) &&
+           InputCount(settings) == 1;
+}
+
+double InputOfNoise(double noise, const ModelSettings& settings) {
+    return Scaled(settings.features.at(0), noise);
+}
+
+double NoiseOfInput(double input, const ModelSettings& settings) {
+    return std::max(0.0, std::exp(input) - LeastNoise(settings.features.at(0)));
 }
 
 }  // namespace lull

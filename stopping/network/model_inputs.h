@@ -52,4 +52,11 @@ int InputCount(const ModelSettings& settings);
 // should have.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
+// Says whether noise, pooled to one number, is all that a network is given.
+bool LooksAtNoiseOnly(const ModelSettings& settings);
+
+// Convert that noise, >= 0, times the caution, to the input that it is given as, and back.
+double InputOfNoise(double noise, const ModelSettings& settings);
+double NoiseOfInput(double input, const ModelSettings& settings);
+
 }  // namespace lull

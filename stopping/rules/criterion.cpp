@@ -78,10 +78,18 @@ NoiseVisibility VisibilityIn(const RuleContext& context, NoiseVisibility visibil
     return visibility;
 }
 
+// Returns the reference of a trend: noise vanishes there with the root of 1/n - 1/N where that is
+// how near the picture is to it (see NoiseVisibility).
+int ReferenceOf(const NoiseVisibility& visibility) {
+    return visibility.nearness == 0.5 ? visibility.reference : 0;
+}
+
 CriterionFactory Entropy(const std::string& argument, const RuleContext& context) {
     const double threshold = ParseThreshold(argument) / context.caution;
-    return {.smallestSide = smallestVotingSide,
-            .make = [=, visibility = VisibilityIn(context, {})](const BlockInfo&) {
+    const NoiseVisibility visibility = VisibilityIn(context, {});
+    return {.trend = {.reference = ReferenceOf(visibility), .saturates = true},
+            .smallestSide = smallestVotingSide,
+            .make = [=](const BlockInfo&) {
                 return MakeEntropyRule(threshold, visibility, context.passSpp);
             }};
 }
@@ -145,9 +153,14 @@ CriterionFactory Learned(const std::string& argument, const RuleContext& context
     // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
     std::vector<double> logRatios = model->logRatios;
     for (double& ratio : logRatios) ratio -= 2 * std::log(context.caution);
+    const bool seesDrops = Needs(model->settings, Feature::VisibleDrop);
     return {.checksum = model->checksum,
             .logRatios = std::move(logRatios),
-            .trend = {RuleTrend::Probability, model->settings.votes},
+            .trend = {.kind = RuleTrend::Probability,
+                      .votes = model->settings.votes,
+                      .undecided = UndecidedNoise(*model),
+                      .reference = seesDrops ? ReferenceOf(model->settings.visibility) : 0,
+                      .saturates = seesDrops},
             .smallestSide = smallestVotingSide,
             .make = [model, passSpp = context.passSpp](const BlockInfo&) {
                 return MakeLearned(model, passSpp);

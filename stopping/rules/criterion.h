@@ -24,6 +24,8 @@ struct Decision {
     int votes = 0;         // noiseless votes in a row (rules that vote only)
     // The block's VisibleNoise() (lnoise.h), from rules that compute it anyhow.
     std::optional<double> visibleNoise = {};
+    // The noise that a network was told, where that is all it looks at: see RuleTrend::undecided.
+    std::optional<double> noise = {};
 };
 
 // Judges one block over all its passes and holds what that needs to remember. Different criteria
@@ -75,6 +77,15 @@ struct RuleTrend {
     };
     Kind kind = Error;
     int votes = 1;  // in a row that stop a block
+    // Of a network that looks at nothing but noise, Decision::noise: where it is undecided.
+    // Forecasts follow that then, as a probability is no power of the spp. 0: not known.
+    double undecided = 0;
+    // The spp of the picture that noise is compared with: it falls as a power of 1/spp -
+    // 1/reference. 0: it is compared with none.
+    int reference = 0;
+    // Whether it falls more slowly where there is much noise, as falls of entropies do, and comes
+    // to the power -1/2 with less.
+    bool saturates = false;
 };
 
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.

@@ -30,6 +30,7 @@ class LearnedCriterion final : public Criterion {
         : model(std::move(model)),
           schedule(MakeSchedule(this->model->settings, passSpp)),
           isFree(passSpp == 0 && this->model->settings.spacing == Spacing::Geometric),
+          looksAtNoiseOnly(LooksAtNoiseOnly(this->model->settings)),
           looks{.spacing = this->model->settings.n},
           memory(this->model->settings),
           votes{.needed = this->model->settings.votes} {}
@@ -50,7 +51,8 @@ class LearnedCriterion final : public Criterion {
                 .judged = judged,
                 .value = probability,
                 .threshold = 0.5,
-                .votes = votes.inRow};
+                .votes = votes.inRow,
+                .noise = judged ? noise : std::nullopt};
     }
 
     std::vector<std::byte> Save() const override {
@@ -84,6 +86,8 @@ class LearnedCriterion final : public Criterion {
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return false;
         probability = NoisyProbability(model->network, *window);
+        if (looksAtNoiseOnly)
+            noise = NoiseOfInput((*window)(0, window->cols() - 1), model->settings);
         votes.Cast(probability);
         return true;
     }
@@ -91,10 +95,12 @@ class LearnedCriterion final : public Criterion {
     std::shared_ptr<const Model> model;
     VoteSchedule schedule;
     bool isFree;  // states come at any spp
+    bool looksAtNoiseOnly;
     FreeLooks looks;
     BlockMemory memory;
     VoteCounter votes;
     double probability = 1;  // of the last vote; noisy until there is one
+    std::optional<double> noise;
 };
 
 }  // namespace
@@ -102,6 +108,27 @@ class LearnedCriterion final : public Criterion {
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
     const double p = RunNetwork(network, window)[0];
     return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
+}
+
+double UndecidedNoise(const Model& model) {
+    const ModelSettings& settings = model.settings;
+    if (!LooksAtNoiseOnly(settings)) return 0;
+    // A step before the last had more noise; at fixed spacing, as much but for few spp.
+    const double stepBefore =
+        settings.spacing == Spacing::Geometric ? std::sqrt(settings.ratio) : 1.0;
+    const auto isNoisy = [&](double noise) {
+        Eigen::MatrixXf window(1, settings.k);
+        for (int step = settings.k - 1; step >= 0; --step, noise *= stepBefore)
+            window(0, step) = float(InputOfNoise(noise, settings));
+        return NoisyProbability(model.network, window) >= 0.5;
+    };
+    double clean = 1e-3, noisy = 1e3;
+    if (isNoisy(clean) || !isNoisy(noisy)) return 0;
+    while (noisy / clean > 1.0001) {
+        const double middle = std::sqrt(clean * noisy);
+        (isNoisy(middle) ? noisy : clean) = middle;
+    }
+    return noisy;
 }
 
 std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int passSpp) {

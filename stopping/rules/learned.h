@@ -13,6 +13,11 @@ namespace lull {
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 
+// Returns the noise, times the caution, at which a model that looks at nothing else is undecided,
+// where noise has fallen with the root of the spp, or not to be told at fixed spacing; 0 for other
+// models, and if no noise between 0.001 and 1000 is the limit.
+double UndecidedNoise(const Model& model);
+
 // Makes a criterion that votes on the state after a pass once its window is full, and stops after
 // as many noiseless votes in a row as the model asks for. Throws std::invalid_argument if the
 // network does not fit its settings or has more than one output, or if the spp of the model

@@ -93,6 +93,46 @@ TEST(PredictStops, FollowsTheOddsOfAProbability) {
     EXPECT_FALSE(PredictStops({&certain, 1}, LiveBlocks({&certain, 1}), 20000));
 }
 
+// What is visible against a picture at 10,000 spp is gone there.
+TEST(PredictStops, KnowsWhatNoiseIsComparedWith) {
+    const RuleTrend rule{.reference = 10000};
+    const auto value = [](int spp) {
+        const double fall = (1.0 / spp - 1e-4) / (1.0 / 6000 - 1e-4);
+        return kThreshold * std::sqrt(std::max(fall, 0.0));
+    };
+    for (const int end : {200, 1000, 4000})
+        EXPECT_NEAR(PredictOne(Follow(rule, end, value), 20000), 6000, 10) << end;
+    EXPECT_GT(PredictOne(Follow({}, 1000, value), 20000), 7500);
+    EXPECT_EQ(PredictOne(Follow(rule, 12000, value), 20000), 12000);
+}
+
+// A number that falls with an ever larger power is followed on the way to the power 1/2.
+TEST(PredictStops, FollowsWhatSaturates) {
+    const auto value = [](int spp) {
+        const double noise = kThreshold * std::sqrt(3000.0 / spp);
+        return noise * (1 + 0.05 * kThreshold) / (1 + 0.05 * noise);
+    };
+    for (const int end : {200, 750, 1500}) {
+        const double stop = PredictOne(Follow({.saturates = true}, end, value));
+        EXPECT_NEAR(stop, 3000, 150) << end;
+        EXPECT_GT(PredictOne(Follow({}, end, value)) - 3000, 2 * std::abs(stop - 3000)) << end;
+    }
+}
+
+// A network's answer is as good as certain for long, but not the noise that it looks at.
+TEST(PredictStops, FollowsTheNoiseThatANetworkLooksAt) {
+    StopTrend trend({.kind = RuleTrend::Probability, .votes = 1, .undecided = 0.7});
+    EXPECT_EQ(trend.IsOfOdds(), false);
+    for (int spp = 20; spp <= 400; spp += 20)
+        trend.Add(
+            spp,
+            {.judged = true, .value = 1, .threshold = 0.5, .noise = 0.7 * std::sqrt(2500.0 / spp)});
+    EXPECT_NEAR(PredictOne(trend), 2500, 20);
+    // One from a checkpoint has no noise.
+    trend.Add(420, {.judged = true, .value = 1, .threshold = 0.5});
+    EXPECT_EQ(trend.LastSpp(), 400);
+}
+
 TEST(PredictStops, CountsTheVotesThatAreMissing) {
     const RuleTrend rule{.kind = RuleTrend::Error, .votes = 3};
     const auto value = [](int spp) { return kThreshold * std::sqrt(2000.0 / spp); };

@@ -128,6 +128,65 @@ TEST(Learned, GoesOnWithFallsOfEntropies) {
     }
 }
 
+// Returns a network without LSTM that is undecided where the last of `steps` inputs is `limit`.
+Network LastStepNetwork(int steps, double limit) {
+    DenseLayer dense{"dense_1", Eigen::MatrixXf::Zero(1, steps),
+                     Eigen::MatrixXf::Constant(1, 1, float(-3 * limit))};
+    dense.kernel(0, steps - 1) = 3;
+    return {.lstm = {}, .dense = {dense}};
+}
+
+TEST(Learned, KnowsTheNoiseAtWhichItIsUndecided) {
+    ModelSettings settings = {.k = 2,
+                              .features = {Feature::VisibleDrop},
+                              .pools = {{Pool::PowerMean, 1}},
+                              .voteSpacing = 40,
+                              .spacing = Spacing::Geometric,
+                              .ratio = 1.5};
+    const auto undecided = [&](const Network& network) {
+        return UndecidedNoise({network, settings, ""});
+    };
+    EXPECT_NEAR(undecided(LastStepNetwork(2, std::log(0.7 + 0.1))), 0.7, 1e-3);
+    // The step before had more.
+    Network before = LastStepNetwork(2, std::log(0.7 + 0.1));
+    std::swap(before.dense[0].kernel(0, 0), before.dense[0].kernel(0, 1));
+    EXPECT_NEAR(undecided(before), 0.7 / std::sqrt(1.5), 1e-3);
+    // A network that is never sure, or never unsure, or that sees something else.
+    EXPECT_EQ(undecided(ConstantNetwork(1, 0.1f)), 0);
+    EXPECT_EQ(undecided(ConstantNetwork(1, 0.9f)), 0);
+    settings.features = {Feature::VisibleDrop, Feature::LogSpp};
+    EXPECT_EQ(undecided(LastStepNetwork(4, 0)), 0);
+    settings.features = {Feature::Lightness};
+    EXPECT_EQ(undecided(LastStepNetwork(2, 0)), 0);
+    settings.features = {Feature::DetailMaskedNoise};
+    settings.spacing = Spacing::Fixed;
+    EXPECT_NEAR(undecided(LastStepNetwork(2, std::log(0.4 + 0.001))), 0.4, 1e-3);
+}
+
+// What it says about noise is what it decides by.
+TEST(Learned, SaysWhatNoiseItWasTold) {
+    const ModelSettings settings = {.k = 2,
+                                    .features = {Feature::VisibleDrop},
+                                    .pools = {{Pool::PowerMean, 1}},
+                                    .votes = 1000,
+                                    .voteSpacing = 40,
+                                    .spacing = Spacing::Geometric,
+                                    .ratio = 1.5,
+                                    .caution = 1.3};
+    const Model model{LastStepNetwork(2, std::log(2 + 0.1)), settings, ""};
+    const double limit = UndecidedNoise(model);
+    const auto criterion = MakeLearned(std::make_shared<const Model>(model), 20);
+    int noisy = 0, clean = 0;
+    for (const Decision& decision : RunPasses(criterion.get(), 20, 4000)) {
+        ASSERT_EQ(decision.noise.has_value(), decision.judged);
+        if (!decision.judged) continue;
+        EXPECT_EQ(*decision.noise >= limit, decision.value >= 0.5) << *decision.noise;
+        ++(decision.value >= 0.5 ? noisy : clean);
+    }
+    EXPECT_GT(noisy, 5);
+    EXPECT_GT(clean, 5);
+}
+
 TEST(Learned, RefusesOtherState) {
     const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
     const auto criterion = MakeLearned(model, 20);
