@@ -153,14 +153,16 @@ CriterionFactory Learned(const std::string& argument, const RuleContext& context
     // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
     std::vector<double> logRatios = model->logRatios;
     for (double& ratio : logRatios) ratio -= 2 * std::log(context.caution);
-    const bool seesDrops = Needs(model->settings, Feature::VisibleDrop);
+    const double undecided = UndecidedNoise(*model);
+    // Otherwise its odds are followed, whatever it sees.
+    const bool followsDrops = undecided > 0 && Needs(model->settings, Feature::VisibleDrop);
     return {.checksum = model->checksum,
             .logRatios = std::move(logRatios),
             .trend = {.kind = RuleTrend::Probability,
                       .votes = model->settings.votes,
-                      .undecided = UndecidedNoise(*model),
-                      .reference = seesDrops ? ReferenceOf(model->settings.visibility) : 0,
-                      .saturates = seesDrops},
+                      .undecided = undecided,
+                      .reference = followsDrops ? ReferenceOf(model->settings.visibility) : 0,
+                      .saturates = followsDrops},
             .smallestSide = smallestVotingSide,
             .make = [model, passSpp = context.passSpp](const BlockInfo&) {
                 return MakeLearned(model, passSpp);

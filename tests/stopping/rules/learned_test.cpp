@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stopping/network/model_file.h"
 #include "tests/stopping/network/random_network.h"
+#include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
 
 namespace lull {
@@ -104,14 +106,19 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
     }
 }
 
+// Returns settings of a model that looks at the visible noise of `k` states and never stops.
+ModelSettings DropSettings(int k) {
+    return {.k = k,
+            .features = {Feature::VisibleDrop},
+            .pools = {{Pool::PowerMean, 1}},
+            .votes = 1000,
+            .voteSpacing = 40,
+            .spacing = Spacing::Geometric,
+            .ratio = 1.5};
+}
+
 TEST(Learned, GoesOnWithFallsOfEntropies) {
-    const ModelSettings settings = {.k = 3,
-                                    .features = {Feature::VisibleDrop},
-                                    .pools = {{Pool::PowerMean, 1}},
-                                    .votes = 1000,
-                                    .voteSpacing = 40,
-                                    .spacing = Spacing::Geometric,
-                                    .ratio = 1.5};
+    const ModelSettings settings = DropSettings(3);
     const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
     const auto whole = MakeLearned(model, 20);
     EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
@@ -137,12 +144,7 @@ Network LastStepNetwork(int steps, double limit) {
 }
 
 TEST(Learned, KnowsTheNoiseAtWhichItIsUndecided) {
-    ModelSettings settings = {.k = 2,
-                              .features = {Feature::VisibleDrop},
-                              .pools = {{Pool::PowerMean, 1}},
-                              .voteSpacing = 40,
-                              .spacing = Spacing::Geometric,
-                              .ratio = 1.5};
+    ModelSettings settings = DropSettings(2);
     const auto undecided = [&](const Network& network) {
         return UndecidedNoise({network, settings, ""});
     };
@@ -165,14 +167,8 @@ TEST(Learned, KnowsTheNoiseAtWhichItIsUndecided) {
 
 // What it says about noise is what it decides by.
 TEST(Learned, SaysWhatNoiseItWasTold) {
-    const ModelSettings settings = {.k = 2,
-                                    .features = {Feature::VisibleDrop},
-                                    .pools = {{Pool::PowerMean, 1}},
-                                    .votes = 1000,
-                                    .voteSpacing = 40,
-                                    .spacing = Spacing::Geometric,
-                                    .ratio = 1.5,
-                                    .caution = 1.3};
+    ModelSettings settings = DropSettings(2);
+    settings.caution = 1.3;
     const Model model{LastStepNetwork(2, std::log(2 + 0.1)), settings, ""};
     const double limit = UndecidedNoise(model);
     const auto criterion = MakeLearned(std::make_shared<const Model>(model), 20);
@@ -185,6 +181,23 @@ TEST(Learned, SaysWhatNoiseItWasTold) {
     }
     EXPECT_GT(noisy, 5);
     EXPECT_GT(clean, 5);
+}
+
+// Only noise that is followed is known to saturate and to vanish at the reference; odds are not.
+TEST(Learned, SaysHowWhatIsFollowedFalls) {
+    const ScratchFile file(".h5");
+    ModelSettings settings = DropSettings(2);
+    WriteModel(file.path, LastStepNetwork(2, std::log(0.7 + 0.1)), settings);
+    const RuleTrend noise = MakeCriterionFactory("learned:" + file.path).trend;
+    EXPECT_NEAR(noise.undecided, 0.7, 1e-3);
+    EXPECT_EQ(noise.reference, settings.visibility.reference);
+    EXPECT_TRUE(noise.saturates);
+    settings.features = {Feature::VisibleDrop, Feature::LogSpp};
+    WriteModel(file.path, LastStepNetwork(4, 0), settings);
+    const RuleTrend odds = MakeCriterionFactory("learned:" + file.path).trend;
+    EXPECT_EQ(odds.undecided, 0);
+    EXPECT_EQ(odds.reference, 0);
+    EXPECT_FALSE(odds.saturates);
 }
 
 TEST(Learned, RefusesOtherState) {
