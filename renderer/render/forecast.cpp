@@ -50,16 +50,19 @@ double CertainLevel(std::span<const StopTrend> trends) {
 // Returns the median of the slopes that the blocks show; 0 if there is none.
 double UsualSlope(std::span<const StopTrend> trends, double certain) {
     std::vector<double> slopes;
-    bool isError = false;
+    bool isPower = false;
     for (const StopTrend& trend : trends) {
         const StopTrend::Line line = trend.Fit(certain);
-        isError |=
+        isPower |=
             trend.LastSpp() > 0 && trend.Rule().kind != RuleTrend::Samples && !trend.IsOfOdds();
         if (line.slope != 0) slopes.push_back(Bounded(trend, line.slope));
     }
-    if (slopes.empty()) return isError ? -0.5 : 0;
+    if (slopes.empty()) return isPower ? -0.5 : 0;
     return MedianOf(&slopes);
 }
+
+// Returns 1/N, and 0 where there is no picture at N spp that noise is compared with.
+double InverseOf(int reference) { return reference > 0 ? 1.0 / reference : 0; }
 
 // Says at which spp a block stops, without regard to the cap.
 struct Stop {
@@ -87,13 +90,11 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
 }  // namespace
 
 double StopTrend::Abscissa(double spp) const {
-    const double end = rule.reference > 0 ? 1.0 / rule.reference : 0;
-    return -std::log(std::max(1 / spp - end, 1e-9));
+    return -std::log(std::max(1 / spp - InverseOf(rule.reference), 1e-9));
 }
 
 double StopTrend::SppAt(double abscissa) const {
-    const double end = rule.reference > 0 ? 1.0 / rule.reference : 0;
-    return 1 / (std::exp(-abscissa) + end);
+    return 1 / (std::exp(-abscissa) + InverseOf(rule.reference));
 }
 
 void StopTrend::Add(int spp, const Decision& decision) {

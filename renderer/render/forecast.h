@@ -13,8 +13,7 @@ namespace lull {
 
 // Follows the number that a rule compares for one block, as its level above the threshold: the
 // logarithm of the ratio of both or, of probabilities, of their odds; of the noise that a network
-// looks at, where that is all. Takes 2.3 KiB, however long
-// the render.
+// looks at, where that is all. Takes 2.3 KiB, however long the render.
 class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}

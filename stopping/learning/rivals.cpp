@@ -10,36 +10,22 @@ namespace lull {
 namespace {
 
 // Names a rule that has one threshold, with the range in which it can be of use: beyond it, every
-// block stops at once or never. Where there are `masks`, one of them is chosen as well.
+// block stops at once or never.
 struct RivalRule {
     const char* name;
     ErrorRule error;
     double largest, least;
-    std::span<const double> masks = {};
+    bool choosesMask = false;  // of kMasks, beside the threshold
 };
 
 // What NoiseVisibility::mask may be, the default first; the last hides nothing.
-constexpr double kMasks[] = {40, 8, 12, 16, 24, 1e9};
+constexpr double kMasks[] = {NoiseVisibility().mask, 8, 12, 16, 24, 1e9};
 
 constexpr RivalRule kErrorRules[] = {{"dammertz", ErrorRule::Dammertz, 1, 1e-4},
                                      {"luxtile", ErrorRule::LuxTile, 1, 1e-4},
                                      {"lnoise", ErrorRule::LNoise, 50, 0.01},
                                      {"entropy", ErrorRule::Entropy, 50, 0.01},
-                                     {"entropy, mask", ErrorRule::Entropy, 50, 0.01, kMasks}};
-
-// Says with what a rule is run; `mask` counts in kMasks, -1 where there is none to choose.
-struct Setting {
-    double threshold = 0;
-    int mask = -1;
-};
-
-std::vector<Setting> SettingsOf(const RivalRule& rule) {
-    std::vector<Setting> settings;
-    const int masks = int(rule.masks.size());
-    for (int mask = masks > 0 ? 0 : -1; mask < masks; ++mask)
-        for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back({t, mask});
-    return settings;
-}
+                                     {"entropy, mask", ErrorRule::Entropy, 50, 0.01, true}};
 
 std::string Text(double number) {
     char text[32];
@@ -48,9 +34,25 @@ std::string Text(double number) {
     return std::string(text, end);
 }
 
-std::string Text(const Setting& setting) {
-    if (setting.mask < 0) return Text(setting.threshold);
-    return Text(setting.threshold) + ", " + Text(kMasks[setting.mask]);
+// Returns the masks that a rule is run with.
+std::span<const double> MasksOf(const RivalRule& rule) {
+    return std::span(kMasks).first(rule.choosesMask ? std::size(kMasks) : 1);
+}
+
+// Says with what a rule is run.
+struct Setting {
+    double threshold = 0;
+    size_t mask = 0;  // its place in kMasks
+    std::string text = {};
+};
+
+std::vector<Setting> SettingsOf(const RivalRule& rule) {
+    std::vector<Setting> settings;
+    for (size_t mask = 0; mask < MasksOf(rule).size(); ++mask)
+        for (double t = rule.largest; t >= rule.least; t /= 1.01)
+            settings.push_back(
+                {t, mask, rule.choosesMask ? Text(t) + ", " + Text(kMasks[mask]) : Text(t)});
+    return settings;
 }
 
 // Runs a setting over block number `index`; without verdicts if `brief`.
@@ -98,11 +100,11 @@ Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
                  std::span<const size_t> begins, std::span<const Setting> settings, const Run& run,
                  ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
-    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Text(Best(costs, settings, -1))};
+    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Best(costs, settings, -1).text};
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
         const Setting setting = Best(costs, settings, int(v));
         ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
-            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = Text(setting)});
+            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = setting.text});
         for (size_t i = begins[v]; i < begins[v + 1]; ++i)
             viewpoint.blocks.push_back(
                 {.human = blocks[i].human, .outcome = run(i, setting, false)});
@@ -113,16 +115,14 @@ Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
 // Runs a rule over recordings, each of which it reads once for each mask.
 Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rule) {
     std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
-    for (size_t m = 0; m < std::max<size_t>(rule.masks.size(), 1); ++m) {
-        NoiseVisibility visibility;
-        if (!rule.masks.empty()) visibility.mask = rule.masks[m];
+    for (const double mask : MasksOf(rule)) {
         std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
         for (const JudgedBlock& block : blocks)
-            ofBlocks.push_back(MakeErrorSeries(*block.recording, rule.error, visibility));
+            ofBlocks.push_back(MakeErrorSeries(*block.recording, rule.error, {.mask = mask}));
     }
     return [=](size_t index, const Setting& setting, bool brief) {
-        const std::vector<ErrorSeries>& ofBlocks = series[size_t(std::max(setting.mask, 0))];
-        return SimulateErrorRule(blocks[index], ofBlocks[index], setting.threshold, brief);
+        return SimulateErrorRule(blocks[index], series[setting.mask][index], setting.threshold,
+                                 brief);
     };
 }
 
@@ -144,7 +144,8 @@ std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy cho
         return SimulateCycles(blocks[index], setting.threshold, brief);
     };
     std::vector<Setting> settings;
-    for (const double threshold : kCyclesThresholds) settings.push_back({threshold});
+    for (const double threshold : kCyclesThresholds)
+        settings.push_back({.threshold = threshold, .text = Text(threshold)});
     rivals.push_back(JudgeRival("cycles", blocks, begins, settings, cycles, chooseBy, grid));
     return rivals;
 }
