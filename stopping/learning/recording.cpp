@@ -6,6 +6,7 @@
 
 #include "stopping/base/state.h"
 #include "stopping/rules/baselines.h"
+#include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"
@@ -50,8 +51,9 @@ void AppendEntropies(std::span<const double> lightness, int width, int height,
 void AppendRecord(const BlockView& view, std::vector<float>* to) {
     const std::vector<double> lightness = DisplayedLightness(view);
     AppendEntropies(lightness, view.width, view.height, to);
-    const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
-                                                          view.height, kStatisticsSubBlocks);
+    const LightnessNoise noise = ComputeLightnessNoise(view);
+    const LightnessNoiseStatistics s =
+        SubBlockStatistics(noise, view.width, view.height, kStatisticsSubBlocks);
     for (const std::vector<float>* channel : {&s.lightness, &s.deviation, &s.texture, &s.noise,
                                               &s.noiseMean, &s.maskedNoise, &s.halfNoise})
         Append(*channel, to);
@@ -59,6 +61,12 @@ void AppendRecord(const BlockView& view, std::vector<float>* to) {
     to->push_back(float(LuxTileError(view)));
     for (const double v : ComputeAttributes(lightness, view.width, view.height))
         to->push_back(float(v));
+    const NoiseCharacter character =
+        DescribeNoise(view, noise, kStatisticsSubBlocks, NoiseVisibility().flare);
+    Append(character.saturated, to);
+    Append(character.chromaNoise, to);
+    Append(character.correlation, to);
+    Append(character.quantiles, to);
 }
 
 }  // namespace

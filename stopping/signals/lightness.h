@@ -1,6 +1,7 @@
 // Turns linear radiance into what an observer sees on a display: 8-bit sRGB, and its lightness.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -8,6 +9,9 @@ namespace lull {
 
 // The shares of linear R, G and B (Rec. 709 primaries) in the luminance Y, which is 1 at white.
 inline constexpr double luminanceWeights[3] = {0.212671, 0.715160, 0.072169};
+
+// Returns what a display shows of a linear component, in [0, 1]; 0 for NaN.
+inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
 
 // Applies the sRGB transfer curve (IEC 61966-2-1) to linear values, clamps to [0, 1] and rounds
 // to 8 bits. NaN becomes 0. Throws std::invalid_argument if the lengths differ.

@@ -16,9 +16,6 @@ constexpr int textureRadius = 6;    // 13 x 13 pixels
 
 float Finite(float x) { return std::isfinite(x) ? x : 0; }
 
-// Returns what a display shows of a component; 0 for NaN.
-float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
-
 // Whether a change of a component changes what is displayed.
 bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
