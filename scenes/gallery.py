@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renders all scenes with the default stopping rule, and makes the contact sheet of the README.
+"""Renders all scenes with the default stopping rule, and makes the contact sheet of this folder's README.
 
 gallery.py LULL [-o FOLDER] [--side N] [--block N] [--cap N]: renders scenes/*/scene.* to FOLDER
 (out/gallery), each as N x N pixels, and writes scenes/pictures/gallery.png from what is there: of each
