@@ -36,8 +36,8 @@ class Warnings {
     // Passes on complete messages without a trailing newline; no sink keeps them silent.
     explicit Warnings(Sink sink = {}) : sink(std::move(sink)) {}
 
-    // Counts a warning of `kind` (a phrase that is the same for all alike, "zero-area triangle");
-    // `detail` tells this one apart and is shown for the first of the kind only.
+    // Counts a warning of `kind` (a phrase that all alike share, such as "zero-area triangle");
+    // `detail` describes this one and is shown for the first of its kind only.
     void Add(const FileLoc& loc, const std::string& kind, const std::string& detail = "");
 
     // Returns how often each kind occurred.

@@ -1,4 +1,4 @@
-// Names the vector types and holds the small geometry that everything uses.
+// Defines the vector types and the basic geometry that everything uses.
 #pragma once
 
 #include <Eigen/Core>

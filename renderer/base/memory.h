@@ -1,5 +1,5 @@
-// Says before memory is taken whether there is enough, since the system would only end the program,
-// and has it in pages that are quick to find.
+// Checks that there is enough memory before it is allocated, since the system would otherwise kill
+// the program, and moves it into large pages.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace lull {
 
-// Returns how many bytes can still be taken: what the system has available, within the limits of
-// this process (ulimit -v) and of its group (containers). Very many where that is not known.
+// Returns how many bytes can still be allocated: what the system has available, within the limits
+// of this process (ulimit -v) and of its group (containers). A very large number if that is not
+// known.
 int64_t AvailableMemory();
 
 // Throws Error if that is less than `bytes`: "<what> needs 27.0 GB of memory, 11.3 GB are
@@ -19,28 +20,28 @@ int64_t AvailableMemory();
 void CheckMemory(int64_t bytes, const std::string& what, const std::string& remedy,
                  const FileLoc& loc = {});
 
-// Starts to load what is at p. The statement without code is an effect for GCC, which leaves out
-// calls of functions that do nothing but prefetch, as if they had none.
+// Starts to load what is at p. The empty asm statement counts as a side effect for GCC, which
+// otherwise drops calls of functions that do nothing but prefetch.
 inline void Prefetch(const void* p) {
     __builtin_prefetch(p);
     asm volatile("");
 }
 
-// Moves what the process has in memory into pages of 2 MB where the system has such (Linux 6.1), so
-// that reads here and there need not look up a small page each. Takes next to no more memory: what
-// is not nearly all in use stays in small pages. For programs, once a scene is there: libraries
-// have no business with the memory of others.
+// Moves the memory of the process into pages of 2 MB where the system has them (Linux 6.1), so that
+// scattered reads need fewer address translations. Takes hardly any more memory: regions that are
+// not almost fully used stay in small pages. For programs, once a scene is loaded: a library should
+// not touch the memory of its host.
 void MoveIntoLargePages();
 
-// Holds zeros, of which only those take memory that are written: page by page, or where they are
-// 2 MB and more in pages of that size, where the system has such.
+// Holds zeros, which take memory only where they are written: page by page, or in pages of 2 MB if
+// there are at least that many bytes and the system has such pages.
 class LazyZeros {
   public:
     LazyZeros() = default;
     // Throws std::bad_alloc.
     explicit LazyZeros(size_t bytes);
 
-    void* Data() const { return data; }  // begins a page, of 2 MB where there is so much
+    void* Data() const { return data; }  // starts a page, one of 2 MB if there are as many bytes
 
   private:
     struct Unmap {

@@ -20,8 +20,8 @@ class Sampler {
     Vec2f Get2D() { return kind == SamplerKind::Random ? Random2D() : Sobol2D(); }
 
   private:
-    // Advances SplitMix64 (Steele, Lea, Flood 2014): a counter through a mixing function, so each
-    // number costs two multiplications and the start of each sample is a hash away.
+    // Advances SplitMix64 (Steele, Lea, Flood 2014): a counter through a mixing function, so that
+    // each number costs two multiplications, and starting a sample a hash.
     uint64_t NextRandom() {
         uint64_t z = (state += 0x9e3779b97f4a7c15ull);
         z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -33,7 +33,7 @@ class Sampler {
         const uint64_t r = NextRandom();
         return {float(r >> 40) * 0x1p-24f, float((r >> 8) & 0xffffff) * 0x1p-24f};
     }
-    // Sobol: returns the place of the next pair among those that are made.
+    // Sobol: returns the index of the next pair among those made.
     uint32_t NextPair() {
         if (nextPair == kPairs) {
             MakePairs();
@@ -52,8 +52,8 @@ class Sampler {
     static constexpr uint32_t kPairs = 8;
     uint64_t seed;
     uint64_t state = 0;  // random: the counter; Sobol: the hash of (seed, pixel)
-    // Sobol only: the sample's index, bits reversed; how many pairs of dimensions were made; the
-    // last kPairs of these, and which of them is next.
+    // Sobol only: the sample's index with its bits reversed; how many pairs of dimensions have been
+    // made; the last kPairs of them, and which one is next.
     uint32_t reversedIndex = 0, dimension = 0, nextPair = kPairs;
     std::array<float, kPairs> xs{}, ys{};
     SamplerKind kind;

@@ -27,7 +27,7 @@ inline Vec2f SampleUniformTriangle(const Vec2f& u) {
 }
 
 // Weighs a sample taken with density f against a rival density g (Veach 1997, eq. 9.16, beta 2).
-// Written over the ratio, so that no square overflows.
+// Computed from the ratio, so that no square overflows.
 inline float PowerHeuristic(float f, float g) {
     if (!(f > 0)) return 0;
     const float r = g / f;
@@ -40,7 +40,7 @@ float RadicalInverse(int base, uint64_t index);
 // Refers to the tables of a piecewise-constant density over [0, 1): the running sums of the
 // probabilities of `count` elements, from 0 to 1, and a guide to them.
 struct DistributionTables {
-    // A guide entry stands for so many elements: a scan stays within a cache line or two.
+    // A guide entry stands for this many elements: a scan stays within a cache line or two.
     static constexpr int kGuideStep = 4;
 
     const float* cdf;  // count + 1
@@ -49,7 +49,7 @@ struct DistributionTables {
 
     static int EntriesFor(int count) { return (count + kGuideStep - 1) / kGuideStep; }
     float Pmf(int i) const { return cdf[i + 1] - cdf[i]; }
-    // Returns where the search for u begins, which is seldom far from what it finds.
+    // Returns where the search for u begins, which is rarely far from where it ends.
     int Begin(float u) const {
         const int entries = EntriesFor(count);
         return guide[std::min(int(u * float(entries)), entries - 1)];
@@ -109,16 +109,15 @@ class Distribution1D {
     float integral = 0;
 };
 
-// Represents a piecewise-constant density over the unit square, row-major in v. All rows' tables
-// lie one after another, so that where to look follows from the row without another look.
+// Represents a piecewise-constant density over the unit square, row-major in v. The tables of all
+// rows lie one after another, so that their place follows from the row alone.
 class Distribution2D {
   public:
     Distribution2D() = default;
     Distribution2D(std::span<const float> values, int nu, int nv);
 
-    // Chooses a place. `expect(column, row)` is told as soon as it is known about which element
-    // that will be, so that what is kept of it elsewhere can be fetched meanwhile; the row is
-    // right.
+    // Chooses a place. `expect(column, row)` is called as soon as the element is roughly known, so
+    // that what is stored about it elsewhere can be prefetched; the row is exact.
     template <typename Expect>
     Vec2f SampleContinuous(const Vec2f& u, const Expect& expect) const {
         const DistributionTables rows = marginal.Tables();

@@ -15,20 +15,21 @@ struct SplineWeights {
     std::array<float, 4> w;
 };
 
-// Returns the interval of nodes, ascending, that x is in; the first or last where it is in none.
+// Returns the interval between ascending nodes that contains x; the first or last if none does.
 inline int IntervalOf(std::span<const float> nodes, float x) {
     const auto above = std::upper_bound(nodes.begin(), nodes.end(), x);
     return std::clamp(int(above - nodes.begin()) - 1, 0, int(nodes.size()) - 2);
 }
 
-// Returns the weights at x; nothing where it is outside of the nodes.
+// Returns the weights at x; nothing if it is outside the nodes.
 inline std::optional<SplineWeights> WeightsAt(std::span<const float> nodes, float x) {
     if (!(x >= nodes.front() && x <= nodes.back())) return {};
     const int k = IntervalOf(nodes, x), n = int(nodes.size());
     const float x0 = nodes[k], x1 = nodes[k + 1], width = x1 - x0;
     const float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
     SplineWeights s{k - 1, {0, 2 * t3 - 3 * t2 + 1, 3 * t2 - 2 * t3, 0}};
-    // The slopes at both ends are differences of the neighbours, one-sided at the ends of all.
+    // The slopes at both ends are differences of the neighbours, one-sided at the first and last
+    // node.
     const float atStart = t3 - 2 * t2 + t, atEnd = t3 - t2;
     if (k > 0) {
         const float slope = atStart * width / (x1 - nodes[k - 1]);
@@ -49,7 +50,7 @@ inline std::optional<SplineWeights> WeightsAt(std::span<const float> nodes, floa
     return s;
 }
 
-// Interpolates a table of one value an entry between rows, at column i.
+// Interpolates between the rows of a table with one value per entry, at column i.
 template <typename At>
 float BetweenRows(const SplineWeights& o, const At& at, int i) {
     float sum = 0;

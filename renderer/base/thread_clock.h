@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// Returns the seconds that the calling thread has run; only differences mean anything. On a machine
-// that others use as well, time on the clock would say how busy they were.
+// Returns the seconds that the calling thread has run; only differences mean anything. On a shared
+// machine, wall-clock time would measure how busy the others are.
 inline double ThreadSeconds() {
     timespec now;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// Estimates the share of even light that is scattered to wo (world, unit), by colour in [0, 1]: as
-// EstimatedAlbedo() does, of all lobes together. What denoisers take for albedo.
+// Estimates the share of uniform light that is scattered to wo (world, unit), per channel in [0,
+// 1]: as EstimatedAlbedo() does, for all lobes together. Denoisers use it as albedo.
 Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& wo);
 
 }  // namespace lull

@@ -51,26 +51,25 @@ class Bsdf {
     float Eta() const { return eta; }
     const Frame& Shading() const { return shading; }
 
-    // Returns f and the density with which Sample(wo, ., set) finds wi; both 0 for specular lobes.
-    // Directions are world, unit, pointing away from the surface. As in pbrt-v3 the geometric
-    // normal decides between reflection and transmission, which keeps light from leaking. Both
-    // values are finite; where float cannot hold one, both are 0.
+    // Returns f and the density with which Sample(wo, ., set) chooses wi; both 0 for specular
+    // lobes. Directions are world, unit, pointing away from the surface. As in pbrt-v3 the
+    // geometric normal decides between reflection and transmission, which keeps light from leaking.
+    // Both values are finite; where float cannot hold one, both are 0.
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
 
-    // Lets Sample choose among LobeSet::All by the share of light that each lobe scatters to wo,
-    // and Evaluate give the density of that; the non-specular lobes by themselves are still chosen
-    // uniformly. To be called when all lobes are there, with wo as it will be for both.
+    // Makes Sample choose among LobeSet::All by the share of light that each lobe scatters to wo,
+    // and Evaluate return the matching density; LobeSet::NonSpecular is still sampled uniformly.
+    // Call it when all lobes have been added, with the wo that will be passed to both.
     void ChooseByShare(const Vec3f& wo);
-    // Returns the same before that.
+    // Returns the Bsdf as it was before that.
     Bsdf WithoutShares() const;
 
     // Chooses one lobe of the set, uniformly unless ChooseByShare was called, with u.x and a
-    // direction from it. Returns nothing where no light can be scattered by the choice (f is 0 or
-    // the density is 0).
+    // direction from it. Returns nothing if the choice scatters no light (f or the density is 0).
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
 
   private:
-    // Says whether world directions are on one side of the surface, which lets lobes reflect.
+    // Says whether world directions are on the same side of the surface, so that lobes reflect.
     bool Reflects(const Vec3f& wo, const Vec3f& wi) const { return wi.dot(ng) * wo.dot(ng) > 0; }
     const Lobe& Choose(int choice, LobeSet set) const;
     BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const;

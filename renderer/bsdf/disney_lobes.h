@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds one of the parts that are sampled by the cosine.
+// Holds one of the parts that are cosine-sampled.
 struct DisneyDiffuse {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     enum class Part { Base, FakeSubsurface, RetroReflection, Sheen };
@@ -61,8 +61,8 @@ struct DisneyInterface {
 using DisneyReflection = MicrofacetReflection<DisneyInterface, SeparableMasking>;
 using DisneyTransmission = BasicMicrofacetTransmission<SeparableMasking>;
 
-// Reflects at a coat of index 1.5 with wide tails: the distribution GTR1 of normals, and masking
-// as if alpha were 0.25 whatever it is.
+// Reflects at a coat of index 1.5 with wide tails: normals are distributed as GTR1, and masking is
+// always that of alpha = 0.25.
 struct DisneyClearcoat {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     StoredRgb r;

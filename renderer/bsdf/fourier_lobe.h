@@ -1,5 +1,5 @@
-// Holds scattering that was tabulated, isotropic, as splines over both cosines and a Fourier series
-// over the azimuth between the directions (Jakob et al. 2014). See lobes.h for what a lobe is.
+// Holds tabulated isotropic scattering: splines over both cosines and a Fourier series over the
+// azimuth between the directions (Jakob et al. 2014). See lobes.h for what a lobe is.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// Says which share of light a smooth interface reflects.
+// Computes the share of light that a smooth interface reflects.
 #pragma once
 
 #include "renderer/base/math.h"
@@ -22,7 +22,8 @@ inline float FresnelDielectric(float cosI, float eta) {
     return 0.5f * (Sqr(parallel) + Sqr(perpendicular));
 }
 
-// Holds a colour in four lanes, the last one padding: roots and quotients are one instruction each.
+// Holds a colour in four lanes, the last one padding: roots and quotients take one instruction
+// each.
 using RgbLanes = Eigen::Array4f;
 
 // Returns the reflectance of a conductor of index n + i k, relative to the medium around it, for
@@ -54,8 +55,8 @@ inline Rgb FresnelSchlick(const Rgb& r0, float cosI) {
     return r0 + (Sqr(Sqr(c)) * c) * (1 - r0);
 }
 
-// Stores an Rgb in a trivially copyable way, which Eigen's types are not; a variant of structs that
-// are not would be copied through a table of functions.
+// Stores an Rgb in a trivially copyable way, which Eigen's types are not; a variant of non-trivial
+// structs would be copied through a table of functions.
 struct StoredRgb {
     float r, g, b;
 
@@ -64,7 +65,7 @@ struct StoredRgb {
     StoredRgb& operator*=(const Rgb& s) { return *this = StoredRgb(Rgb(*this) * s); }
 };
 
-// The interfaces a reflecting lobe may have; each maps the cosine to its reflectance.
+// The interfaces that a reflecting lobe may have; each maps the cosine to a reflectance.
 struct DielectricInterface {
     float eta;  // index beyond the surface over the index on the normal's side
     float operator()(float cosI) const { return FresnelDielectric(cosI, eta); }

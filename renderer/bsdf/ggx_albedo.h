@@ -1,18 +1,18 @@
-// Says how much light a rough interface reflects in all.
+// Computes how much light a rough interface reflects in total.
 #pragma once
 
 namespace lull {
 
-// Holds the albedo of MicrofacetReflection under Schlick's reflectance, by its two ends: the light
-// reflected is f0 * ofF0 + f90 * ofF90.
+// Holds the albedo of MicrofacetReflection with Schlick's reflectance, split by its two ends: the
+// light reflected is f0 * ofF0 + f90 * ofF90.
 struct GgxAlbedo {
     float ofF0, ofF90;
 
     float operator()(float f0, float f90) const { return f0 * ofF0 + f90 * ofF90; }
 };
 
-// Returns the albedo towards a direction of that cosine, in [0, 1], for the isotropic alpha, in
-// [0, 1]: from a table, within 0.01 of the integral.
+// Returns the albedo towards a direction with this cosine, in [0, 1], for an isotropic alpha in [0,
+// 1]: from a table, within 0.01 of the integral.
 GgxAlbedo DirectionalAlbedo(float cosine, float alpha);
 
 // Returns its mean over all directions, weighted by the cosine.

@@ -6,9 +6,9 @@
 
 namespace lull {
 
-// Sums the light that a dielectric, absorbing cylinder reflects, and that which leaves it after one
-// passage, two, and all the others. The hair runs along x of the local frame. f is divided by
-// |cos wi|, so that with it, where it is used, light arrives at the cylinder as such.
+// Sums the light that a dielectric, absorbing cylinder reflects, and the light that leaves it after
+// one passage, after two, and after more. The hair runs along x of the local frame. f is divided by
+// |cos wi|, which cancels the cosine that it is multiplied by when used.
 struct HairLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false, kIsTwoSided = true;
     StoredRgb r;          // scales f
@@ -19,16 +19,16 @@ struct HairLobe {
     float logisticScale;  // around the hair
     float sinTilt;        // of the scales on its surface
 
-    // `betaM` and `betaN` are the roughness along and around the hair, held in [0.01, 1]: at 0,
-    // which pbrt-v3 admits, its formulas are quotients of zeros. `alpha` is the tilt in degrees.
+    // `betaM` and `betaN` are the roughness along and around the hair, clamped to [0.01, 1]: at 0,
+    // which pbrt-v3 admits, its formulas become 0 / 0. `alpha` is the tilt in degrees.
     HairLobe(const Rgb& sigmaA, float h, float eta, float betaM, float betaN, float alpha);
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const;
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const;
 };
 
-// Return the absorption of concentrations of eumelanin and pheomelanin, and that with which hair of
-// azimuthal roughness betaN looks to have the colour c, each in (0, 1].
+// Return the absorption due to concentrations of eumelanin and pheomelanin, and the absorption with
+// which hair of azimuthal roughness betaN appears in the colour c, each in (0, 1].
 Rgb HairAbsorption(float eumelanin, float pheomelanin);
 Rgb HairAbsorptionOfColor(const Rgb& c, float betaN);
 

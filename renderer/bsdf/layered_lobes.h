@@ -1,4 +1,4 @@
-// Holds the lobes of glTF's material: a base under a rough dielectric interface, metal, or anything
+// Holds the lobes of glTF's material: a base under a rough dielectric interface, metal, anything in
 // between, and thin sheets. (glTF 2.0, appendix B; KHR_materials_specular, _ior, _transmission and
 // _clearcoat.) See lobes.h for what a lobe is.
 #pragma once
@@ -8,8 +8,8 @@
 
 namespace lull {
 
-// Says what an interface that reflects by Schlick's approximation leaves for the layer below, as
-// KHR_materials_specular has it: by the greatest of its channels, so that nothing is tinted twice.
+// Computes what an interface with Schlick's reflectance leaves for the layer below, as in
+// KHR_materials_specular: by its largest channel, so that nothing is tinted twice.
 struct InterfaceAbove {
     float f0 = 0, f90 = 0;
 
@@ -39,8 +39,8 @@ inline float ThroughCoat(float coat, float cosO, float cosI) {
 // Reflects diffusely below a rough interface and glossily at it. Both share one distribution of
 // microfacets and Schlick's reflectance from f0 to f90; metal is an interface without a base.
 //
-// Appendix B scales the base by 1 - F of the half vector and leaves better ways open, as the sum
-// can exceed 1 at grazing angles. Here the base gets what the interface, taken as a whole, does not
+// Appendix B scales the base by 1 - F of the half vector and allows better ways, as the sum can
+// exceed 1 at grazing angles. Here the base gets what the interface, taken as a whole, does not
 // reflect, once for each direction (Kelemen and Szirmay-Kalos 2001): reciprocal, and a white base
 // reflects all light.
 struct LayeredReflection {

@@ -1,4 +1,4 @@
-// Estimates what share of even light a lobe scatters to wo (z != 0), but for roughness. See
+// Estimates what share of uniform light a lobe scatters to wo (z != 0), ignoring roughness. See
 // EstimatedAlbedo() and AlbedoOf().
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Say what becomes of a colour in the estimates below: its luminance, or that it stays.
+// Say what the estimates below make of a colour: its luminance, or the colour itself.
 struct ToLuminance {
     using Value = float;
     float operator()(const Rgb& c) const { return Luminance(c); }
@@ -17,8 +17,8 @@ struct ToColor {
     Rgb operator()(const Rgb& c) const { return c; }
 };
 
-// The diffuse part of FresnelBlend is made so that it gives all that the glossy one leaves, but for
-// what is lost at grazing angles.
+// The diffuse part of FresnelBlend is constructed to scatter everything that the glossy part
+// leaves, except for what is lost at grazing angles.
 template <typename To>
 typename To::Value DiffuseAlbedo(const FresnelBlend& lobe, float cosO, To to) {
     const float v = 1 - 0.5f * cosO;

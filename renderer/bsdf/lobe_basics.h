@@ -21,7 +21,7 @@ struct SpecularSample {
 
 inline bool SameHemisphere(const Vec3f& a, const Vec3f& b) { return a.z() * b.z() > 0; }
 
-// Chooses wi by the cosine, on the side of wo or on the other.
+// Cosine-samples wi, on the side of wo or on the other side.
 inline Vec3f SampleCosine(const Vec3f& wo, const Vec2f& u, bool otherSide) {
     Vec3f wi = SampleCosineHemisphere(u);
     if ((wo.z() < 0) != otherSide) wi.z() = -wi.z();

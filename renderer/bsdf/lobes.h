@@ -157,8 +157,8 @@ struct FresnelBlend {
         const Rgb f = Rgb(scale) * (diffuse + glossy);
         if (!SameHemisphere(wo, wi)) return {f, 0};
         const float glossyPdf = 0.5f * d / (cosO + distribution.Stretch(wo));
-        // Even shares are rounded as pbrt-v3's estimator always has: once, where the machine takes
-        // product and sum in one. A product that both lines shared would be rounded by itself.
+        // Equal shares are rounded as pbrt-v3's estimator always was: once, on machines that fuse
+        // product and sum. A product shared by both lines would be rounded by itself.
         if (glossyShare == 0.5f) return {f, cosI * (0.5f * kInvPi) + 0.5f * glossyPdf};
         return {f, (1 - glossyShare) * (cosI * kInvPi) + glossyShare * glossyPdf};
     }
@@ -190,16 +190,16 @@ static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
 Lobe Scaled(const Lobe& lobe, const Rgb& scale);
 
-// Estimates the share of the light that the lobe scatters to wo (z != 0): its reflectance for even
-// light, but for roughness, as a luminance.
+// Estimates the share of uniform light that the lobe scatters to wo (z != 0), ignoring roughness,
+// as a luminance.
 float EstimatedAlbedo(const Lobe& lobe, const Vec3f& wo);
 
 // Lets a FresnelBlend choose between its parts by what they scatter to wo, but each of them with a
 // probability of at least `least`; leaves other lobes alone.
 void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe);
 
-// Calls f with the lobe inside; f must take every kind and return the same type for all. A switch,
-// since std::visit goes through a table of functions for this many kinds, which nothing inlines.
+// Calls f with the lobe inside; f must accept every kind and return the same type for all. A
+// switch, since for this many kinds std::visit uses a table of functions, which are not inlined.
 template <typename F>
 auto VisitLobe(const Lobe& lobe, F&& f) {
     switch (lobe.index()) {

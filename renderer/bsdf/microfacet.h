@@ -13,11 +13,11 @@ inline float RoughnessToAlpha(float roughness) {
 }
 
 // Represents the anisotropic Trowbridge-Reitz (GGX) distribution (Walter et al. 2007; Heitz 2014,
-// JCGT 3(2)) with the height-correlated masking of Smith. Directions are local; neither value
-// depends on the side of the surface.
+// JCGT 3(2)) with Smith's height-correlated masking. Directions are local; neither value depends on
+// the side of the surface.
 class TrowbridgeReitz {
   public:
-    // As pbrt-v3, holds both alphas at 0.001 or above, where float still resolves the peak.
+    // As in pbrt-v3, both alphas are at least 0.001, where float still resolves the peak.
     TrowbridgeReitz(float alphaX, float alphaY)
         : alphaX(std::max(1e-3f, alphaX)), alphaY(std::max(1e-3f, alphaY)) {}
 

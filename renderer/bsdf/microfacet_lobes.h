@@ -5,9 +5,10 @@
 
 namespace lull {
 
-// Say how much of two directions' microfacets both see: G(v, w) = 2 |cos v cos w| / Divisor, in
-// terms of their cosines and TrowbridgeReitz::Stretch. Correlated: Smith's with the height of
-// microfacets in both directions the same. Separable: each direction by itself, G1(v) G1(w).
+// Compute the share of microfacets that two directions both see: G(v, w) = 2 |cos v cos w| /
+// Divisor, in terms of their cosines and TrowbridgeReitz::Stretch. Correlated: Smith's masking with
+// the same height of microfacets for both directions. Separable: each direction by itself, G1(v)
+// G1(w).
 struct CorrelatedMasking {
     static float Divisor(float cosV, float stretchV, float cosW, float stretchW) {
         return cosW * stretchV + cosV * stretchW;
@@ -34,7 +35,8 @@ struct MicrofacetReflection {
         if (std::min(cosO, cosI) < kMinCosine || !(h2 > kMinHalf2)) return {};
         const float d = distribution.D(h, h2);
         const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
-        // wi . h / |h| is half of |h|; the interface wants it signed by the side of the normal.
+        // wi . h / |h| is half of |h|; the interface expects it to be signed by the side of the
+        // normal.
         const float cosH = std::copysign(0.5f * std::sqrt(h2), h.z());
         const Rgb f =
             Rgb(r) * (interface(cosH) * (0.5f * d / Masking::Divisor(cosO, so, cosI, si)));

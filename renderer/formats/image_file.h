@@ -1,5 +1,5 @@
-// What readers of all image formats have in common. The module of other formats, which is loaded
-// while the program runs, shares this header with it and nothing else.
+// What readers of all image formats have in common. This header is all that the module of other
+// formats, which is loaded at run time, shares with the program.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ constexpr size_t SizeOf(TexelType type) {
     return type == TexelType::Byte ? 1 : type == TexelType::Half ? 2 : 4;
 }
 
-// Says what Read() gives: 8-bit, half and float texels are as they are in the file, all else
-// becomes float (16-bit integers: 0 to 1).
+// Says what Read() returns: 8-bit, half and float texels as they are in the file, everything else
+// as float (16-bit integers: 0 to 1).
 struct ImageShape {
     int width = 0, height = 0;  // as the file says, however absurd
     int channels = 0;           // that are read; see CountChannels()
@@ -30,15 +30,15 @@ class ImageFile {
     virtual void Read(void* texels) = 0;
 };
 
-// Returns how many channels of a file are read: of 4 and more the first 4 if the last of them is
-// alpha, else the first 3. The first alpha is channel `alpha`; -1: there is none.
+// Returns how many channels of a file are read: of 4 or more the first 4 if the last of these is
+// alpha, else the first 3. `alpha` is the first alpha channel, or -1.
 constexpr int CountChannels(int channels, int alpha) {
     return channels < 4 ? channels : alpha == 3 ? 4 : 3;
 }
 
-// The type of the module's one function, LullOpenImage: opens the file `path` or, where `bytes` is
-// not null, that memory, for which the extension of `path` names the format. The bytes must outlive
-// what is returned, which belongs to the caller. Throws std::runtime_error as Read() does.
+// The type of the module's one function, LullOpenImage: opens the file `path` or, if `bytes` is not
+// null, these bytes, whose format is named by the extension of `path`. The bytes must outlive the
+// result, which belongs to the caller. Throws std::runtime_error as Read() does.
 using OpenImageFunction = ImageFile*(const char* path, const std::byte* bytes, size_t size);
 
 }  // namespace lull

@@ -15,7 +15,7 @@
 
 namespace lull {
 
-// Refers to a texture by its place in Description::textures, as the name stood when the
+// Refers to a texture by its index in Description::textures, as its name was bound when the
 // parameter was read (pbrt-v3 keeps float and spectrum textures in separate name spaces).
 struct TextureRef {
     std::string name;
@@ -95,7 +95,7 @@ struct TextureEntity : Entity {
 
 struct MaterialEntity : Entity {
     std::string materialName;  // of MakeNamedMaterial; empty for Material
-    // Of "mix": the two named materials, as the names stood; -1 where there was none such.
+    // Of "mix": the two named materials, as the names were bound; -1 for unknown names.
     std::array<int, 2> operands = {-1, -1};
 };
 
@@ -115,10 +115,10 @@ struct ShapeEntity : Entity {
     std::optional<Entity> areaLight;  // of AreaLightSource, in force at the shape
     // Of MediumInterface, into Description::media; -1: vacuum.
     int insideMedium = -1, outsideMedium = -1;
-    // Of a curve: directives that followed and differ in points, widths and the like alone. Hair
-    // comes as one directive a strand, and makes one shape.
+    // Of a curve: further directives that differ only in points, widths and the like. Hair comes
+    // with one directive per strand, and becomes one shape.
     std::vector<Entity> strands;
-    std::string label;  // what its file calls it, for people; glTF: the node, else the mesh
+    std::string label;  // its name in the file, for people; glTF: the node, else the mesh
 };
 
 // Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the
@@ -136,21 +136,21 @@ struct InstanceEntity {
     int motion = -1;  // into Description::motions; -1: it stands still
 };
 
-// Holds a transform at Description::transformTimes, the start and the end of the time.
+// Holds a transform at both of Description::transformTimes, start and end.
 struct TransformPair {
     std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
 
-    // What differs by rounding alone does not move.
+    // What differs only by rounding does not move.
     bool IsAnimated() const { return at[0].cast<float>() != at[1].cast<float>(); }
 };
 
-// Holds the transforms of an instance that moves, outermost first: a moving shape in an object that
-// is placed has one in the object and one of the object.
+// Holds the transforms of a moving instance, outermost first: a moving shape within a placed object
+// has one of the object and one in the object.
 using Motion = std::vector<TransformPair>;
 
-// Holds an image that lies inside the scene's file, as its own format encodes it.
+// Holds an image embedded in the scene's file, still encoded in its own format.
 struct EmbeddedImage {
-    std::string name;  // for messages, unlike that of any other of the scene
+    std::string name;  // for messages, unique in the scene
     std::string type;  // the extension that a file of this format would have, without the dot
     std::vector<std::byte> bytes;
 };
@@ -163,7 +163,7 @@ struct Description {
     std::array<double, 2> transformTimes = {0, 1};       // in units of the camera's shutter times
 
     std::vector<MediumEntity> media;  // none where the integrator does not see them
-    int cameraMedium = -1;            // what the camera is in; -1: vacuum
+    int cameraMedium = -1;            // around the camera; -1: vacuum
     std::vector<TextureEntity> textures;
     std::vector<MaterialEntity> materials;
     std::vector<LightEntity> lights;

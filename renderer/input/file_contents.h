@@ -20,7 +20,7 @@ struct FileContents {
 // the file), if it is missing, a directory, or cannot be read.
 FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
 
-// Returns untrusted text for a message: control and non-ASCII bytes as \xNN, cut where it is long.
+// Returns untrusted text for a message: control and non-ASCII bytes as \xNN, long text cut short.
 std::string Printable(std::string_view text);
 
 }  // namespace lull

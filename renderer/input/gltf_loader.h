@@ -19,8 +19,9 @@ struct GltfOptions {
     std::optional<std::array<float, 2>> orbit = {};
 };
 
-// Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, at
-// whatever is wrong, or required and not modelled; what is not modelled but optional is warned of.
+// Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, for
+// whatever is wrong, or required but not supported; what is unsupported but optional leads to
+// warnings.
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings);
 
 // Says whether a file is a glTF file, by its extension.

@@ -7,7 +7,7 @@
 namespace lull {
 
 // Returns `contents` unpacked if they are gzip'd, as they are otherwise. Throws Error at `loc` if
-// they are damaged, or unpack to more than any mesh would.
+// they are damaged, or unpack to more than any mesh has.
 FileContents Inflated(FileContents contents, const FileLoc& loc);
 
 }  // namespace lull

@@ -12,9 +12,9 @@ namespace lull {
 // the vertices to the limit surface. `p` holds xyz triplets, `indices` vertex triplets. As in
 // pbrt-v3 (whose default is 3 levels) the normals are the products of the limit tangents, of any
 // length, and point against the side from which the triangles run counterclockwise. Vertices that
-// no face uses come out where they are, with a zero normal. Throws Error at `loc` for counts that
-// are no multiple of 3, no faces, indices out of range, faces that repeat a vertex, edges of more
-// than two faces or of two that run the same way, and results beyond 50 million triangles.
+// no face uses stay where they are, with a zero normal. Throws Error at `loc` for counts that are
+// no multiple of 3, no faces, indices out of range, faces that repeat a vertex, edges of more than
+// two faces or of two that run the same way, and results beyond 50 million triangles.
 MeshData LoopSubdivide(std::span<const float> p, std::span<const int> indices, int levels,
                        const FileLoc& loc);
 

@@ -13,10 +13,10 @@ namespace lull {
 // zero normal stands for the triangle's own.
 struct MeshData {
     std::vector<Vec3f> positions;
-    std::vector<Vec3f> normals;                      // none or one a position
-    std::vector<Vec2f> uvs;                          // none or one a position
+    std::vector<Vec3f> normals;                      // none or one per position
+    std::vector<Vec2f> uvs;                          // none or one per position
     std::vector<std::array<uint32_t, 3>> triangles;  // into positions
-    std::vector<int> faceIndices;                    // none or one a triangle
+    std::vector<int> faceIndices;                    // none or one per triangle
 };
 
 }  // namespace lull

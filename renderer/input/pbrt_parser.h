@@ -9,9 +9,9 @@
 namespace lull {
 
 // Reads the scene in `file` and the files it includes; relative names in them start at the
-// directory of `file`. Parameters of plug-ins are not judged here. A shape's material is always a
-// valid index: a plain "matte" is added where a shape comes before any material. Throws Error,
-// with file and line, at whatever is wrong or not modelled.
+// directory of `file`. Parameters of plug-ins are not checked here. A shape's material is always a
+// valid index: a plain "matte" is added if a shape comes before any material. Throws Error, with
+// file and line, at whatever is wrong or not supported.
 Description ParsePbrt(const std::string& file, Warnings& warnings);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Changes descriptions as the command line asks, whatever kind of file they come from.
+// Changes descriptions as the command line asks, whatever format they come from.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Tells scenes apart.
+// Identifies scenes.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace lull {
 
-// Returns "crc32:" and eight hexadecimal digits, made of everything in a description and of the
-// contents of all files that its parameters name (meshes, images, spectra). Names of folders do not
-// count, so a scene that has been moved is the same one. Files that are missing count as empty:
-// to report them is left to who needs them.
+// Returns "crc32:" and eight hexadecimal digits, computed from everything in a description and from
+// the contents of all files that its parameters name (meshes, images, spectra). Names of folders do
+// not count, so a scene that has been moved stays the same. Missing files count as empty: whoever
+// needs them reports them.
 std::string SceneHash(const Description&);
 
 }  // namespace lull

@@ -11,10 +11,10 @@ struct BenchPoint {
     std::string rule, setting;  // "dammertz", "0.02"; "fixed", "64"; the name of another renderer
     std::string sampler;        // empty for other renderers
     double spp = 0;             // mean samples per pixel; 0: not known
-    double seconds = 0;         // on the clock; lull's, if all its threads were busy all the time
+    double seconds = 0;         // wall-clock; lull's, if all its threads were always busy
     double threadSeconds = 0;   // of processors, the rule's included; 0: not known
     double ruleSeconds = 0;
-    bool sharesReference = false;  // samples of it are in the reference: its error is understated
+    bool sharesReference = false;  // shares samples with the reference: its error is understated
     ErrorFigures figures;
 };
 
@@ -22,12 +22,13 @@ struct BenchPoint {
 // pass to the cap, each about 1.5 times the last, all ends of passes.
 std::vector<int> FixedLadder(int passLength, int cap);
 
-// Returns the rules that are measured, as texts: "fixed:N" for the ladder, and the rules that have
-// one setting over a range of it.
+// Returns the rules that are measured, as texts: "fixed:N" for the ladder, and each rule with one
+// setting over a range of it.
 std::vector<std::string> BenchRules(int passLength, int cap);
 
 // Returns a point for each rule, each compared with the reference. Seconds are those of `threads`
-// that are always busy. `onPoint` is called after each, by one thread at a time; it may be empty.
+// threads that are always busy. `onPoint` is called after each, by one thread at a time; it may be
+// empty.
 std::vector<BenchPoint> MeasurePoints(const ObservedRender&, const std::vector<ObservedRule>& rules,
                                       const RgbImage& reference, int threads,
                                       const std::function<void()>& onPoint);

@@ -1,5 +1,5 @@
-// Watches a block through a render: where rules would have stopped it, how it looked there, and how
-// its noise went.
+// Watches a block during a render: where rules would have stopped it, how it looked there, and how
+// its noise developed.
 #pragma once
 
 #include <map>
@@ -43,10 +43,11 @@ struct ObserverOptions {
     bool goesOn = false;     // to the cap, rather than until all rules have stopped the block
 };
 
-// Runs several rules over one block; the decisions it gives are those of the first, while it lasts.
+// Runs several rules over one block; its own decisions are those of the first rule until that
+// stops.
 class BlockObserver final : public Criterion {
   public:
-    // A null rule has no say about the block. `history` must outlive the observer.
+    // A null rule does not judge the block. `history` must outlive the observer.
     BlockObserver(std::vector<std::unique_ptr<Criterion>> rules, const ObserverOptions& options,
                   BlockHistory* history);
 

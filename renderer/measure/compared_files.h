@@ -19,28 +19,29 @@ bool IsImageFile(const std::string& path);
 // (0, 0). Throws Error.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 
-// Reads an image as ReadComparedFile() does. Throws Error if it has not the size of the region.
+// Reads an image as ReadComparedFile() does. Throws Error if it does not have the size of the
+// region.
 RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region);
 
 // Reads an image to be compared with others of a region and blocks that are known; a picture for
-// displays of the same size can be of any part. Its wall seconds are 0 where the file has none.
-// Throws Error if it shows another part of the image.
+// displays of the same size can be of any part. Its wall seconds are 0 if the file has none. Throws
+// Error if it shows another part of the image.
 ComparedImage ReadImageBeside(const std::string& path, const std::string& name, const Comparison&);
 
-// Returns what there is to compare of files, the last of which is the reference, from the file of
-// that name; the cap is what that one took at the most. Throws Error if they do not fit together.
+// Returns a comparison of files, the last of which is the reference, read from the file of that
+// name; the cap is the most samples that it has. Throws Error if they do not fit together.
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
                         const ScheduleOptions&);
 
-// Returns the region of the files: as the EXRs among them have it, and a picture for displays of
-// the same size can be of any part. The last of `files` is the reference, from the file of that
-// name. Throws Error if they do not fit together.
+// Returns the region of the files: that of the EXRs among them; a picture for displays of the same
+// size can be of any part. The last of `files` is the reference, from the file of that name. Throws
+// Error if they do not fit together.
 PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);
 
 // Says what is not measured of pictures for displays; empty if there are none among the images.
 std::string DisplayNote(const Comparison&);
 
-// Sets what each block took where all of its pixels took the same.
+// Sets the cost of each block whose pixels all took the same number of samples.
 void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file);
 
 }  // namespace lull

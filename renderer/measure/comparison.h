@@ -1,4 +1,4 @@
-// Compares what stopping rules make of a scene with each other and with a reference: error, seams,
+// Compares the images that stopping rules give with each other and with a reference: error, seams,
 // samples and seconds.
 #pragma once
 
@@ -17,7 +17,7 @@ struct BlockCost {
     int spp = 0;
     double seconds = 0;
     double ruleSeconds = 0;
-    bool isEstimated = false;  // from the block's seconds a sample, as not all of it was rendered
+    bool isEstimated = false;  // from the block's seconds per sample, as not all of it was rendered
 };
 
 // Holds an image and all that is measured of it.
@@ -30,7 +30,7 @@ struct ComparedImage {
     std::vector<BlockCost> costs;       // of each block; empty: not known
     std::optional<double> wallSeconds;  // as the header of its file says
 
-    // Are set by Measure(); the reference has no figures.
+    // Set by Measure(); the reference has no figures.
     std::optional<ErrorFigures> figures;
     std::vector<ErrorFigures> blockFigures;
     std::vector<float> flip;
@@ -52,8 +52,8 @@ struct Comparison {
 // Returns a comparison with a reference, in the blocks of a schedule, that has no images yet.
 Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
 
-// Fills in figures by the reference, and seams. The noise of an image where it is not known is its
-// error in lightness. Throws Error if images differ in size.
+// Fills in figures by the reference, and seams. If the noise of an image is not known, its error in
+// lightness stands for it. Throws Error if images differ in size.
 void Measure(Comparison*);
 
 // Adds up what the blocks took.
@@ -72,12 +72,12 @@ struct ObservedRule {
 };
 
 // Makes the observers of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
-// must be 0. `rules` and `histories`, one a block, must outlive the render.
+// must be 0. `rules` and `histories`, one per block, must outlive the render.
 std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
     const std::vector<ObservedRule>& rules, const PixelRect& region, const ScheduleOptions&,
     const ObserverOptions&, std::vector<BlockHistory>* histories);
 
-// Holds an observed render when it is done.
+// Holds an observed render that is complete.
 struct ObservedRender {
     const SampleSource& source;
     const RenderOptions& options;
@@ -87,15 +87,15 @@ struct ObservedRender {
 };
 
 // Returns the image that rule number `index` would have rendered by itself, bit for bit. Blocks too
-// small to judge themselves are rendered once more, as only their neighbour knew how far.
+// small to be judged are rendered again, as only their neighbour determined how far.
 ComparedImage TakeImage(const ObservedRender&, const std::vector<ObservedRule>& rules,
                         size_t index);
 // Returns the image of all samples that were taken.
 ComparedImage TakeWholeImage(const ObservedRender&);
 
 // Compares the seconds to the cap, estimated from what the blocks took until the rule stopped them,
-// with those they took: estimated / measured - 1, over all and of the block that is furthest off.
-// Blocks that had not stopped before the cap tell nothing and are left out.
+// with those they took: estimated / measured - 1, over all blocks and for the worst one. Blocks
+// that had not stopped before the cap are left out.
 struct EstimateError {
     int blocks = 0;
     double total = 0, worst = 0;

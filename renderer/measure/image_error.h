@@ -13,7 +13,7 @@ struct RgbImage {
     std::vector<float> values;
 };
 
-// Holds what can be averaged over any part of an image: a value a pixel, row-major.
+// Holds what can be averaged over any part of an image: a value per pixel, row-major.
 struct ErrorMaps {
     int width = 0, height = 0;
     std::vector<float> squared;    // of linear values, the mean over R, G, B
@@ -24,11 +24,11 @@ struct ErrorMaps {
     std::vector<float> flip;       // flip.h, at the viewing distance it takes by default
 };
 
-// Compares two images; not finite values count as 0. Throws Error if their sizes differ.
+// Compares two images; values that are not finite count as 0. Throws Error if their sizes differ.
 ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference);
 
-// Holds figures of an image or a part of it; NaN where one is not known. An infinite PSNR says that
-// the display images are the same; ssim is NaN where no window lies inside the image.
+// Holds figures of an image or a part of it; NaN if one is not known. An infinite PSNR means that
+// the display images are the same; ssim is NaN if no window lies inside the image.
 struct ErrorFigures {
     double rmse = 0;    // of linear radiance
     double relMse = 0;  // mean of squared errors / (reference^2 + 0.01) [Rousselle et al. 2011]

@@ -12,16 +12,16 @@ namespace lull {
 // Holds the pixels of a block as a display shows them: 8-bit sRGB, R, G, B, row by row.
 using DisplayPixels = std::vector<uint8_t>;
 
-// Returns the spp of a ladder whose steps are as near to `ratio` (> 1) as whole passes let them be:
+// Returns the spp of a ladder whose steps are as near to `ratio` (> 1) as whole passes allow:
 // increasing multiples of `pass` from `pass` on, and `cap` as the last.
 std::vector<int> LadderByRatio(int pass, int cap, double ratio);
 
-// Returns such a ladder with `count` (>= 2) levels, or fewer where there are not so many passes.
+// Returns such a ladder with `count` (>= 2) levels, or fewer if there are not that many passes.
 std::vector<int> LadderByCount(int pass, int cap, int count);
 
-// Goes on to the last level and keeps a picture at each; `pictures`, which must outlive it, has
-// them in the order of the levels. Shows all passes to `companion` too, if there is one: a recorder
-// of the same samples.
+// Continues to the last level and keeps a picture at each; `pictures`, which must outlive it,
+// receives them in the order of the levels. Shows all passes to `companion` too, if there is one: a
+// recorder of the same samples.
 class PictureLadder final : public Criterion {
   public:
     PictureLadder(std::vector<int> levels, std::unique_ptr<Criterion> companion,

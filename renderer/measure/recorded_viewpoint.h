@@ -15,16 +15,16 @@ std::string CheckViewpointName(const std::string& name);
 // Returns the data set of a file; nothing if there is no such file. Throws std::runtime_error.
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path);
 
-// Describes a whole recording but for the blocks themselves.
+// Describes a whole recording, without the blocks themselves.
 ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions&,
                                  const RenderIdentity&, size_t blockCount);
 
 // Moves the recording of block i into the viewpoint, with a note on what it cost.
 void AddBlock(size_t i, BlockRecording recording, const BlockResult&, ViewpointRecording*);
 
-// Returns the spp at which each block's recording ends: `cap` for those that are `chosen`, by
-// number, or for all where none is; 0 for blocks that are not to be recorded. Throws Error for a
-// number that there is not.
+// Returns the spp at which each block's recording ends: `cap` for those `chosen` by number, or for
+// all if none is chosen; 0 for blocks that are not recorded. Throws Error for a number that does
+// not exist.
 std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chosen, int cap);
 
 // Ends the recording of each block at `past` times its threshold in the file `human`, where that
@@ -34,9 +34,9 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
 
 // Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
 // where an interrupted recording with the same limits left film and state, and adds what was
-// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and is told of
-// progress towards the limits. Of several ranks, the first has the recordings. Throws as Render()
-// does.
+// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and its onProgress
+// reports progress towards the limits. Of several ranks, the first has the recordings. Throws as
+// Render() does.
 RenderResult RecordBlocks(const SampleSource&, RenderOptions render, const std::vector<int>& limits,
                           Film*, const RenderState* interrupted, ViewpointRecording*);
 

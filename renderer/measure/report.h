@@ -1,4 +1,4 @@
-// Writes down what a render did and what that cost.
+// Reports what a render did and what that cost.
 #pragma once
 
 #include <map>

@@ -11,13 +11,13 @@ using Json = nlohmann::ordered_json;
 
 Json RectJson(const PixelRect&);
 Json ProvenanceJson(const Provenance&);
-// Lists decisions by column: a tenth of the size of one object for each.
+// Lists decisions by column, which takes a tenth of the size of an object for each.
 Json DecisionsJson(const std::vector<DecisionRecord>&);
 // Returns what MakeReport() writes.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                 const std::map<std::string, int>& warnings);
 
-// Returns the text; a file name in it that is not UTF-8 costs the name, not the report.
+// Returns the text; bytes of file names that are not UTF-8 are replaced.
 std::string Dump(const Json&);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Holds what people are shown, so that they say where they still see noise.
+// Holds what people are shown when they say where they still see noise.
 #pragma once
 
 #include <map>
@@ -21,10 +21,10 @@ struct Study {
     int width = 0, height = 0;
     std::vector<int> levels = {};  // spp, increasing, at least two
     std::vector<StudyBlock> blocks = {};
-    std::map<std::string, std::string> provenance = {};  // from what the pictures were made
+    std::map<std::string, std::string> provenance = {};  // what the pictures were made from
 };
 
-// Returns 16 hexadecimal digits that tell studies apart: a hash of names, levels, places and all
+// Returns 16 hexadecimal digits that tell studies apart: a hash of names, levels, positions and all
 // pictures. Answers to one study say nothing about another.
 std::string StudyId(const Study&);
 
@@ -32,10 +32,10 @@ std::string StudyId(const Study&);
 // level and the reference.
 double NoiseOf(const StudyBlock&, size_t level);
 
-// Makes a study from the pictures of another renderer: all files of a folder whose names have
-// their spp in them ("room-40spp.png", "spp40.exr" or, where no name says spp, the last number, as
-// in "room_00040.png"), 8-bit ones as they are, others as linear radiance. Takes those nearest to
-// the levels of a ladder of `count` levels or, where count is 0, of steps of `ratio`. Throws Error.
+// Makes a study from the pictures of another renderer: all files of a folder whose names contain
+// their spp ("room-40spp.png", "spp40.exr" or, where no name says spp, the last number, as in
+// "room_00040.png"), 8-bit ones as they are, others as linear radiance. Takes those nearest to the
+// levels of a ladder of `count` levels or, where count is 0, of steps of `ratio`. Throws Error.
 Study ReadStudy(const std::string& folder, const std::string& viewpoint, int blockSize, int count,
                 double ratio);
 

@@ -6,15 +6,15 @@
 
 namespace lull {
 
-// Returns the frame of a study: all but the pictures. Blocks are placed within `region`, which
-// becomes the whole image.
+// Returns a study without its pictures. Blocks are placed within `region`, which becomes the whole
+// image.
 Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vector<int> levels,
                  const std::vector<Block>& blocks, const RenderIdentity&);
 
-// Renders all blocks to the cap, the study's last level, and fills in their pictures; adds what can
-// be learned from the same samples to `viewpoint`, unless that is null. Starts from nothing or from
-// where an interrupted render of the same study left film and state. `render` has no rule. If it
-// was cancelled, the study is not complete. Throws as Render() does.
+// Renders all blocks to the cap, the study's last level, and fills in their pictures; records the
+// same samples for learning in `viewpoint`, unless that is null. Starts from nothing or from where
+// an interrupted render of the same study left film and state. `render` has no rule. If it was
+// cancelled, the study is not complete. Throws as Render() does.
 RenderResult RenderStudy(const SampleSource&, RenderOptions render, Film*,
                          const RenderState* interrupted, Study*, ViewpointRecording* viewpoint);
 

@@ -1,4 +1,4 @@
-// Checks by a render of its own what was taken from an observed one.
+// Checks an image taken from an observed render by rendering it by itself.
 #pragma once
 
 #include "renderer/measure/comparison.h"
@@ -15,8 +15,8 @@ struct Verification {
     bool samePixels = false;
 };
 
-// Returns what a render of a rule alone, which left `film`, took, and whether its image is the one
-// that TakeImage() gave.
+// Returns the cost of a render of a rule alone, whose result is `film`, and whether its image is
+// the one that TakeImage() gave.
 Verification VerificationOf(const RenderResult&, const Film& film, const ComparedImage& taken);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Sums up what paths meet first: the layers beside the image that denoisers and compositors read
+// Sums up the first hits of paths: the layers beside the image that denoisers and compositors read
 // ("arbitrary output variables").
 #pragma once
 
@@ -13,11 +13,11 @@ namespace lull {
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
          material = false, noise = false;
-    // Look through surfaces with nothing but perfectly specular lobes, to what is seen in them.
+    // Look through surfaces that have only perfectly specular lobes, to what is seen in them.
     bool throughSpecular = false;
 
     bool Any() const { return FirstHits() || noise; }
-    // Says whether a layer needs to know of first hits; noise does not.
+    // Says whether any layer needs first hits; noise does not.
     bool FirstHits() const { return albedo || normal || depth || position || object || material; }
     bool operator==(const AovSet&) const = default;
 };
@@ -25,14 +25,13 @@ struct AovSet {
 // Names the layers: "albedo,normal,..." in the order above, without throughSpecular.
 std::string NameOf(const AovSet&);
 
-// Reads such names, in any order. Throws Error naming the first that there is not, or that there
-// is none.
+// Reads such names, in any order. Throws Error naming the first unknown one, or if there is none.
 AovSet ParseAovs(const std::string& names);
 
-// Says what one path has met first: a surface, or a point in a medium, which has no normal, object
-// or material.
+// Holds the first hit of a path: a surface, or a point in a medium, which has no normal, object or
+// material.
 struct FirstHit {
-    Rgb albedo = Rgb::Zero();        // in [0, 1]; where light is seen instead, that
+    Rgb albedo = Rgb::Zero();        // in [0, 1]; for lights their radiance
     Vec3f normal = Vec3f::Zero();    // shading, unit, world, on the viewer's side
     Vec3f position = Vec3f::Zero();  // world
     float depth = 0;        // from the camera's plane along its axis; environment cameras: distance
@@ -48,7 +47,7 @@ struct AovPixel {
     std::array<double, 3> albedo = {}, normal = {}, position = {};
     double depth = 0;
     double squares = 0;                 // of the samples' luminance
-    uint32_t hits = 0;                  // samples that found one
+    uint32_t hits = 0;                  // samples with a first hit
     uint32_t object = 0, material = 0;  // of the sample nearest to the centre
     float nearest = kInfinity;          // its FirstHit::offset2
 
@@ -73,8 +72,8 @@ struct AovPixel {
     bool operator==(const AovPixel&) const = default;
 };
 
-// Holds these pixels of the region that a Film beside it has, and how many samples each has is
-// there. Different pixels can be changed by different threads at the same time.
+// Holds these pixels for the region of a Film, which has their sample counts. Different pixels can
+// be changed by different threads at the same time.
 class AovFilm {
   public:
     AovFilm(const PixelRect& region, const AovSet& wanted)
@@ -88,7 +87,7 @@ class AovFilm {
 
     // Appends the pixels of a rectangle, row by row.
     void Copy(const PixelRect&, std::vector<AovPixel>* to) const;
-    // Sets them; returns what comes after those in `from`.
+    // Sets them; returns what follows them in `from`.
     const AovPixel* Set(const AovPixel* from, const PixelRect&);
 
   private:

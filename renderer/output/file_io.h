@@ -11,15 +11,15 @@
 
 namespace lull {
 
-// Replaces the file at `path` by `bytes` at one stroke: they are written to a new file beside it,
-// synced to disk and renamed, so that an interrupted or failed write leaves the old file as it
-// was. Links are followed; devices and pipes are written directly. Throws Error saying what and
-// why, with nothing left behind.
+// Replaces the file at `path` by `bytes` atomically: they are written to a new file beside it,
+// synced to disk and renamed, so that an interrupted or failed write leaves the old file unchanged.
+// Links are followed; devices and pipes are written directly. Throws Error saying what and why,
+// with nothing left behind.
 void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes);
 void WriteFileAtomically(const std::string& path, std::string_view text);
 
-// Does the same with what comes piece by piece, for files that are too large to be held twice.
-// Without Commit() the old file stays. What is no regular file gets all at Commit().
+// Does the same piece by piece, for files too large to be held twice. Without Commit() the old file
+// stays. A target that is not a regular file receives everything at Commit().
 class AtomicFile {
   public:
     explicit AtomicFile(const std::string& path);
@@ -28,8 +28,8 @@ class AtomicFile {
     // Throw Error as WriteFileAtomically() does.
     void WriteAt(int64_t offset, std::span<const std::byte> bytes);
     void Commit();
-    // Returns the name of the new file, for libraries that write files themselves; empty where it
-    // is no regular file.
+    // Returns the name of the new file, for libraries that write files themselves; empty if it is
+    // not a regular file.
     std::string Temporary() const;
 
   private:

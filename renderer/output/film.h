@@ -26,9 +26,9 @@ inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) &
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);
 
-// Holds what is known of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and
-// are added to the running sums one by one, so that the sums are the same bits however the
-// samples are cut into passes.
+// Holds the sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
+// added to the running sums one by one, so that the sums are the same bits however the samples are
+// cut into passes.
 struct FilmPixel {
     std::array<double, 3> sum = {}, halfSum = {};
     uint32_t count = 0;
@@ -44,8 +44,8 @@ struct FilmPixel {
         ++count;
         rejected += wasRejected;
     }
-    // Return the mean of all samples, or of those in the half; black, or the mean of all, where
-    // there is none.
+    // Return the mean of all samples, or of those in the half; without any, black, or the mean of
+    // all.
     Rgb Mean() const;
     Rgb HalfMean() const;
 };
@@ -57,24 +57,24 @@ struct FilmView {
     std::vector<float> mean, halfMean;
 };
 
-// Says how a region is cut, from its upper left corner: into blocks, and these into tiles. The
-// pixels of a tile are given the same samples.
+// Says how a region is cut, from its upper left corner, into blocks, and these into tiles. The
+// pixels of a tile have the same number of samples.
 struct TileGrid {
     int blockSize = 1, tileSize = 1;  // pixels a side, > 0
 };
 
 struct FilmOptions {
     TileGrid grid = {};    // by default every pixel is a tile of its own
-    bool withHalf = true;  // keeps the sums of the half; false: they are zero, and never asked for
+    bool withHalf = true;  // keeps the sums of the half; false: they are zero and never read
 };
 
-// Holds the pixels of the crop window, addressed by their place in the full image: 24 bytes a
-// pixel, 24 more with the half, and 8 a tile. Different tiles can be changed by different threads
-// at the same time.
+// Holds the pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
+// more with the half, and 8 a tile. Different tiles can be changed by different threads at the same
+// time.
 class Film {
   public:
     explicit Film(const PixelRect& region, const FilmOptions& options = {});
-    // Returns what such a film takes, in bytes.
+    // Returns the size of such a film in bytes.
     static int64_t Bytes(const PixelRect& region, const FilmOptions&);
 
     const PixelRect& Region() const { return region; }
@@ -82,14 +82,14 @@ class Film {
     // Forgets the sums of the half.
     void DropHalf();
 
-    // Return and set a pixel. The tile's samples are those of its last pixel, row by row, so that
-    // the pixels of a tile are set in this order, and all of them. Rejected samples are known by
-    // tile: At() has them at its last pixel, and Set() adds those of other pixels.
+    // Return and set a pixel. A tile's sample count is stored with its last pixel, so all pixels of
+    // a tile must be set, row by row. Rejected samples are counted by tile: At() returns them at
+    // its last pixel, and Set() adds those of other pixels.
     FilmPixel At(const Vec2i& p) const;
     void Set(const Vec2i& p, const FilmPixel&);
 
     // Fills `view` with the means of `rect`, which lies inside Region(); `halfMean` is left empty
-    // where it is not wanted. Throws std::logic_error where it is and the film has no half.
+    // unless it is wanted. Throws std::logic_error if it is wanted and the film has no half.
     void Extract(const PixelRect& rect, bool withHalf, FilmView* view) const;
 
     // Return the whole image (row-major RGB) and the samples each pixel had.
@@ -102,7 +102,7 @@ class Film {
     struct Tile {
         uint32_t count = 0, rejected = 0;
     };
-    // Says which of the tiles along an axis a place is in, and whether it is the last there.
+    // Says which tile along an axis a coordinate is in, and whether it is the last in that tile.
     struct Place {
         uint32_t tile;
         bool isLast;

@@ -13,8 +13,8 @@
 
 namespace lull {
 
-// Holds a 16-bit IEEE 754 float. Eigen::half is not used as it is, since Eigen 3.4 converts it in
-// software where the compiler is GCC.
+// Holds a 16-bit IEEE 754 float. Eigen::half is not used, since Eigen 3.4 converts it in software
+// when compiled by GCC.
 struct Half {
     uint16_t bits = 0;
 

@@ -1,5 +1,5 @@
-// Reads and writes image files. What each format needs is in images/; OpenImageIO is in a module of
-// its own (renderer/formats), which is loaded where a file is neither PNG nor OpenEXR.
+// Reads and writes image files. The formats are in images/; OpenImageIO is in a module of its own
+// (renderer/formats), which is loaded for files that are neither PNG nor OpenEXR.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@
 namespace lull {
 
 // Reads the first image of a file: PNG, OpenEXR, or any other format that OpenImageIO knows. 8-bit,
-// half and float texels stay as they are, all else becomes float (16-bit integers: 0 to 1). Values
-// are neither linearised nor multiplied by alpha. Of 4 channels and more the first 4 are read where
-// the last of these is alpha, and else the first 3; an EXR's data window is the image, as in
+// half and float texels stay as they are, everything else becomes float (16-bit integers: 0 to 1).
+// Values are neither linearised nor multiplied by alpha. Of 4 or more channels the first 4 are read
+// if the last of these is alpha, else the first 3; an EXR's data window is the image, as in
 // pbrt-v3. Throws Error with the path and the reason: missing, unreadable, truncated, larger than
-// 2^16 a side, a size that the file is too short for, or a format whose module is not installed.
+// 2^16 a side, too short for its size, or a format whose module is not installed.
 Image ReadImage(const std::string& path);
 
 // Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,
@@ -35,7 +35,7 @@ struct ExrChannel {
 // A matrix is in pbrt's convention: applied to column vectors, stored row by row.
 using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
 
-// Holds what an EXR file holds.
+// Holds the contents of an EXR file.
 struct ExrImage {
     int width = 0, height = 0;     // of the data window
     Vec2i origin = Vec2i::Zero();  // of the data window, within the display window
@@ -54,7 +54,7 @@ void WriteExr(const std::string& path, const ExrImage& image);
 // Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
-// Writes the same where the channels of `image` have no values: they come row by row, from the top.
+// Does the same with channels of `image` that have no values: they come row by row, from the top.
 void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
 // Reads an EXR with all its channels and those attributes that ExrAttribute can hold; of another
@@ -75,7 +75,7 @@ void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, i
 void WritePng(const std::string& path, const RowSource& rows, int width, int height);
 void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height);
 
-// Returns what an 8-bit display is sent for a linear value; NaN is black.
+// Returns the 8-bit display value of a linear value; NaN is black.
 uint8_t Encode8Bit(float linear);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Writes PNGs of other kinds than 8-bit sRGB.
+// Writes PNGs other than 8-bit sRGB.
 #pragma once
 
 #include "renderer/output/image_io.h"
@@ -10,11 +10,10 @@ namespace lull {
 struct PngFormat {
     int bits = 8;  // a component, or 16
     ToneMap toneMap = ToneMap::None;
-    std::map<std::string, std::string> text = {};  // for the header: names of letters, and values
+    std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 
-// Write PNGs of sRGB in this format, whole or not at all: as WritePng() does otherwise. Throw
-// Error.
+// Write sRGB PNGs in this format, whole or not at all, otherwise as WritePng() does. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format);
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,

@@ -16,13 +16,13 @@ struct RenderProgress {
     int64_t samplesToCap = 0;                // still to take if no block stops before the cap
     double seconds = 0;                      // since the start
     std::optional<double> secondsLeft = {};  // of a clock that ends the render
-    // Still to take until the rule has stopped all blocks, and how long that will be, where that
-    // can be predicted.
+    // Still to take until the rule has stopped all blocks, and how long that takes, if it can be
+    // predicted.
     std::optional<double> predictedSamples = {}, predictedSeconds = {};
 };
 
-// Estimates the speed from what was done lately, since the blocks that are left can be slower
-// than those that have stopped.
+// Estimates the speed from recent work, since the blocks that are left can be slower than those
+// that have stopped.
 class RateMeter {
   public:
     explicit RateMeter(double windowSeconds = 30) : window(windowSeconds) {}
@@ -35,8 +35,8 @@ class RateMeter {
     std::deque<RenderProgress> history;
 };
 
-// Format a report of progress. Where blocks stop by themselves (`adaptive`) the time left is a
-// prediction or, as long as there is none, an upper bound, and said to be; `rate` is in samples per
+// Format a report of progress. If blocks stop by themselves (`adaptive`) the time left is a
+// prediction or, while there is none, an upper bound, which the text says; `rate` is in samples per
 // second.
 std::string ProgressText(const RenderProgress&, double rate, bool adaptive);
 std::string ProgressJson(const RenderProgress&, double rate, bool adaptive);

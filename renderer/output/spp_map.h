@@ -21,9 +21,9 @@ struct SppMap {
 // ordered by lightness for every kind of colour vision (viridis), as sRGB values in [0, 1].
 Rgb Viridis(float t);
 
-// Draws the blocks of `region`, each with its spp where there is room for the number, a line
-// between blocks, and below them a bar with the logarithmic scale from `lowest` to `highest` spp
-// (0 < lowest <= highest).
+// Draws the blocks of `region`, each with its spp if there is room for the number, a line between
+// blocks, and below them a bar with the logarithmic scale from `lowest` to `highest` spp (0 <
+// lowest <= highest).
 SppMap DrawSppMap(const PixelRect& region, std::span<const SppBlock> blocks, int lowest,
                   int highest);
 

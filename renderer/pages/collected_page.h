@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// Returns the page. `study` is what ReadStudyPage() returns, for the viewpoint that it is of, or
-// null: then there are tables, but no image.
+// Returns the page. `study` is what ReadStudyPage() returns for the viewpoint, or null: then there
+// are tables, but no image.
 std::string MakeCollectedPage(const Collected&, const Json& study);
 
 }  // namespace lull

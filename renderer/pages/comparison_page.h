@@ -1,4 +1,4 @@
-// Writes down comparisons: as JSON for programs, as a page for people.
+// Writes comparisons: as JSON for programs, as a page for people.
 #pragma once
 
 #include "renderer/measure/verification.h"
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds what a comparison is reported with.
+// Holds what a report of a comparison contains.
 struct ComparisonReport {
     Comparison comparison;
     std::optional<Provenance> provenance;    // of what was rendered; none for images from files
@@ -22,8 +22,8 @@ struct ComparisonReport {
 // Returns the figures of an image; what is infinite or not known is null.
 Json FiguresJson(const ErrorFigures&);
 
-// Returns all figures, without pictures. Seconds are of processors where nothing else is said;
-// those to the cap are estimated for blocks that were not rendered that far.
+// Returns all figures, without pictures. Seconds are of processors unless said otherwise; those to
+// the cap are estimated for blocks that were not rendered that far.
 Json ComparisonJson(const ComparisonReport&);
 
 // Returns what the blocks would take up to the cap; a cap and costs must be known.

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Returns the text of a file by its name without folder; empty if there is none of that name.
+// Returns the text of a file by its name without folder; empty if there is none.
 std::string_view EmbeddedFile(std::string_view name);
 
 }  // namespace lull

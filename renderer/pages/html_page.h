@@ -10,7 +10,7 @@ namespace lull {
 // or else by the embedded file of that name.
 std::string FillPage(std::string_view frame, const std::map<std::string, std::string>& pieces);
 
-// Returns JSON that can stand in a <script> whatever is in its texts.
+// Returns JSON that is safe inside a <script>, whatever its texts contain.
 std::string JsonForScript(const Json&);
 
 std::string Base64(std::span<const std::byte>);
@@ -19,19 +19,19 @@ std::string Base64(std::span<const std::byte>);
 std::string MakePage(const Json& data);
 
 // Return pictures as data URIs: an image as a display shows it; values in [0, 1] in false colours.
-// What is larger than PagePictureScale() allows is shown by its means.
+// What is larger than PagePictureScale() allows is averaged down.
 std::string PictureUri(const RgbImage&);
 std::string MapUri(std::span<const float> values, int width, int height);
 
 // Returns the pixels of an image.
 std::vector<Rgb> PixelsOf(const RgbImage&);
 
-// Return how many pixels, a side, a page shows as one, so that its picture has at most 4 million;
-// and that picture, of the means of so many pixels (less at the right and at the bottom).
+// Return how many pixels a side a page shows as one, so that its picture has at most 4 million; and
+// that picture, of the means of these pixels (fewer at the right and at the bottom).
 int PagePictureScale(int width, int height);
 RgbImage PagePicture(const Film&);
 
-// Says so in the page's notes, where pictures of that size are not shown as they are.
+// Adds a note to the page if pictures of that size are scaled down.
 void NotePictureScale(int width, int height, Json* page);
 
 Json CurvesJson(const BlockCurves&);

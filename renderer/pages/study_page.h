@@ -8,7 +8,7 @@ namespace lull {
 
 // Says how people are asked.
 enum class StudyProcedure {
-    Adjust,    // the whole image beside the reference: point where they differ, until they do not
+    Adjust,    // the whole image beside the reference: click where they differ, until they match
     Staircase  // a block beside its reference: which of both has the noise? (QUEST)
 };
 
@@ -19,12 +19,12 @@ struct StudySettings {
     int answers = 8;        // to each block of a staircase, > 0
 };
 
-// Returns the page: everything is in it, and it asks for nothing from anywhere.
+// Returns the page, which contains everything and loads nothing.
 std::string MakeStudyPage(const Study&, const StudySettings&);
 
-// Returns what a study's page says of the study, and in "references" the pictures of the blocks at
-// the last level, as data URIs. Throws Error beginning with the path for anything that is no such
-// page.
+// Returns what a study's page says of the study, with the pictures of the blocks at the last level
+// in "references", as data URIs. Throws Error beginning with the path for anything that is not such
+// a page.
 Json ReadStudyPage(const std::string& path);
 
 }  // namespace lull

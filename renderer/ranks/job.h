@@ -8,26 +8,26 @@
 
 namespace lull {
 
-// Is thrown where another rank has failed, which says so itself.
+// Thrown if another rank has failed, which reports its error itself.
 struct OtherRankFailed {};
 
-// Starts MPI where this is one of several processes, and nowhere else. The output of all ranks but
-// the first goes nowhere. There can be one; used by the main thread.
+// Starts MPI if this is one of several processes, and only then. The output of all ranks but the
+// first is discarded. There can be only one; used by the main thread.
 class Job {
   public:
-    // Throws Error where there are several processes but this program was built without MPI.
+    // Throws Error if there are several processes but this program was built without MPI.
     Job();
     ~Job();
 
     int Rank() const { return rank; }
     int Count() const { return count; }
-    // Returns what speaks with the others; null where there are none.
+    // Returns what talks to the others; null if there are none.
     Peers* ThePeers() { return peers.get(); }
 
-    // Waits until all ranks are ready to begin and checks that all are about to render the same,
-    // of which `what` is a text that says it all. Throws Error, or OtherRankFailed.
+    // Waits until all ranks are ready to begin, and checks that all are about to render the same
+    // thing, which `what` describes completely. Throws Error, or OtherRankFailed.
     void Begin(const std::string& what);
-    // Says that the others are not needed, until the next Begin().
+    // Declares that the others are not needed until the next Begin().
     void End() { phase = Phase::After; }
     // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
@@ -39,7 +39,7 @@ class Job {
 
     int rank = 0, count = 1;
     Phase phase = Phase::Before;
-    int errorOutput = 2;  // the stream for errors, which is closed to all ranks but the first
+    int errorOutput = 2;  // where errors go; 2 itself is silenced in all ranks but the first
     std::unique_ptr<Peers> peers;
 };
 

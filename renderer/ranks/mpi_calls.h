@@ -1,4 +1,4 @@
-// The few calls of MPI that there are; without MPI they do nothing. All by the main thread.
+// All calls of MPI; without MPI they do nothing. For the main thread only.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct MpiWorld {
     int rank = 0, count = 1;
 };
 
-// Holds what all ranks have said together.
+// Holds what all ranks have reported together.
 struct MpiAgreement {
     int failed = -1;     // the first rank that has failed; -1: none
     int different = -1;  // the first whose value is not that of rank 0; -1: none

@@ -1,4 +1,4 @@
-// Finds what a ray meets. With accelerator_internal.h the only place that knows Embree.
+// Finds what a ray hits. With accelerator_internal.h the only place that knows Embree.
 #pragma once
 
 #include <memory>

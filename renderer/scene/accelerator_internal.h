@@ -1,5 +1,4 @@
-// What the accelerator is made of: for its own sources, and for programs that measure Embree
-// itself.
+// The parts of the accelerator, for its own sources and for programs that measure Embree itself.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -24,14 +23,14 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-// Holds what Embree's callbacks get to see of a shape.
+// Holds what Embree's callbacks know of a shape.
 struct ShapeUser {
     const ShapeTable* shapes;
     const TextureTable* textures;
     int shape;
 };
 
-// Holds what the callbacks of an instance that moves get to see.
+// Holds what the callbacks of a moving instance know.
 struct MovingUser {
     const ShapeTable* shapes;
     int instance;
@@ -43,7 +42,8 @@ struct MovingUser {
 };
 
 // Callbacks of Embree, called with one ray at a time, as rays are traced one at a time. Those of
-// quadrics and curves intersect what is no mesh; the filters say that a hit is cut out by alpha.
+// quadrics and curves intersect shapes that are not meshes; the filters reject hits that alpha cuts
+// out.
 void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
 void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args);
 void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args);
@@ -78,8 +78,8 @@ inline RTCRay MakeRay(const Ray& ray, float time) {
     RTCRay r;
     r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
     r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
-    // The range is closed for Embree. A ray that starts in an axis-aligned plane through the
-    // origin, where error bounds are 0, meets that plane at exactly 0, which must not count.
+    // Embree's range is closed. A ray that starts in an axis-aligned plane through the origin,
+    // where error bounds are 0, hits that plane at exactly 0, which must not count.
     r.tnear = std::numeric_limits<float>::min();
     r.tfar = ray.tMax;
     r.time = time;
@@ -89,7 +89,7 @@ inline RTCRay MakeRay(const Ray& ray, float time) {
     return r;
 }
 
-// Do what the accelerator is asked for; see there.
+// Implement the queries of the accelerator; see there.
 inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, float time,
                         Hit* hit) {
     RTCRayHit r;

@@ -1,4 +1,4 @@
-// Interpolates between two transforms as pbrt-v3 does: what moves, moves by this.
+// Interpolates between two transforms as pbrt-v3 does; all motion uses this.
 #pragma once
 
 #include <span>
@@ -12,31 +12,31 @@ struct Shutter {
     double open = 0, close = 1;
 };
 
-// Reads "shutteropen" and "shutterclose" of the camera, and swaps them where they are the wrong way
-// round. Throws Error where they are not finite.
+// Reads "shutteropen" and "shutterclose" of the camera, and swaps them if they are the wrong way
+// round. Throws Error if they are not finite.
 Shutter ReadShutter(const Entity& camera);
 
-// Represents a transform that goes from one matrix to another in a span of time and stays as it is
-// before and after. Both are taken apart into translation, rotation and the rest by polar
+// Represents a transform that goes from one matrix to another in a span of time and is constant
+// before and after. Both are decomposed into translation, rotation and the rest by polar
 // decomposition (Shoemake and Duff 1992); rotations are interpolated on the shorter arc, the others
-// linearly. Times count from 0 where the shutter opens to 1 where it closes.
+// linearly. Time runs from 0, when the shutter opens, to 1, when it closes.
 class AnimatedTransform {
   public:
-    // `startTime` and `endTime` are of the scene, like the shutter's. Where the shutter opens for
-    // no time at all, the transform is what it is then.
+    // `startTime` and `endTime` are in the scene's units, like the shutter's. If the shutter is
+    // open for no time at all, the transform is that of this moment.
     AnimatedTransform(const Mat4d& start, const Mat4d& end, double startTime, double endTime,
                       const Shutter& shutter);
 
     // Returns the transform at `time` in [0, 1].
     Mat4d At(double time) const;
 
-    // Says whether it is the same all the time that the shutter is open.
+    // Says whether it is the same while the shutter is open.
     bool IsConstant() const { return isConstant; }
 
-    // Says whether every point moves on one straight line at one speed.
+    // Says whether every point moves along a straight line at constant speed.
     bool IsLinear() const { return cosHalfAngle >= 1 && startTime <= 0 && endTime >= 1; }
 
-    // Bounds how far a point of the box may be from the straight line between where it is at two
+    // Bounds the distance of a point of the box from the straight line between its positions at two
     // times `step` apart: step^2 / 8 times the greatest acceleration.
     double Sagitta(const Bounds3f& box, double step) const;
 
@@ -61,8 +61,8 @@ Mat4d ProductAt(std::span<const AnimatedTransform> transforms, double time);
 // Returns a box that holds the transformed one.
 Bounds3f TransformBox(const Mat4d& m, const Bounds3f& box);
 
-// Returns boxes that hold what lies in `box` as it moves: those of n + 1 times 0, 1/n ... 1, such
-// that at every time in between the box interpolated linearly between its neighbours holds it.
+// Returns boxes that bound what lies in `box` as it moves, for n + 1 times 0, 1/n ... 1, such that
+// at every time in between the linearly interpolated box bounds it too.
 std::vector<Bounds3f> BoundMotion(std::span<const AnimatedTransform> transforms, Bounds3f box);
 
 }  // namespace lull

@@ -1,5 +1,5 @@
 // Generates camera rays: pbrt-v3's perspective and orthographic cameras, with pinhole or thin lens,
-// its environment camera, and its realistic one, with lenses as they are built.
+// its environment camera, and its realistic one, with real lens systems.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -23,12 +23,12 @@ struct Camera {
     Mat3f rotation = Mat3f::Identity();
     Vec3f position = Vec3f::Zero();
 
-    // How far samples lie apart, in pixels, for texture filtering: 1 / sqrt(samples per pixel) that
-    // the scene asks for, as in pbrt-v3, even if the stopping rule takes more or fewer.
+    // The distance between samples, in pixels, for texture filtering: 1 / sqrt(samples per pixel)
+    // as the scene asks for them, as in pbrt-v3, even if the stopping rule takes more or fewer.
     float sampleSpacing = 1;
 
-    // Of a camera that moves; rotation and position are then those of no transform at all, and
-    // worldFromCamera that of the time when the shutter opens.
+    // Of a moving camera; rotation and position are then those of the identity, and worldFromCamera
+    // is that of the moment when the shutter opens.
     std::optional<AnimatedTransform> motion;
 
     std::optional<LensSystem> lenses;  // of realistic cameras
@@ -37,8 +37,8 @@ struct Camera {
     bool HasLens() const { return lensRadius > 0 || lenses; }
 
     // Returns the ray through `film` (pixels) and the lens point that u chooses, at `time` from 0
-    // where the shutter opens to 1; direction unit. The radiance that it finds counts *weight
-    // times, which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
+    // where the shutter opens to 1; direction unit. The radiance that it finds is multiplied by
+    // *weight, which is 1 except for realistic cameras, and 0 if nothing passes their lenses.
     Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
         *weight = 1;
         if (projection == Projection::Perspective && !motion) [[likely]]
@@ -50,9 +50,9 @@ struct Camera {
         return GenerateRay(film, lens, time, &weight);
     }
 
-    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that through `film`
-    // and `lens`. For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it;
-    // nothing where no light passes there.
+    // Returns the ray one pixel further along an axis (0 or 1) than `ray`, which is that through
+    // `film` and `lens`. For realistic cameras it is extrapolated from a 20th of a pixel, as in
+    // pbrt-v3; nothing if no light passes there.
     std::optional<Ray> NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
                                int axis) const;
 
@@ -60,7 +60,7 @@ struct Camera {
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
-    // Of all but perspective cameras at rest: apart, so that these do not pay for it.
+    // For all but perspective cameras at rest: separate, so that these do not pay for it.
     Ray GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const;
     Ray Move(const Ray& ray, float time) const;
 };
@@ -71,7 +71,7 @@ struct Camera {
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
 
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
-// is nothing where no matrix projects as the camera does.
+// is nothing if no matrix projects as the camera does.
 Mat4d WorldToCamera(const Camera&);
 std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
 

@@ -6,17 +6,17 @@
 namespace lull {
 
 struct CompileOptions {
-    bool substitute = false;  // replace what is not modelled, with counted warnings
+    bool substitute = false;  // replace what is not supported, with counted warnings
     FilmOverrides film;
     int maxDepth = -1;  // -1: as the scene says
-    // Choose and sample lights as pbrt-v3 does, for its estimator: by tables however many there
-    // are, and environment maps by all of their brightness.
+    // Choose and sample lights as pbrt-v3 does, for its estimator: by tables, however many there
+    // are, and environment maps by their whole brightness.
     bool lightsAsPbrtV3 = false;
     TextureFiltering filtering = TextureFiltering::Bilinear;
     int threads = 0;  // for the acceleration structure; 0: all
 };
 
-// Throws Error, with file and line, for the first thing that is wrong or not modelled.
+// Throws Error, with file and line, for the first thing that is wrong or not supported.
 std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
 
 }  // namespace lull

@@ -1,12 +1,12 @@
-// Says how much of a mesh is there at a point.
+// Computes the coverage of a mesh at a point.
 #pragma once
 
 #include "renderer/scene/shape_table.h"
 
 namespace lull {
 
-// Returns the probability, in [0, 1], that a ray meets the shape at that point of a triangle. The
-// shape is a mesh that has a coverage.
+// Returns the probability, in [0, 1], that a ray hits the shape at this point of a triangle. The
+// shape is a mesh with coverage.
 inline float CoverageAt(const Shape& shape, const TextureTable& textures, const Vec3f& p,
                         uint32_t triangle, float b1, float b2) {
     const Coverage& coverage = *shape.coverage;

@@ -12,8 +12,8 @@
 
 namespace lull {
 
-// Holds the profile of a semi-infinite solid under a beam that comes in along the normal, over the
-// albedo of a scattering and the distance in mean free paths (of sigma_t = 1).
+// Tabulates the profile of a semi-infinite solid under a beam along the normal, over the
+// single-scattering albedo and the distance in mean free paths (sigma_t = 1).
 struct DiffusionTable {
     static constexpr int kAlbedos = 100, kRadii = 64;
 
@@ -23,22 +23,22 @@ struct DiffusionTable {
     // Rows of kRadii: the profile times 2 pi r, and its integral from 0 to each radius.
     std::vector<float> profile, cdf;
 
-    // `g` in (-1, 1) is the mean cosine of a scattering, `eta` >= 1 the index of the solid.
+    // `g` in (-1, 1) is the mean cosine of scattering, `eta` >= 1 the index of the solid.
     DiffusionTable(float g, float eta);
 };
 
-// Represents the profile of a solid of certain coefficients, a channel each.
+// Represents the profile of a solid with given coefficients per channel.
 class DiffusionProfile {
   public:
     // `sigmaA`, `sigmaS` >= 0 are the coefficients of absorption and scattering, 1/length. The
     // table must outlive the profile.
     DiffusionProfile(const DiffusionTable& table, const Rgb& sigmaA, const Rgb& sigmaS);
 
-    // Returns the light that leaves at distance r from where it has entered, 1/area.
+    // Returns the light that leaves at distance r from where it entered, 1/area.
     Rgb operator()(float r) const;
 
-    // Chooses a distance for a channel; nothing where it scatters nothing. Pdf is the density over
-    // the area, of all directions.
+    // Chooses a distance for a channel; nothing if that does not scatter. Pdf is the density over
+    // area, for all directions together.
     std::optional<float> Sample(int channel, float u) const;
     float Pdf(int channel, float r) const;
 
@@ -70,7 +70,7 @@ class SubsurfaceProfile {
     SubsurfaceProfile(const DiffusionProfile& profile, float eta) : eta(eta), kind(profile) {}
     SubsurfaceProfile(const BurleyProfile& profile, float eta) : eta(eta), kind(profile) {}
 
-    // Returns the light that leaves at distance r from where it has entered, 1/area.
+    // Returns the light that leaves at distance r from where it entered, 1/area.
     Rgb operator()(float r) const {
         return std::visit([&](const auto& k) { return k(r); }, kind);
     }
@@ -78,7 +78,7 @@ class SubsurfaceProfile {
     std::optional<float> Sample(int channel, float u) const {
         return std::visit([&](const auto& k) { return k.Sample(channel, u); }, kind);
     }
-    // Returns the density over the area, of all directions, with which Sample finds r.
+    // Returns the density over area, for all directions together, with which Sample chooses r.
     float Pdf(int channel, float r) const {
         return std::visit([&](const auto& k) { return k.Pdf(channel, r); }, kind);
     }
@@ -89,8 +89,8 @@ class SubsurfaceProfile {
     std::variant<DiffusionProfile, BurleyProfile> kind;
 };
 
-// Returns the albedo of a scattering, in [0, 1], at which a solid seen under even light has the
-// albedo `effective`, as near as it can.
+// Returns the single-scattering albedo, in [0, 1], for which a solid has the albedo `effective`
+// under uniform light, or the nearest possible.
 float AlbedoOfScattering(const DiffusionTable& table, float effective);
 
 }  // namespace lull

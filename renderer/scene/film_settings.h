@@ -1,4 +1,4 @@
-// Says what image is wanted: its size, crop and scale. (The film itself is in output/.)
+// Describes the image that is wanted: its size, crop and scale. (The film itself is in output/.)
 #pragma once
 
 #include <string>

@@ -1,22 +1,21 @@
-// Holds what is known of a point on a surface once a ray has hit it.
+// Describes the point on a surface that a ray has hit.
 #pragma once
 
 #include "renderer/base/math.h"
 
 namespace lull {
 
-// Says what a material wants to know of a hit beyond position and normals; the scene computes
-// nothing else. Bits.
+// Says what a material needs of a hit beyond position and normals; nothing else is computed. Bits.
 enum SurfaceNeeds : uint8_t {
     kNeedsNothing = 0,
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
     kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise, filters
-    kIsInterface = 16,            // nothing at all: paths go straight on, as no surface scatters
+    kIsInterface = 16,            // nothing at all: paths go straight on, as nothing scatters
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color
-    kScattersBelow = 128,         // nothing, but what is let in leaves elsewhere: subsurface
+    kScattersBelow = 128,         // nothing, but transmitted light leaves elsewhere: subsurface
 };
 
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
@@ -34,16 +33,16 @@ struct SurfaceInteraction {
     Rgb color;         // of the vertices, interpolated
     Vec3f dpdu, dpdv;  // of the shading geometry
     Vec3f dndu, dndv;
-    // Where a camera ray hits and the material needs it: the derivatives of the surface itself,
-    // how far p moves from one sample to the next across and down the image, and what uv then moves
-    // by. The latter stay 0 at all other hits.
+    // For hits of camera rays whose material needs it: the derivatives of the surface itself, how
+    // far p moves from one sample to the next across and down the image, and how far uv then moves.
+    // The latter stay 0 at all other hits.
     Vec3f surfaceDpdu, surfaceDpdv;
     Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
     Vec2f duvdx = Vec2f::Zero(), duvdy = Vec2f::Zero();
     int material = -1;
     int areaLight = -1;  // into the scene's lights; -1: emits nothing
 
-    // Starts a ray here that cannot meet this surface again.
+    // Starts a ray here that cannot hit this surface again.
     Ray SpawnRay(const Vec3f& d) const { return {OffsetRayOrigin(p, pError, n, d), d, kInfinity}; }
 };
 

@@ -13,7 +13,7 @@ namespace lull {
 // Lies where the axis meets it; lengths in metres.
 struct LensInterface {
     double radius;          // of curvature, positive if convex as seen from the scene; 0: a stop
-    double thickness;       // to the next interface towards the film, of the last one to the film
+    double thickness;       // to the next interface towards the film; of the last one: to the film
     double eta;             // index of refraction on the film's side
     double apertureRadius;  // no light passes farther from the axis
 };
@@ -30,17 +30,17 @@ class LensSystem {
         FileLoc loc;                            // for messages
     };
 
-    // Moves the lenses to focus at the distance, by the approximation as one thick lens, and bounds
-    // where light leaves them to each distance from the middle of the film, with `threads` threads
-    // (0: all). Throws Error if no light passes along the axis, or they cannot focus so near.
+    // Moves the lenses to focus at the distance, by the thick-lens approximation, and bounds the
+    // exit pupil for each distance from the centre of the film, with `threads` threads (0: all).
+    // Throws Error if no light passes along the axis, or they cannot focus this near.
     LensSystem(const Settings&, int threads);
 
     // Generates the ray, in camera space, of the point (s, t) of the film, in [0, 1] from the left
     // and from the top of the image, through the point of the exit pupil's bounds that u chooses;
-    // the direction is unit. The weight of its radiance is 0, and the ray none, where no light
-    // passes. Else it is cos^4 of the angle at the film times the area of those bounds, with simple
-    // weighting over that for the middle of the film, otherwise over the squared distance from film
-    // to lens and times the exposure.
+    // the direction is unit. If no light passes, the weight of its radiance is 0 and there is no
+    // ray. Otherwise the weight is cos^4 of the angle at the film times the area of those bounds;
+    // with simple weighting it is divided by that area for the centre of the film, else by the
+    // squared distance from film to lens, and multiplied by the exposure time.
     Ray Generate(const Vec2f& st, const Vec2f& u, float* weight) const;
 
   private:
@@ -53,14 +53,14 @@ class LensSystem {
 
     double RearZ() const { return interfaces.back().thickness; }
     double FrontZ() const;
-    // Follow a ray to the other side; false where it does not get there.
+    // Follow a ray to the other side; false if it does not get there.
     bool TraceFromFilm(Line*) const;
     bool TraceFromScene(Line*) const;
     double FocusedRearZ(const Settings&) const;
     Area BoundExitPupil(double r0, double r1, const std::vector<Vec2f>& points) const;
 
     std::vector<LensInterface> interfaces;
-    std::vector<Area> pupils;  // by the distance from the middle of the film, in the lens's plane
+    std::vector<Area> pupils;  // by distance from the film's centre, in the lens's plane
     Vec2f filmExtent;
     double filmRadius;  // half its diagonal
     double scale;       // of weights

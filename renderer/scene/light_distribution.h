@@ -1,4 +1,4 @@
-// Chooses a light for a point: uniformly, by power, or by what each would give near the point.
+// Chooses a light for a point: uniformly, by power, or by what each contributes near the point.
 #pragma once
 
 #include <atomic>
@@ -12,8 +12,8 @@
 
 namespace lull {
 
-// Holds the probabilities of choosing each light: as running sums, the last one of which is 1, or
-// as what a hierarchy has for a receiver.
+// Holds the probabilities of choosing each light: as running sums, the last of which is 1, or as
+// those of a hierarchy for a receiver.
 class LightChoice {
   public:
     explicit LightChoice(std::span<const float> sums) : sums(sums) {}
@@ -21,12 +21,12 @@ class LightChoice {
         : hierarchy(&hierarchy), receiver(receiver) {}
     LightChoice() = default;
 
-    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive but for
-    // hierarchies that know of no light that reaches the receiver.
+    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive except
+    // for hierarchies in which no light reaches the receiver.
     int Sample(float u, float* pmf) const {
         if (hierarchy) [[unlikely]]
             return hierarchy->Sample(receiver, u, pmf);
-        // Count the sums that u has passed; short tables fastest without a branch.
+        // Count the sums that u has passed; for short tables this is fastest without a branch.
         constexpr size_t kShort = 32;
         int i = 0;
         if (sums.size() <= kShort)
@@ -52,21 +52,21 @@ class LightChoice {
 // scene, is its default.
 class LightDistribution {
   public:
-    // Chooses by fixed nonnegative weights, one a light.
+    // Chooses by fixed nonnegative weights, one per light.
     explicit LightDistribution(std::span<const float> weights);
 
     // Chooses among `count` lights by the voxel of p within the scene's bounds.
     LightDistribution(int count, const Bounds3f& bounds);
 
     // Returns the choice for p, which stays valid as long as this object. The table of a voxel is
-    // made when it is first asked for; it is a function of the voxel alone, so that no order of
-    // threads can change it. contribution(light, p, u) estimates what a light gives at p:
-    // luminance over density of its sample u, without visibility.
+    // made when first needed; it depends on the voxel alone, so that the order of threads cannot
+    // change it. contribution(light, p, u) estimates what a light contributes at p: luminance over
+    // density of its sample u, without visibility.
     template <typename Contribution>
     LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
         const size_t voxel = VoxelOf(p);
         const std::span<float> sums(tables + voxel * lightCount, lightCount);
-        // A table that is not made yet is all zeros; its last sum, written last, tells.
+        // A table that has not been made is all zeros; its last sum is written last, and shows it.
         std::atomic_ref<float> last(sums.back());
         if (last.load(std::memory_order_acquire) == 0) [[unlikely]]
             MakeTable(voxel, contribution, sums);
@@ -100,7 +100,7 @@ class LightDistribution {
     }
     Bounds3f VoxelBounds(size_t voxel) const;
 
-    // Makes the table of the voxel, unless another thread has by now. Apart, as Lookup() would
+    // Makes the table of the voxel, unless another thread has by now. Separate, as Lookup() would
     // be too long to be inlined with it.
     template <typename Contribution>
     [[gnu::noinline]] void MakeTable(size_t voxel, const Contribution& contribution,

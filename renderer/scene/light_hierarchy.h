@@ -12,23 +12,24 @@ namespace lull {
 // Holds what decides which lights reach a point, of a surface or a medium.
 struct Receiver {
     Vec3f p = Vec3f::Zero();
-    // Geometric, unit, on the side that is looked at; zero where light counts from anywhere.
+    // Geometric, unit, on the visible side; zero if light from anywhere counts.
     Vec3f n = Vec3f::UnitZ();
     bool isTwoSided = true;  // light from behind counts as well: the surface transmits
 };
 
 // Is a binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At
-// each node one of the children is chosen by what it could give at most, from its box, the cone of
-// its normals and its power. A light that bounds exclude has probability 0: it gives nothing.
+// each node one of the children is chosen by the most that it could contribute, given its box, the
+// cone of its normals and its power. A light that the bounds exclude has probability 0: it
+// contributes nothing.
 class LightHierarchy {
   public:
-    // Takes the bounds of all lights; where power is 0, a light is never chosen by them. Lights of
-    // `unbounded` (at infinity, ascending) each get a share as large as all others together. Takes
-    // n log n time and 100 bytes a light.
+    // Takes the bounds of all lights; one with power 0 is never chosen by its bounds. Each light of
+    // `unbounded` (at infinity, ascending) gets a share as large as all others together. Takes n
+    // log n time and 100 bytes a light.
     LightHierarchy(std::span<const LightBounds> lights, std::vector<int> unbounded);
 
-    // Chooses a light with u in [0, 1); `pmf` receives its probability. Where no light reaches the
-    // receiver that is 0, and the light no light.
+    // Chooses a light with u in [0, 1); `pmf` receives its probability. If no light reaches the
+    // receiver, that is 0 and the result is not a light.
     int Sample(const Receiver& receiver, float u, float* pmf) const;
 
     // Returns the probability with which Sample chooses `light`.
@@ -44,14 +45,14 @@ class LightHierarchy {
     static constexpr float kUnit = 32767;
     static constexpr uint32_t kNone = ~0u, kUnbounded = ~1u;  // instead of a leaf
 
-    // The children of a node stand beside each other, the first at an odd place.
+    // The children of a node are adjacent, the first at an odd index.
     struct Node {
         Bounds3f box;
         float power;
         std::array<int16_t, 3> axis;
         int16_t cosNormals, cosEmission;
         bool isTwoSided, isLeaf;
-        uint32_t next;    // the light of a leaf, the first child of others
+        uint32_t next;    // of a leaf its light, of others the first child
         uint32_t parent;  // the root's own is the root
     };
     static_assert(sizeof(Node) == 48);

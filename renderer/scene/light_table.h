@@ -21,27 +21,27 @@ using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, A
 class LightTable {
   public:
     LightTable() = default;
-    // Makes the lights of the description and one for each primitive of an emitting shape, which
-    // it tells (Shape::firstLight); `shapes` and `textures` must outlive the table and stay where
-    // they are. Lights
-    // are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power", "spatial" (by
-    // tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or, which pbrt-v3
-    // does not know, "bvh" (by a hierarchy). Throws Error with file and line for unknown kinds.
+    // Makes the lights of the description and one for each primitive of an emitting shape, whose
+    // Shape::firstLight it sets; `shapes` and `textures` must outlive the table and stay where they
+    // are. Lights are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power",
+    // "spatial" (by tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or,
+    // which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error with file and line for
+    // unknown kinds.
     LightTable(const Description&, ShapeTable& shapes, const TextureTable& textures, bool asPbrtV3,
                Warnings&);
 
     int Count() const { return int(lights.size()); }
     const Light& operator[](int i) const { return lights[i]; }
-    // Lists the lights that rays meet when they leave the scene.
+    // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
     // Says whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
-    // Says whether a ray can meet any light at all.
+    // Says whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
 
-    // Samples light i as seen from `from`. Returns nothing where it gives no light there.
+    // Samples light i as seen from `from`. Returns nothing if it gives no light there.
     std::optional<LightSample> Sample(int i, const Vec3f& from, const Vec2f& u) const;
 
     // Returns how lights are chosen at a hit, as the scene's strategy says.
@@ -50,7 +50,7 @@ class LightTable {
             return {*hierarchy, {hit.p, FaceForward(hit.n, hit.wo), bsdf.Transmits()}};
         return Choice(hit.p);
     }
-    // The same for a place whose surface, if it lies on any, does not matter.
+    // The same for a point whose surface, if any, does not matter.
     LightChoice Choice(const Vec3f& p) const {
         if (hierarchy) [[unlikely]]
             return {*hierarchy, {p, Vec3f::Zero(), true}};

@@ -1,4 +1,4 @@
-// Turns materials at a hit point into Bsdfs. One file a kind in materials/.
+// Turns materials at a hit point into Bsdfs. Each kind has a file in materials/.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ class SubsurfaceProfile;
 // Owns the materials of a scene, one for each of Description::materials. Immutable once made.
 class MaterialTable {
   public:
-    // Throws Error naming file and line for an unknown kind, with `substitute` a matte of
-    // pbrt-v3's default stands in with a counted warning. `textures` must outlive the table.
+    // Throws Error naming file and line for an unknown kind; with `substitute`, pbrt-v3's default
+    // matte replaces it, with a counted warning. `textures` must outlive the table.
     MaterialTable(const Description&, const TextureTable& textures, bool substitute, Warnings&);
     MaterialTable();
     ~MaterialTable();
@@ -25,12 +25,12 @@ class MaterialTable {
 
     SurfaceNeeds Needs(int material) const;
 
-    // Evaluates textures and bump map and makes the lobes. Bump mapping turns hit.ns (and, on its
-    // side, not hit.n), as pbrt-v3's Material::Bump does.
+    // Evaluates textures and bump map and makes the lobes. Bump mapping turns hit.ns, which stays
+    // on the side of hit.n, as pbrt-v3's Material::Bump does.
     Bsdf MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const;
 
-    // Evaluates how light that is let in spreads below the surface, of a material whose needs have
-    // kScattersBelow. Returns nothing where it goes on as it is.
+    // Evaluates how transmitted light spreads below the surface of a material that has
+    // kScattersBelow. Returns nothing if it continues unscattered.
     std::optional<SubsurfaceProfile> Profile(const TextureTable& textures,
                                              const SurfaceInteraction& hit) const;
 

@@ -15,7 +15,7 @@ using Medium = std::variant<HomogeneousMedium, GridMedium>;
 constexpr int kVacuum = -1;
 
 struct MediumTable {
-    // The media on both sides of a shape; where they are the same, the ray's own medium goes on
+    // The media on both sides of a shape; if they are the same, the ray stays in its own medium
     // (pbrt-v3).
     struct Sides {
         int inside = kVacuum, outside = kVacuum;
@@ -27,11 +27,11 @@ struct MediumTable {
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
-    // or infinite coefficients and extinction that differs between channels of a grid.
+    // or infinite coefficients, and grids whose extinction differs between channels.
     MediumTable(const Description&, Warnings&);
 
     // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;
-    // `current` is that of the ray that met it.
+    // `current` is that of the ray that hit it.
     int Beyond(int shape, bool onNormalSide, int current) const {
         if (ofShapes.empty()) return current;
         const Sides& sides = ofShapes[shape];
@@ -39,7 +39,7 @@ struct MediumTable {
         return onNormalSide ? sides.outside : sides.inside;
     }
 
-    // Says of which channels nothing gets through the medium where it goes on for ever.
+    // Says in which channels nothing gets through the medium if it is infinite.
     Eigen::Array<bool, 3, 1> Swallows(int medium) const {
         const auto* m =
             medium == kVacuum ? nullptr : std::get_if<HomogeneousMedium>(&media[medium]);
@@ -51,9 +51,9 @@ struct MediumTable {
         return std::visit([](const auto& m) { return m.g; }, media[medium]);
     }
 
-    // Samples where the ray scatters before its tMax.
+    // Samples the point before its tMax where the ray scatters.
     MediumSample Sample(int medium, const Ray& ray, Sampler& sampler) const;
-    // Estimates the share of light that gets along the ray up to its tMax.
+    // Estimates the transmittance along the ray up to its tMax.
     Rgb Transmittance(int medium, const Ray& ray, Sampler& sampler) const;
 };
 

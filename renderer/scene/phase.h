@@ -1,4 +1,4 @@
-// Says how a medium scatters light (Henyey and Greenstein 1941).
+// Models how a medium scatters light (Henyey and Greenstein 1941).
 #pragma once
 
 #include "renderer/base/math.h"

@@ -1,4 +1,4 @@
-// Holds everything a ray can meet, ready to be rendered; immutable once compiled.
+// Holds everything that a ray can hit, ready to be rendered; immutable once compiled.
 #pragma once
 
 #include <memory>
@@ -21,13 +21,13 @@ struct Scene {
     Filter filter;
     Camera camera;
 
-    // What the scene's own directives ask for; the command line can override them.
+    // As the scene's directives ask; the command line can override them.
     SamplerKind sampler = SamplerKind::Sobol;
     int samplesPerPixel = 16;
     int maxDepth = 5;
     float rrThreshold = 1;
     bool isMoving = false;      // shapes, instances or the camera, while the shutter is open
-    bool isVolumetric = false;  // media, or interfaces that shadow rays pass, are to be seen
+    bool isVolumetric = false;  // has visible media, or interfaces that shadow rays pass
 
     TextureTable textures;
     MaterialTable materials;

@@ -14,9 +14,9 @@
 
 namespace lull {
 
-// Says which share of a surface is there (glTF's alpha modes). With a cutoff a point is there or
-// not; without, rays meet it at random, by a number made from the ray itself, so that as many pass
-// as light would.
+// Says how much of a surface is there (glTF's alpha modes). With a cutoff a point is there or not;
+// without, rays hit it at random, by a number derived from the ray itself, so that the right share
+// passes.
 struct Coverage {
     FloatTexture alpha;
     float factor = 1;
@@ -42,7 +42,7 @@ struct Object {
 
 struct Instance {
     int object = -1;
-    int motion = -1;                             // into ShapeTable::motions; -1: it stands still
+    int motion = -1;                             // into ShapeTable::motions; -1: does not move
     Mat4d worldFromInstance, instanceFromWorld;  // of one that moves: when the shutter opens
 };
 
@@ -55,7 +55,7 @@ struct Hit {
 };
 
 struct ShapeTable {
-    std::vector<Shape> shapes;  // first those of the world, then those of the objects
+    std::vector<Shape> shapes;  // those of the world, then those of the objects
     int worldShapeCount = 0;
     std::vector<Object> objects;
     std::vector<Instance> instances;

@@ -10,12 +10,12 @@
 
 namespace lull {
 
-// Says how images are looked up: bilinearly on the finest level, as after thousands of samples
-// nothing else is needed, or as pbrt-v3 does, from smaller copies where camera rays hit.
+// Says how images are filtered: bilinearly on the finest level, which is all that thousands of
+// samples need, or as in pbrt-v3, from smaller copies where camera rays hit.
 enum class TextureFiltering { Bilinear, PbrtV3 };
 
-// Holds what a texture may depend on. Noise leaves out octaves that are finer than the distance of
-// samples, as pbrt-v3's does; where that is not known it is 0, for full detail.
+// Holds what a texture may depend on. As in pbrt-v3, noise leaves out octaves finer than the
+// distance between samples, which is 0, for full detail, if it is not known.
 struct TextureContext {
     Vec3f p;  // world
     Vec2f uv;
@@ -42,9 +42,8 @@ struct SpectrumTextureNode;
 class TextureTable {
   public:
     // Makes every texture of the description; warns of parameters without effect. Throws Error
-    // naming file and line for a kind that is not modelled or an unreadable image. With
-    // `substitute` these are counted warnings, and the former becomes constant 1, the latter
-    // pbrt-v3's grey.
+    // naming file and line for an unsupported kind or an unreadable image. With `substitute` these
+    // are counted warnings, and the former becomes constant 1, the latter pbrt-v3's grey.
     TextureTable(const Description&, bool substitute, Warnings&,
                  TextureFiltering = TextureFiltering::Bilinear);
     TextureTable();  // empty
@@ -52,11 +51,11 @@ class TextureTable {
     TextureTable(TextureTable&&) noexcept;
     TextureTable& operator=(TextureTable&&) noexcept;
 
-    // Read parameter `name`: a texture, a constant of the same type, or `otherwise`. Textures
-    // that are constant all through come back as constants. Throw Error for unknown textures.
+    // Read parameter `name`: a texture, a constant of the same type, or `otherwise`. Textures that
+    // are constant throughout are returned as constants. Throw Error for unknown textures.
     FloatTexture GetFloat(const Entity&, const std::string& name, float otherwise) const;
     SpectrumTexture GetSpectrum(const Entity&, const std::string& name, const Rgb& otherwise) const;
-    // Returns nothing where the parameter is absent.
+    // Returns nothing if the parameter is absent.
     std::optional<FloatTexture> GetFloatOrNone(const Entity&, const std::string& name) const;
 
     float Evaluate(const FloatTexture& t, const TextureContext& c) const {
@@ -79,7 +78,7 @@ class TextureTable {
 
     std::vector<FloatTextureNode> floats;
     std::vector<SpectrumTextureNode> spectra;
-    // What each texture of the description became, by its place there.
+    // What each texture of the description became, by its index there.
     std::vector<FloatTexture> madeFloats;
     std::vector<SpectrumTexture> madeSpectra;
     size_t imageBytes = 0;

@@ -1,20 +1,20 @@
-// Says what a block of an image looks like to those who measure and judge it.
+// Describes a block of an image to those who measure and judge it.
 #pragma once
 
 #include <span>
 
 namespace lull {
 
-// Shows the state of a block after a pass; read-only, valid during the call that it is given to.
+// Shows the state of a block after a pass; read-only, valid only during the call that receives it.
 struct BlockView {
     int width = 0, height = 0;  // pixels, > 0
     int spp = 0;                // samples that every pixel has had, > 0
     // Linear radiance, 3 * width * height values: R, G, B of the first pixel, row by row. All
-    // finite (others lead to no NaN, but to no sense either). The half mean is the mean over one
-    // fixed half of the samples.
+    // finite (other values lead to no NaN, but to meaningless results). The half mean is the mean
+    // over one fixed half of the samples.
     std::span<const float> mean = {}, halfMean = {};
-    // What the samples so far and this view have cost, in seconds of processors: for those who
-    // measure rules. A rule that went by them would not give the same image twice.
+    // What the samples so far and this view have cost, in seconds of processors, for those who
+    // measure rules. A rule that used them would not give the same image twice.
     double seconds = 0, viewSeconds = 0;
 };
 
@@ -24,7 +24,7 @@ enum class ViewNeed { Nothing, Mean, MeanAndHalf };
 // Checks that a view has a size, samples and the spans in `need`. Throws std::invalid_argument.
 void CheckView(const BlockView& view, ViewNeed need);
 
-// Pixels a side below which a block has too little in it for its statistics to mean anything.
+// Pixels a side below which a block is too small for meaningful statistics.
 inline constexpr int smallestVotingSide = 40;
 
 }  // namespace lull

@@ -1,5 +1,5 @@
-// Makes random numbers that depend on nothing but a seed and what they are for, so that a training
-// that was interrupted finds the same ones again.
+// Makes random numbers that depend only on a seed and a purpose, so that an interrupted training
+// continues with the same ones.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace lull {
 
 class CounterRandom {
   public:
-    // Begins the sequence of a seed and a purpose, told by numbers.
+    // Begins the sequence of a seed and a purpose, given as numbers.
     explicit CounterRandom(uint64_t seed, std::initializer_list<uint64_t> purpose = {})
         : key(Mix(seed)) {
         for (uint64_t p : purpose) key = Mix(key ^ Mix(p + 1));
@@ -22,7 +22,7 @@ class CounterRandom {
     double Uniform() { return double(Next() >> 11) * 0x1p-53; }
     // Returns an integer in [0, limit), limit > 0.
     uint64_t Below(uint64_t limit) { return uint64_t(Uniform() * double(limit)); }
-    // Returns a number of the standard normal distribution.
+    // Returns a number from the standard normal distribution.
     double Normal() {
         const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
         return radius * std::cos(2 * std::numbers::pi * Uniform());

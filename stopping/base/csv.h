@@ -1,12 +1,12 @@
-// Writes tables of values with commas between them.
+// Writes tables of comma-separated values.
 #pragma once
 
 #include <string>
 
 namespace lull {
 
-// Returns a text as a field: in quotation marks where a comma, a quotation mark or the end of a
-// line would break the line.
+// Returns a text as a field: in quotation marks if it has a comma, a quotation mark or a line
+// break.
 inline std::string CsvField(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";

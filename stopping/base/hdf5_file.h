@@ -1,5 +1,5 @@
-// Reads and writes HDF5 files: the little of that format that lull uses. Only hdf5_file.cpp names
-// the library. One thread at a time, as the library has it.
+// Reads and writes HDF5 files: the small part of the format that lull uses. Only hdf5_file.cpp
+// includes the library, which allows one thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +13,18 @@ namespace lull {
 
 enum class Hdf5Storage { Plain, Compressed };
 
-// Stands for a group of an open file; the first one for its root. Copies stand for the same group,
+// Represents a group of an open file; the first one is its root. Copies represent the same group,
 // and the file is closed with the last of them. All functions throw std::runtime_error saying what
 // could not be done; none of the messages names the file.
 class Hdf5Group {
   public:
-    // Opens a file for reading, or begins a new one (in place of an old one) for writing.
+    // Opens a file for reading, or creates one (replacing an old one) for writing.
     static Hdf5Group Open(const std::string& path);
     static Hdf5Group Create(const std::string& path);
-    // Begins a file in memory; Image() returns its bytes.
+    // Creates a file in memory; Image() returns its bytes.
     static Hdf5Group CreateInMemory();
     std::vector<std::byte> Image();
-    // Writes to disk all there is so far.
+    // Writes everything so far to disk.
     void Flush();
 
     bool HasGroup(const std::string& name) const;
@@ -45,7 +45,7 @@ class Hdf5Group {
     void SetStrings(const std::string& name, std::span<const std::string> texts);
 
     // Read and write arrays of T, one of float, double, int32_t and std::byte, row-major. Array()
-    // checks the shape before it takes memory for the array.
+    // checks the shape before it allocates memory.
     bool HasArray(const std::string& name) const;
     std::vector<int64_t> Shape(const std::string& path) const;
     template <typename T>

@@ -6,9 +6,9 @@
 
 namespace lull {
 
-// Shows the thread sanitizer the order that oneTBB, which is not instrumented, gives to tasks: what
-// one did before Leave() comes before what others do after Enter(). Whoever spawns tasks leaves
-// before and enters after it has waited for them; a task enters at its start and leaves at its end.
+// Shows the thread sanitizer the order in which oneTBB, which is not instrumented, runs tasks:
+// everything before Leave() happens before everything after Enter(). Whoever spawns tasks leaves
+// before that, and enters after waiting for them; a task enters at its start and leaves at its end.
 class TaskOrder {
   public:
     void Enter() { edges.load(std::memory_order_acquire); }
@@ -18,11 +18,11 @@ class TaskOrder {
     std::atomic<unsigned> edges = 0;
 };
 
-// Runs body(0) ... body(count - 1), in any order and at the same time on as many threads as
-// RunWithThreads() allows; may be called within a body. Passes on what a body throws.
+// Runs body(0) ... body(count - 1), in any order and concurrently on as many threads as
+// RunWithThreads() allows; may be nested. Rethrows what a body throws.
 void ForEachIndex(int count, const std::function<void(int)>& body);
 
-// Runs `body` with at most `threads` threads for what it splits up; 0: one for each core.
+// Runs `body` with at most `threads` threads for its parallel parts; 0: one per core.
 void RunWithThreads(int threads, const std::function<void()>& body);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Packs the state of a criterion into bytes and back, with the layout of the machine it runs on.
+// Packs the state of a criterion into bytes and back, in the layout of this machine.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ class StateWriter {
         bytes.resize(size + values.size_bytes());
         std::memcpy(&bytes[size], values.data(), values.size_bytes());
     }
-    // Puts how many values there are before them.
+    // Writes the number of values before them.
     template <typename T>
     void PutVector(const std::vector<T>& values) {
         Put(uint64_t(values.size()));
@@ -35,8 +35,8 @@ class StateWriter {
     std::vector<std::byte> bytes;
 };
 
-// Reads what a StateWriter has written, in the same order. All calls throw std::runtime_error
-// where the bytes end too early.
+// Reads what a StateWriter has written, in the same order. All calls throw std::runtime_error if
+// the bytes end too early.
 class StateReader {
   public:
     explicit StateReader(std::span<const std::byte> bytes) : rest(bytes) {}
@@ -55,8 +55,8 @@ class StateReader {
         if (!values.empty()) std::memcpy(values.data(), rest.data(), values.size_bytes());
         rest = rest.subspan(values.size_bytes());
     }
-    // Reads what PutVector() has written. Throws std::runtime_error(damaged), and takes no memory,
-    // for more than the bytes can hold.
+    // Reads what PutVector() has written. Throws std::runtime_error(damaged), before allocating
+    // memory, for more values than the bytes can hold.
     template <typename T>
     std::vector<T> GetVector(const char* damaged) {
         const auto size = Get<uint64_t>();

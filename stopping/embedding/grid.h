@@ -14,8 +14,8 @@ struct BlockGrid {
 };
 
 // Cuts width x height pixels into blocks of `side` pixels. What is left in a row or column is a
-// block of its own, or added to the one before where it is below smallestVotingSide. All three are
-// at least that.
+// block of its own, or is added to the previous one if it is below smallestVotingSide. All three
+// are at least that.
 BlockGrid CutIntoBlocks(int width, int height, int side);
 
 }  // namespace lull

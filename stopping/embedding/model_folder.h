@@ -6,7 +6,7 @@
 namespace lull {
 
 // Returns the folder of installed models: $LULL_MODELS if that is set and not empty, else the one
-// that lies to this library as it was installed.
+// relative to this library as installed.
 std::string InstalledModels();
 
 }  // namespace lull

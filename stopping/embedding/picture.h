@@ -12,8 +12,8 @@ namespace lull {
 void CheckPicture(const lull_picture& picture, int width, int height, bool needsHalf);
 
 // Returns the part of a picture that begins at `origin`, the mean or the half of a checked one, as
-// a BlockView has it: linear R, G, B, row by row, finite. 8 bits become the values in the middle
-// between those that are rounded to other codes, so that EncodeSrgb8() gives the codes again.
+// a BlockView has it: linear R, G, B, row by row, finite. 8-bit codes become the middle of the
+// range that is rounded to them, so that EncodeSrgb8() returns the same codes.
 std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
                               const lull_rect& part);
 

@@ -1,5 +1,5 @@
-// Judges all blocks of a picture, as the C interface shows it; see lull/stopping.h for what its
-// functions mean. Can be used by several threads at once.
+// Judges all blocks of a picture, behind the C interface; lull/stopping.h describes the functions.
+// Can be used by several threads at once.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ class Stopper {
     bool NeedsHalf() const { return needsHalf; }
     bool Done() const;
 
-    // Throw std::invalid_argument, before anything has changed, for another picture than the
-    // settings and the block ask for, and for an spp that is not above the block's last.
+    // Throw std::invalid_argument, before anything has changed, for a picture that does not fit the
+    // settings or the block, and for an spp that is not above the block's last.
     std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
     lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
     lull_answer Answer(int block) const;

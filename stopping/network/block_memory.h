@@ -1,4 +1,4 @@
-// Remembers of a block what its later windows are made of.
+// Remembers what the later windows of a block are made of.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace lull {
 
-// Turns what is measured of a block, pass by pass, into windows: completes the measures with falls
-// of entropies since half as many samples, and keeps their inputs.
+// Turns the measures of a block, pass by pass, into windows: adds how far entropies have fallen
+// since half as many samples, and keeps the inputs.
 class BlockMemory {
   public:
     // Throws std::invalid_argument if the settings are out of range.
     explicit BlockMemory(const ModelSettings& settings);
 
-    // Adds measures, with increasing spp; those from before there is anything to compare with have
-    // no inputs. Throws as InputVector() and FeatureHistory::Add() do.
+    // Adds measures, with increasing spp; those without an earlier state to compare with give no
+    // inputs. Throws as InputVector() and FeatureHistory::Add() do.
     void Add(BlockMeasures measures);
 
     // Returns the window that ends at `spp`, as FeatureHistory::WindowAt() does.

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Describes a layer; the activations have the meaning they have in LstmLayer and DenseLayer.
+// Describes a layer; the activations mean the same as in LstmLayer and DenseLayer.
 struct KerasLayer {
     std::string name;
     bool isLstm = false;  // otherwise Dense
@@ -25,7 +25,7 @@ struct KerasModel {
 };
 
 // Parses `model_config`. `version` is the file's `keras_version`, empty if it has none. Throws
-// std::runtime_error naming the layer, the activation or the option that is not modelled.
+// std::runtime_error naming the layer, the activation or the option that is not supported.
 KerasModel ParseKerasConfig(const std::string& json, const std::string& version);
 
 // Returns the `model_config` of a network whose input has `timeSteps` steps.

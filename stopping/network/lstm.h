@@ -32,9 +32,9 @@ struct DenseLayer {
     Activation activation = Activation::Sigmoid;
 };
 
-// Holds LSTM layers, each of which hands its output at every time step to the next one, followed
-// by dense layers on the output of the last time step. Without LSTM layers the dense layers are
-// given the values of all time steps, the first step first (Keras' Flatten): one of them is then a
+// Holds LSTM layers, each of which hands its output at every time step to the next one, followed by
+// dense layers on the output of the last time step. Without LSTM layers the dense layers receive
+// the values of all time steps, the first step first (Keras' Flatten): a single one is then a
 // logistic regression.
 struct Network {
     std::vector<LstmLayer> lstm;
@@ -45,11 +45,11 @@ struct Network {
 // Throws std::invalid_argument naming the layer.
 void CheckNetwork(const Network& network);
 
-// Returns whether the network, which has passed CheckNetwork(), can be run on sequences of
-// `inputs` values at each of `steps` time steps.
+// Says whether the network, which has passed CheckNetwork(), can be run on sequences of `inputs`
+// values at each of `steps` time steps.
 bool Takes(const Network& network, Eigen::Index inputs, Eigen::Index steps);
 
-// Runs the network, which has passed CheckNetwork(), on a sequence: one column a time step, at
+// Runs the network, which has passed CheckNetwork(), on a sequence: one column per time step, at
 // least one. Throws std::invalid_argument if the network does not take sequences of this size.
 // Finite inputs give finite outputs, unless linear activations let the values overflow.
 Eigen::VectorXf RunNetwork(const Network& network, const Eigen::MatrixXf& sequence);

@@ -19,21 +19,21 @@ struct Model {
     std::vector<double> logRatios = {};  // see human_range.h; empty: not known
 };
 
-// Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as
-// Keras 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m,
-// snorm, bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, and
-// the strings spacing, feature and pool, the last two lists with commas. One that is absent (all
-// are, in a published model) has its default, but k and m follow the shape of the network's input.
-// Throws std::runtime_error beginning with the path and naming what is missing, not modelled, of
-// the wrong shape, NaN or infinite.
+// Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as Keras
+// 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m, snorm,
+// bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, and the
+// strings spacing, feature and pool, the last two lists with commas. Absent ones (all, in a
+// published model) have their defaults, but k and m follow the shape of the network's input. Throws
+// std::runtime_error beginning with the path and naming what is missing, not supported, of the
+// wrong shape, NaN or infinite.
 Model ReadModel(const std::string& path);
 
-// Writes a model so that ReadModel() returns it and Keras 2 can load it; to a new file that then
-// takes the place of an old one. `record` says how it was trained; each of its texts (64 KiB at the
-// most) becomes an attribute of the group /lull/training. `logRatios` is empty or holds the
-// quantiles of human_range.h, which become the array /lull/log_ratios. Throws std::invalid_argument
-// for a network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error
-// if it cannot be written.
+// Writes a model so that ReadModel() returns it and Keras 2 can load it; a new file replaces an old
+// one only when complete. `record` says how it was trained; each of its texts (64 KiB at the most)
+// becomes an attribute of the group /lull/training. `logRatios` is empty or holds the quantiles of
+// human_range.h, which become the array /lull/log_ratios. Throws std::invalid_argument for a
+// network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it
+// cannot be written.
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
                 const std::map<std::string, std::string>& record = {},
                 std::span<const double> logRatios = {});

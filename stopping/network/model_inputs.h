@@ -1,5 +1,5 @@
-// Turns what is measured of a block into what a network is given: the same way where a model is
-// trained, from recordings, and where it judges, from pixels.
+// Turns measures of a block into the inputs of a network, in the same way for training, from
+// recordings, and for judging, from pixels.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +11,12 @@
 
 namespace lull {
 
-// The sub-blocks that have statistics other than entropies, as recordings have them.
+// The number of sub-blocks for statistics other than entropies, as in recordings.
 inline constexpr int kMeasuredSubBlocks = 100;
 
-// Holds what was measured of a block at one spp: for each feature the values of its sub-blocks,
+// Holds the measures of a block at one spp: for each feature the values of its sub-blocks,
 // row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
-// empty where it is not asked for, and always for LogSpp.
+// empty if it is not asked for, and always for LogSpp.
 struct BlockMeasures {
     int spp = 0;
     std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
@@ -29,7 +29,7 @@ struct BlockMeasures {
 // Says what MeasureBlock() reads.
 ViewNeed NeedOf(const ModelSettings& settings);
 
-// Measures what the settings ask for; of drops, which BlockMemory completes, the entropies and the
+// Measures what the settings ask for; for drops, which BlockMemory completes, the entropies and the
 // lightness that they are made of. Throws as CheckView() and SubBlockEntropies() do.
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
 
@@ -48,14 +48,13 @@ int InputCount(const ModelSettings& settings);
 // entropies as they are; noise, times the caution, and drops as log(v + 0.001); deviation and
 // texture as log(1 + v / 4) / 2 (a texture t masks noise by 1 + t / 4); lightness / 100; the spp as
 // log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their logarithm is
-// taken. Throws std::invalid_argument if the measures of a feature do not have the length they
-// should have.
+// taken. Throws std::invalid_argument if the measures of a feature have a wrong length.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
-// Says whether noise, pooled to one number, is all that a network is given.
+// Says whether noise, pooled to one number, is the only input of a network.
 bool LooksAtNoiseOnly(const ModelSettings& settings);
 
-// Convert that noise, >= 0, times the caution, to the input that it is given as, and back.
+// Convert that noise, >= 0, times the caution, to the network's input, and back.
 double InputOfNoise(double noise, const ModelSettings& settings);
 double NoiseOfInput(double input, const ModelSettings& settings);
 

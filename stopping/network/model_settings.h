@@ -12,8 +12,8 @@ namespace lull {
 // Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
 // features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
 // the fall of the entropies of m sub-blocks since half as many samples and the noise that it makes
-// visible (see entropy_drop.h; for m = 100), of the whole block how much filters take out of it
-// (see attributes26.h), and the logarithm of the spp, one number.
+// visible (see entropy_drop.h; for m = 100), how much filters remove from the whole block (see
+// attributes26.h), and the logarithm of the spp, one number.
 enum class Feature {
     H,
     H1,
@@ -36,16 +36,15 @@ enum class Feature {
 
 // Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
 // "noise_mean", "masked_noise", "half_noise", "detail_masked_noise", "entropy_drop" (of H),
-// "entropy_drop_h1", "entropy_drop_h2", "visible_drop", "attributes26" and "logspp"; a list has
-// commas between them. ParseFeatures() throws std::invalid_argument for others, and for one that
-// comes twice.
+// "entropy_drop_h1", "entropy_drop_h2", "visible_drop", "attributes26" and "logspp"; a list is
+// separated by commas. ParseFeatures() throws std::invalid_argument for others, and for duplicates.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 inline bool IsDrop(Feature feature) {
     return feature >= Feature::EntropyDrop && feature <= Feature::VisibleDrop;
 }
-// Returns the entropy whose fall a drop is.
+// Returns the entropy of which `drop` is the fall.
 inline Feature EntropyOf(Feature drop) {
     return drop == Feature::EntropyDrop1   ? Feature::H1
            : drop == Feature::EntropyDrop2 ? Feature::H2
@@ -56,11 +55,12 @@ inline bool IsNoise(Feature feature) {
     return (feature >= Feature::Noise && feature <= Feature::DetailMaskedNoise) ||
            feature == Feature::VisibleDrop;
 }
-// Says whether a window is normalised over this feature, as the paper did with both of its.
+// Says whether this feature is normalised over a window, as the paper does with both of its
+// features.
 inline bool IsNormalized(Feature feature) {
     return IsEntropy(feature) || feature == Feature::Attributes26;
 }
-// Says whether there is a value for each of a number of sub-blocks.
+// Says whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
 
 // Summarises the values of all sub-blocks in one number.
@@ -77,13 +77,13 @@ struct Pool {
 };
 
 // Convert to and from names: "mean", "rms", "p3" to "p9" for power means with those exponents, "q0"
-// to "q100"; a list has commas between them and may be empty. ParsePools() throws
+// to "q100"; a list is separated by commas and may be empty. ParsePools() throws
 // std::invalid_argument as ParseFeatures() does.
 std::string PoolNames(std::span<const Pool> pools);
 std::vector<Pool> ParsePools(const std::string& names);
 
-// Says how far apart the steps of a window are: n spp, or each at `ratio` times the spp of the one
-// before, or as near as is kept (see ladder.h).
+// Says how far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
+// previous one, or the nearest that is kept (see ladder.h).
 enum class Spacing { Fixed, Geometric };
 std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
 Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument
@@ -94,23 +94,23 @@ struct ModelSettings {
     int n = 40;   // spp between them; with geometric spacing between those that are looked at
     int m = 100;  // sub-blocks that entropies are computed of, a square number
     std::vector<Feature> features = {Feature::H};
-    std::vector<Pool> pools = {};  // empty: the network is given the value of each sub-block
-    // Normalise entropies, and attributes, over the window, each by itself; before that those of a
-    // step together.
+    std::vector<Pool> pools = {};  // empty: the network receives the value of each sub-block
+    // Normalise entropies and attributes over the window, each by itself (snorm), and before that
+    // those of a step together (bnorm).
     bool snorm = true, bnorm = false;
     int votes = 3;        // noiseless votes in a row that stop a block
     int voteSpacing = 0;  // spp between votes; 0: vote after every pass
     Spacing spacing = Spacing::Fixed;
     double ratio = 2;                 // of geometric spacing, > 1
     NoiseVisibility visibility = {};  // of visible_drop
-    // What noise counts more than it is; no part of a model, but of how it is used.
+    // Multiplies noise; not part of a model, but of how it is used.
     double caution = 1;
 };
 
 bool Needs(const ModelSettings& settings, Feature feature);
 
-// Throws std::invalid_argument naming the setting that is out of range. (More sub-blocks than the
-// smallest block that votes has pixels are too many, so that no block turns out to be too small.)
+// Throws std::invalid_argument naming the setting that is out of range. (There cannot be more
+// sub-blocks than the smallest voting block has pixels, so that no block is too small.)
 void CheckSettings(const ModelSettings& settings);
 
 }  // namespace lull

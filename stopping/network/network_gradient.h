@@ -13,7 +13,7 @@ struct SampleBatch {
     int count = 0, steps = 0;
     // The values of sample s at time step t are in column t * count + s.
     MatrixOf<Scalar> inputs;
-    // For each LSTM layer factors of its inputs, a column a sample: 0 where dropped, the same at
+    // For each LSTM layer factors of its inputs, a column per sample: 0 where dropped, the same at
     // all time steps (Keras' `dropout`). Empty: nothing is dropped.
     std::vector<MatrixOf<Scalar>> masks = {};
     VectorOf<Scalar> targets;  // what the network should answer, 0 or 1

@@ -16,7 +16,7 @@ using MatrixOf = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using VectorOf = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// Holds the same as LstmLayer; all activations are the paper's: sigmoid, and hard sigmoid for the
+// Holds the same as LstmLayer, with the paper's activations: sigmoid, and hard sigmoid for the
 // gates.
 template <typename Scalar>
 struct LstmWeights {
@@ -56,11 +56,11 @@ struct NetworkWeights {
 struct NetworkShape {
     int inputs = 0, steps = 0;               // of its sequences
     std::vector<int> lstm = {512, 128, 32};  // units; the paper's
-    std::vector<int> dense = {};             // units of dense layers before the last, which has one
+    std::vector<int> dense = {};             // units of dense layers but the last, which has one
 };
 
 // Returns Keras' initial weights: kernels uniform within sqrt(6 / (inputs + outputs)) (Glorot,
-// Bengio 2010), orthonormal recurrent kernels, zero biases but 1 for forget gates. Throws
+// Bengio 2010), orthonormal recurrent kernels, biases zero except 1 for forget gates. Throws
 // std::invalid_argument if a size is not in [1, 16384], or a layer of more than 2^28 weights.
 NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed);
 

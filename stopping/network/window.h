@@ -14,7 +14,7 @@ namespace lull {
 // equal. At least one value; they and their spread must be finite.
 Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values);
 
-// Keeps the inputs that windows still to come can need.
+// Keeps the inputs that later windows can need.
 class FeatureHistory {
   public:
     // Throws std::invalid_argument if the settings are out of range.
@@ -25,7 +25,7 @@ class FeatureHistory {
     void Add(int spp, std::span<const double> feature);
 
     // Returns the window that ends at `spp`, InputCount() x k, the oldest step first, its entropies
-    // and attributes normalised as the settings say (the level of other features matters); nothing
+    // and attributes normalised as the settings say (for other features the level matters); nothing
     // unless there are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the
     // steps are those that are nearest to spp / ratio, spp / ratio^2, ... of what is kept, eight an
     // octave (see ladder.h): for k steps 2 + 8 (k - 1) log2(ratio) inputs at most; `spp` is the

@@ -1,8 +1,9 @@
-// Measures how much noise filters take out of an image: the 26 attributes that SVD-entropy is
+// Measures how much noise filters remove from an image: the 26 attributes that SVD-entropy is
 // compared with.
 //
 // After Constantin, Bigand, Constantin, Hamad: Image noise detection in global illumination methods
-// based on FRVM. Neurocomputing 2015, 164, 82; as the paper (svd_entropy.h) trained its rival on.
+// based on FRVM. Neurocomputing 2015, 164, 82; with which the paper (svd_entropy.h) trained its
+// competing network.
 #pragma once
 
 #include <array>
@@ -18,11 +19,11 @@ namespace lull {
 //
 // Beyond the border, mean and Gaussian see the image reflected without its edge pixel, median and
 // Wiener (Lim 1990, Eqs. 9.44 to 9.46, with the mean of the local variances as that of the noise)
-// see zeros. That sets an error of its own in the outermost pixels, which all blocks share.
+// see zeros. This causes errors in the outermost pixels, the same for all blocks.
 //
 // `lightness` holds width * height values, row-major. Throws std::invalid_argument if it does not,
 // if there are fewer than 5 pixels a side, or if a value is not finite; finite values beyond 1e100
-// may overflow, and count as 0 then.
+// may overflow, and then count as 0.
 inline constexpr int kAttributes = 26;
 std::array<double, kAttributes> ComputeAttributes(std::span<const double> lightness, int width,
                                                   int height);

@@ -10,20 +10,20 @@
 
 namespace lull {
 
-// Keeps the entropies that states still to come are compared with: about eight an octave down to a
-// quarter of the spp, or 19 states at most (8 KB a block for 100 sub-blocks), however many there
+// Keeps the entropies that later states are compared with: about eight an octave down to a quarter
+// of the spp, at most 19 states (8 KB per block for 100 sub-blocks), however many samples there
 // are.
 class DropHistory {
   public:
-    // Adds the entropies of the sub-blocks at `spp`, more than before, finite and always as many.
-    // Returns EntropyDrop() since the state nearest to half of the spp, set right by RateOfFall()
-    // with these weights where there is one at about a quarter as well; nothing before there is
-    // any. Throws std::invalid_argument.
+    // Adds the entropies of the sub-blocks at `spp`, which increases; they are finite and always
+    // the same number. Returns EntropyDrop() since the state nearest to half of the spp, corrected
+    // by RateOfFall() with these weights if there is also one at about a quarter; nothing before
+    // there is such a state. Throws std::invalid_argument.
     std::optional<std::vector<double>> Add(int spp, std::span<const double> entropies,
                                            std::span<const double> weights);
 
-    // Write and read all states. Restore() throws std::runtime_error if they are damaged or have
-    // not `subBlocks` values each.
+    // Write and read all states. Restore() throws std::runtime_error if they are damaged or do not
+    // have `subBlocks` values each.
     void Save(StateWriter* writer) const;
     void Restore(StateReader* reader, size_t subBlocks);
 
@@ -34,8 +34,8 @@ class DropHistory {
 };
 
 // Adds a state, entropies and lightness of its sub-blocks, to the history of a block. Returns
-// VisibleDrop() as DropHistory::Add() does; sub-blocks count for the rate of the fall as their
-// noise counts in lightness.
+// VisibleDrop() as DropHistory::Add() does; for the rate of the fall, sub-blocks are weighted as
+// their noise is in lightness.
 std::optional<std::vector<double>> AddVisible(int spp, std::span<const double> entropies,
                                               const SubBlockLightness& lightness,
                                               const NoiseVisibility& visibility,

@@ -1,11 +1,11 @@
 // Measures noise by what it adds to the SVD-entropy of a picture: an entropy alone says little, but
-// its fall since half as many samples is the part of it that was noise.
+// its fall since half as many samples is due to noise.
 //
 // Noise of variance v in lightness, small against the mean lightness L, adds about c v / L^2 to the
-// entropy of a sub-block, with a c that hardly changes. Where v falls with the spp, the fall from
-// n / 2 to n is therefore what is left at n, and sqrt(fall) L its standard deviation, but for
-// sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's share of each
-// singular value. It needs nothing but two displayed pictures.
+// entropy of a sub-block, with a c that hardly changes. As v falls as 1 / spp, the fall from n / 2
+// to n is what is left at n, and sqrt(fall) L is the noise's standard deviation, apart from the
+// factor sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's share of each
+// singular value. This needs only two displayed pictures.
 #pragma once
 
 #include <span>
@@ -36,16 +36,15 @@ struct EntropyState {
 };
 
 // Returns the exponent a, in [1, 2], with which noise falls as spp^-a, from three states with
-// increasing spp, the roots of the falls of sub-blocks weighted; 1 where nothing changes.
-// Independent samples have 1 (entropies read some 0.1 less); where noise falls faster, less is
-// left than the fall.
+// increasing spp, using weighted roots of the sub-blocks' falls; 1 if nothing changes. Independent
+// samples have 1 (entropies give some 0.1 less); if noise falls faster, less is left than the fall.
 double RateOfFall(const EntropyState& oldest, const EntropyState& before, const EntropyState& now,
                   std::span<const double> weights);
 
 // Returns for each sub-block sqrt(|H(before) - H(now)| / ((n / n')^rate - 1)), where n, n' are the
 // spp of `now` and `before`: the root of what noise adds to the entropy now. Both have the same
 // length, and `before` has fewer spp. (Noise that happens to be correlated with detail moves an
-// entropy up or down, and what is rare makes it rise when it comes: both count as noise.)
+// entropy up or down, and rare events raise it when they occur: both count as noise.)
 std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
 
 // Holds mean and standard deviation of the displayed lightness of sub-blocks, row-major, in

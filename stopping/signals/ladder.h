@@ -1,4 +1,4 @@
-// Keeps, of ever more states of a block, the few that later ones are compared with.
+// Keeps those few of a block's growing number of states that later ones are compared with.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@ namespace lull {
 
 // A ladder is a vector of entries with a member spp, increasing; the last one is the latest. The
 // others are at least a step apart, so that there are eight an octave: near enough to any spp that
-// is asked for, and few however many samples there are. Which entries are kept depends on nothing
-// but the spp at which they came.
+// is asked for, and few however many samples there are. Which entries are kept depends only on the
+// spp at which they were added.
 inline bool IsLadderStep(int from, int to) { return 11 * double(to) >= 12 * double(from); }
 
 // Adds an entry with more spp than all others. Forgets what is no longer needed to find any spp
@@ -25,8 +25,8 @@ void AddToLadder(Entry entry, double depth, std::vector<Entry>* ladder) {
     l.push_back(std::move(entry));
 }
 
-// Returns the entry that is nearest to `spp` by its ratio, one that is at most `tolerance` times as
-// much or as little; null if there is none. The latest one is not looked at if `earlier`.
+// Returns the entry that is nearest to `spp` by its ratio, within a factor of `tolerance`; null if
+// there is none. Ignores the latest entry if `earlier`.
 template <typename Entry>
 const Entry* FindInLadder(const std::vector<Entry>& ladder, double spp, double tolerance,
                           bool earlier) {

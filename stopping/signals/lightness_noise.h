@@ -15,13 +15,13 @@ namespace lull {
 // are clamped to [0, 1], but not rounded to 8 bits, which would add noise of its own.
 struct LightnessNoise {
     std::vector<float> lightness;  // L of M, in [0, 100]
-    // (A - B) / 2 taken to lightness by its derivative at M, zero in components that the display
-    // saturates. One draw from the noise of that pixel, with its sign: only its squares averaged
-    // over many pixels say how large the noise is.
+    // (A - B) / 2 converted to lightness by its derivative at M, zero in components that the
+    // display saturates. A single signed draw from the noise of that pixel: only its square,
+    // averaged over many pixels, shows how large the noise is.
     std::vector<float> noise;
     std::vector<float> halfNoise;  // (L(A) - L(B)) / 2, bounded
-    // Standard deviation of L in the 13 x 13 pixels around (those within the block), after L has
-    // been smoothed by averaging 5 x 5: what masks noise. Written t.
+    // Standard deviation of L in the surrounding 13 x 13 pixels (within the block), after smoothing
+    // L by 5 x 5 averages: what masks noise. Written t.
     std::vector<float> texture;
 };
 
@@ -38,8 +38,8 @@ inline float MaskedNoise(float noise, float texture) { return noise / (1 + textu
 
 // Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
 // maskedNoise and halfNoise are root mean squares; noiseMean is the mean of |noise| sqrt(pi / 2),
-// which estimates the mean standard deviation. Throws std::invalid_argument if the estimates do not
-// have the size or there are fewer pixels a side than sub-blocks.
+// which estimates the mean standard deviation. Throws std::invalid_argument if the estimates have
+// another size or there are too few pixels for the sub-blocks.
 struct LightnessNoiseStatistics {
     std::vector<float> lightness, deviation, texture, noise, noiseMean, maskedNoise, halfNoise;
 };
@@ -47,7 +47,7 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, in
                                             int subBlocks);
 
 // Returns h / (1 + d / 4) of sub-blocks, where h is halfNoise, which sees fireflies that saturate
-// the display, and d^2 = deviation^2 - t^2 - h^2 (0 if below 0) is what varies too finely to be in
+// the display, and d^2 = deviation^2 - t^2 - h^2 (0 if below 0) is the variation too fine to be in
 // t: detail of the size of noise hides noise best. All three have the same length.
 std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
                                       std::span<const float> deviation,

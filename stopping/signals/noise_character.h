@@ -1,4 +1,4 @@
-// Describes what the noise of a block is like, beside how much there is: coloured or grey, fine or
+// Describes what the noise of a block is like, besides how much there is: coloured or grey, fine or
 // blotched, spread evenly or in few pixels, and how much of the picture the display saturates.
 #pragma once
 
@@ -16,10 +16,10 @@ struct NoiseCharacter {
     // Share of pixels that are white on the display: R, G and B are at 1 or above. In [0, 1].
     std::vector<float> saturated;
     // Root mean square of half the difference of the two halves of the samples in CIE 1976 a* and
-    // b* (white D65): what noise there is in colour.
+    // b* (white D65): the noise in colour.
     std::vector<float> chromaNoise;
     // Correlation of LightnessNoise::noise between pixels that share an edge, both in the
-    // sub-block: 0 where pixels are independent, as they are unless something has smoothed them. In
+    // sub-block: 0 if pixels are independent, as they are unless something has smoothed them. In
     // [-1, 1].
     std::vector<float> correlation;
     // Quantiles over the pixels of the block of |noise| FlareFactor(L) / (1 + t / 4), see

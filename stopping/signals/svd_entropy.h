@@ -37,12 +37,12 @@ std::vector<int> SplitEvenly(int length, int parts);
 
 // Computes the entropies of the count x count pieces of a block, row-major, where count^2 is
 // `subBlocks`. `lightness` holds width * height values, row-major. Throws std::invalid_argument if
-// subBlocks is no square, the block has fewer pixels a side than that, or a value is not finite.
+// subBlocks is not a square, the block has fewer pixels a side than that, or a value is not finite.
 std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int width, int height,
                                           int subBlocks);
 
-// The same of the lightness of what a display shows, in 8 bits, of a block. Reads the mean only.
-// Throws as CheckView() does, too.
+// Computes the same from the lightness of a block as an 8-bit display shows it. Reads the mean
+// only. Also throws as CheckView() does.
 std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks);
 
 }  // namespace lull

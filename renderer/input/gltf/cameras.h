@@ -11,9 +11,9 @@
 
 namespace lull {
 
-// Sets camera and film: to the camera that the options name, to the first of the scene, or to one
-// that shows all of `bounds`. The height is 800 pixels. Throws Error for a camera that is not there
-// or that sees nothing.
+// Sets camera and film: to the camera that the options name, to the first one of the scene, or to
+// one that shows all of `bounds`. The height is 800 pixels. Throws Error for a camera that is not
+// there or that sees nothing.
 void SetView(const GltfDocument&, const std::vector<GltfNode>&, const Bounds3f& bounds,
              const GltfOptions&, Description*);
 

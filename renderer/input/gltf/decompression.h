@@ -7,14 +7,14 @@
 
 namespace lull {
 
-// Takes out of a file's JSON what its reader does not know: the indices of primitives compressed by
-// Draco, which have no data, and buffers that only stand for data compressed by meshopt. Returns
-// whether anything has changed.
+// Removes from a file's JSON what its reader does not understand: the indices of primitives
+// compressed by Draco, which have no data, and buffers that only stand for data compressed by
+// meshopt. Returns whether anything has changed.
 bool HideCompressed(nlohmann::json* root);
 
 // Decodes views compressed by EXT_meshopt_compression and primitives compressed by
-// KHR_draco_mesh_compression into buffers of their own, so that nothing else need know of them.
-// Throw Error.
+// KHR_draco_mesh_compression into buffers of their own, so that nothing else needs to know about
+// them. Throw Error.
 void DecodeMeshopt(GltfDocument*);
 void DecodeDraco(GltfDocument*);
 

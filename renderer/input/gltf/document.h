@@ -9,7 +9,7 @@
 namespace lull {
 
 // Holds a glTF file whose JSON has been checked: all indices between its top-level arrays are in
-// range, all its numbers fit into a float. What lies in its buffers is still to be checked.
+// range, all its numbers fit into a float. The contents of its buffers are not checked yet.
 struct GltfDocument {
     std::string file;
     tinygltf::Model model;
@@ -22,8 +22,8 @@ struct GltfDocument {
 };
 
 // Reads a file and the buffers it names; images stay encoded, those in files of their own unread.
-// Extensions that are not modelled are warned of, or refused where the file requires them. Throws
-// Error with the file and, where it has one, the JSON pointer of what is wrong.
+// Unsupported extensions lead to warnings, or to an error if the file requires them. Throws Error
+// with the file and, if there is one, the JSON pointer of what is wrong.
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings);
 
 }  // namespace lull

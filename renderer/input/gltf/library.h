@@ -6,7 +6,7 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_FS
-// Debian's libdraco exports a copy of this library, made with other settings; ours must not be
-// taken for it.
+// Debian's libdraco exports a copy of this library, built with other settings; ours must not be
+// confused with it.
 #define tinygltf lull_tinygltf
 #include <tiny_gltf.h>

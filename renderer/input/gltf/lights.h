@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Lumens in a watt at 555 nm (CIE): by it photometric units become radiometric ones.
+// Lumens per watt at 555 nm (CIE), which convert photometric units to radiometric ones.
 inline constexpr double kLumensPerWatt = 683;
 
 // Adds the light of a node, if it has one. The specification's lux and candela are divided by

@@ -13,9 +13,9 @@ struct GltfNode {
     Mat4d worldFromNode = Mat4d::Identity();
 };
 
-// Lists the nodes of the file's scene (of its first one where it names none; all roots where it has
-// none), parents before their children. Throws Error where a node has two parents, which cycles are
-// a case of, or its transform is not finite.
+// Lists the nodes of the file's scene (of its first one if it names none; all roots if it has
+// none), parents before their children. Throws Error if a node has two parents, as in a cycle, or
+// its transform is not finite.
 std::vector<GltfNode> ListNodes(const GltfDocument&);
 
 // Returns the transforms of the copies of a node's mesh that EXT_mesh_gpu_instancing asks for, in

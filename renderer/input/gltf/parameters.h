@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Adds parameters to an entity that all stand at one place of a file.
+// Adds parameters to an entity, all of which have the same place in a file.
 class ParameterWriter {
   public:
     ParameterWriter(Parameters* parameters, FileLoc loc)

@@ -27,7 +27,8 @@ GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::str
 GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
                               const std::string& path);
 
-// Says what of an image a texture gives: its colours, sRGB-encoded or not, or one channel as it is.
+// Says what a texture takes from an image: its colours, sRGB-encoded or not, or one channel as it
+// is.
 enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
 
 // Adds textures and embedded images to a description, each once.
@@ -36,8 +37,8 @@ class GltfTextures {
     GltfTextures(const GltfDocument& document, Description* description)
         : document(document), description(description) {}
 
-    // Returns the texture; nothing for a use of none, or of one without an image, with a counted
-    // warning.
+    // Returns the texture; nothing if the use names none, or, with a counted warning, one without
+    // an image.
     std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
 
   private:

@@ -11,9 +11,9 @@ namespace lull {
 // that reading it could exhaust the stack.
 nlohmann::json ParseGltfJson(const std::string& file, std::string_view text);
 
-// Throws Error with `file` and the JSON pointer of the first thing that is not as the specification
-// has it: types, indices between the top-level arrays, enumerations, numbers that fit no float,
-// data URIs that are not base64.
+// Throws Error with `file` and the JSON pointer of the first violation of the specification: types,
+// indices between the top-level arrays, enumerations, numbers that fit no float, data URIs that are
+// not base64.
 void CheckGltfJson(const std::string& file, const nlohmann::json& root);
 
 }  // namespace lull

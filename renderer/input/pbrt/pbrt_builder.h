@@ -1,4 +1,4 @@
-// Builds a Description from the directives of a pbrt-v3 file: one function a directive.
+// Builds a Description from the directives of a pbrt-v3 file: one function per directive.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ class PbrtBuilder {
     Description Finish(const FileLoc& end);
 
     PbrtLexer lexer;
-    FileLoc loc;  // of the directive in work
+    FileLoc loc;  // of the directive being read
 
   private:
     enum class ScopeKind { Attribute, Transform, Object };

@@ -23,14 +23,15 @@ struct Token {
 // Describes a token for a message: "the end of the file", "']'", "'Shape'", "\"matte\"".
 std::string Describe(const Token& token);
 
-// Reads tokens from a stack of files: where an included file ends, its includer goes on. Every
-// function throws Error at what is no token: unterminated strings, stray control characters.
+// Reads tokens from a stack of files: where an included file ends, the including one continues.
+// Every function throws Error at what is not a token: unterminated strings, stray control
+// characters.
 class PbrtLexer {
   public:
     explicit PbrtLexer(const std::string& file);
 
-    // Goes on with `file` and comes back at its end. Throws Error at `loc` if it is open already
-    // (recursion), cannot be read, or if repeated inclusion has come to absurd amounts of text.
+    // Continues with `file` and returns at its end. Throws Error at `loc` if it is open already
+    // (recursion), cannot be read, or if repeated inclusion has added up to absurd amounts of text.
     void Include(const std::string& file, const FileLoc& loc);
 
     Token Take();
@@ -38,8 +39,8 @@ class PbrtLexer {
 
     // Take the next token if it is a number and return whether it was; T is float, double or int.
     // An int may be written as a float; *cut is set where that loses a fraction. Throw Error at a
-    // malformed number and at one beyond the range of T. These never leave the current file, and
-    // copy nothing: most of a scene's text is numbers.
+    // malformed number or one beyond the range of T. They never leave the current file, and copy
+    // nothing: most of a scene's text is numbers.
     bool TakeNumber(float* value);
     bool TakeNumber(double* value);
     bool TakeNumber(int* value, bool* cut);
@@ -50,7 +51,7 @@ class PbrtLexer {
   private:
     struct Source {
         std::shared_ptr<const std::string> name;
-        std::string canonical;  // tells whether two names are one file
+        std::string canonical;  // shows whether two names are the same file
         FileContents contents;
         const char* pos = nullptr;
         const char* end = nullptr;

@@ -10,15 +10,15 @@
 
 namespace lull {
 
-// Holds what a parameter's meaning depends on: the textures as named so far, spectrum files.
+// Holds what a parameter's meaning depends on: the textures named so far, spectrum files.
 struct ParameterContext {
     ScopedNames floatTextures, spectrumTextures;
     std::string directory;               // where the names of spectrum files start
     std::map<std::string, Rgb> spectra;  // already read, by path
 };
 
-// Reads `"type name" value` and `"type name" [values]` until something else comes. Throws Error
-// at the place of whatever is wrong; warns of integers with a fraction, which is cut off.
+// Reads `"type name" value` and `"type name" [values]` until something else comes. Throws Error at
+// the place of whatever is wrong; warns about integers with a fraction, which is dropped.
 Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings& warnings);
 
 }  // namespace lull

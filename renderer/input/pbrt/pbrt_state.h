@@ -1,4 +1,4 @@
-// Keeps what a pbrt-v3 scene file changes as it goes: transforms, and names with scopes.
+// Keeps the state that a pbrt-v3 scene file changes: transforms, and names with scopes.
 #pragma once
 
 #include <array>
@@ -31,14 +31,14 @@ class ScopedNames {
     }
 
   private:
-    std::unordered_map<std::string, int> indices;  // -1: defined no longer
+    std::unordered_map<std::string, int> indices;  // -1: no longer defined
     std::vector<std::pair<std::string, int>> undo;
 };
 
 // Says which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// Holds what AttributeBegin saves and AttributeEnd brings back.
+// Holds what AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
     TransformPair ctm;
     int active = kAllTimes;
@@ -50,8 +50,8 @@ struct GraphicsState {
 };
 
 // Make the matrices of the directives, in pbrt-v3's conventions; angles in degrees. LookAt maps
-// world to camera space (left-handed, looking along +z). Throw Error at `loc` where there is no
-// such transform.
+// world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is no such
+// transform.
 Mat4d TranslateMatrix(double x, double y, double z);
 Mat4d ScaleMatrix(double x, double y, double z, const FileLoc& loc);
 Mat4d RotateMatrix(double degrees, const Eigen::Vector3d& axis, const FileLoc& loc);

@@ -36,7 +36,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyFormat format = PlyFormat::Ascii;
     std::vector<PlyElement> elements;
-    size_t bytes = 0;  // where the data start
+    size_t bytes = 0;  // where the data starts
     int lines = 0;
 };
 

@@ -15,7 +15,7 @@ inline constexpr int kSsimRadius = 5;
 // Simoncelli: Image Quality Assessment: From Error Visibility to Structural Similarity, IEEE
 // Transactions on Image Processing 13(4), 2004, with its Gaussian window (standard deviation 1.5),
 // K1 = 0.01 and K2 = 0.03, on the luma 0.299 R + 0.587 G + 0.114 B. NaN where the window would
-// reach over the border of the image: there, the paper has no value.
+// extend beyond the image, where the paper defines no value.
 std::vector<float> SsimMap(std::span<const uint8_t> image, std::span<const uint8_t> reference,
                            int width, int height);
 

@@ -1,4 +1,4 @@
-// Speaks to a server by TCP, without ever waiting for it longer than it is told to.
+// Talks to a server by TCP, and never waits for it longer than it is told to.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@ class Connection {
     Connection& operator=(const Connection&) = delete;
 
     bool IsOpen() const { return socket >= 0; }
-    // Connects, or says in `why` why not. Looking up a name can take as long as the system lets
-    // it; of the rest, `giveUp` is asked about every tenth of a second.
+    // Connects, or says in `why` why not. Looking up a name can take as long as the system allows;
+    // during the rest, `giveUp` is polled every tenth of a second.
     bool Open(const DisplayAddress&, const std::function<bool()>& giveUp, std::string* why);
-    // Sends all bytes. Returns false where the connection is lost, or `giveUp` has said so; it is
-    // then closed.
+    // Sends all bytes. Returns false if the connection is lost or `giveUp` returns true; it is then
+    // closed.
     bool Send(std::span<const std::byte> bytes, const std::function<bool()>& giveUp,
               std::string* why);
     // Says whether the server is still there.

@@ -20,15 +20,15 @@ class Snapshot {
 
     void Show(const PixelRect& pixels, const Film& film);
     void ShowStop(const PixelRect& block);
-    // Marks all that was ever shown as not sent.
+    // Marks everything that was ever shown as not sent.
     void ShowAllAgain();
 
     struct Update {
         PixelRect pixels;           // from the region's corner
         std::vector<float> values;  // row-major, kChannels a pixel
     };
-    // Takes a rectangle that has changed and marks it as sent; nothing where there is none. Cells
-    // have their turn row by row. `values` is used again.
+    // Takes a rectangle that has changed and marks it as sent; false if there is none. Cells take
+    // turns row by row. The memory of `values` is reused.
     bool Take(Update* update);
 
   private:

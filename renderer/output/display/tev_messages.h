@@ -1,5 +1,5 @@
 // Writes the messages of tev's protocol (https://github.com/Tom94/tev, Ipc.h): a length of 32 bits
-// that counts itself, a byte that says what it is, and its fields; texts end with a zero byte, and
+// that includes itself, a byte with the type, and the fields; texts end with a zero byte, and
 // everything is little-endian.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace lull::tev {
 
-// Makes an image in the viewer, and shows it; one of that name is replaced.
+// Creates an image in the viewer and shows it; one of the same name is replaced.
 std::vector<std::byte> CreateImage(const std::string& name, int width, int height,
                                    std::span<const std::string> channels);
 

@@ -1,4 +1,4 @@
-// Puts the channels of an EXR, which are in the order of the alphabet there, into that of colours.
+// Sorts the channels of an EXR, which are in alphabetical order there, as colours.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 namespace lull {
 
 // Sorts "layer.name"s by layer, of which "" is the first, and those of a layer as OpenImageIO does:
-// R, G, B, Y, A, Z and the like, then all else by name; where there is X with Y or Z: R, G, B, X,
-// Y, Z, A, then all else.
+// R, G, B, Y, A, Z and the like, then all others by name; if there is X with Y or Z: R, G, B, X, Y,
+// Z, A, then all others.
 void SortChannels(std::vector<std::string>* names);
 
 // Says whether "layer.name" is alpha.

@@ -1,4 +1,4 @@
-// Reads OpenEXR files: scan lines and tiles (the full size), and of several parts the first.
+// Reads OpenEXR files: scan lines and tiles (at full size), and the first of several parts.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Says whether bytes begin as an EXR does.
+// Says whether bytes begin like an EXR.
 bool IsExr(std::span<const std::byte> bytes);
 
 // Holds an EXR of which only the header has been read.
@@ -27,8 +27,8 @@ class ExrFile {
     // Lists the channels as SortChannels() does.
     const std::vector<std::string>& Channels() const { return channels; }
     bool IsHalf(const std::string& channel) const;
-    // Reads the first `count` channels as halves, which all must be, or floats, side by side;
-    // integers become 0 to 1. Throws as the constructor does.
+    // Reads the first `count` channels side by side, as halves, if all are, or as floats; integers
+    // become 0 to 1. Throws as the constructor does.
     void Read(TexelType type, size_t count, void* texels);
 
   private:

@@ -3,7 +3,7 @@
 
 namespace lull {
 
-// Starts a thread a processor, once, and returns how many there are.
+// Starts a thread per processor, once, and returns their number.
 int UseExrThreads();
 
 }  // namespace lull

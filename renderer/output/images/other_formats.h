@@ -1,4 +1,4 @@
-// Opens images of the formats that the program does not read by itself.
+// Opens images in formats that the program does not read by itself.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace lull {
 
-// Opens the file `path` or, where there are bytes, these, for which the extension of `path` names
-// the format. The first call loads the module, which takes 0.2 s. Throws std::runtime_error with
-// the reason, without the path: the module is not there, or it cannot read the file.
+// Opens the file `path` or, if there are bytes, these, whose format is named by the extension of
+// `path`. The first call loads the module, which takes 0.2 s. Throws std::runtime_error with the
+// reason, without the path: the module is not there, or it cannot read the file.
 std::unique_ptr<ImageFile> OpenOtherFormat(const std::string& path,
                                            std::span<const std::byte> bytes = {});
 

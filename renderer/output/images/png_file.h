@@ -8,12 +8,12 @@
 
 namespace lull {
 
-// Says whether bytes begin as a PNG does.
+// Says whether bytes begin like a PNG.
 bool IsPng(std::span<const std::byte> bytes);
 
-// Opens a PNG: less than 8 bits become 8, palettes RGB, and transparent colours an alpha channel.
-// No value is changed for a gamma or a profile that the file names. The bytes must outlive what is
-// returned. Throws std::runtime_error with the reason, without a path.
+// Opens a PNG: less than 8 bits become 8, palettes RGB, and transparent colours an alpha channel. A
+// gamma or a profile in the file changes no values. The bytes must outlive the result. Throws
+// std::runtime_error with the reason, without a path.
 std::unique_ptr<ImageFile> OpenPng(std::span<const std::byte> bytes);
 
 }  // namespace lull

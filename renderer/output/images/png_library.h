@@ -1,4 +1,4 @@
-// Calls libpng, which leaves its functions by longjmp() where something is wrong.
+// Calls libpng, which leaves its functions by longjmp() if something is wrong.
 #pragma once
 
 #include <png.h>
@@ -21,8 +21,8 @@ struct PngError {
 }
 inline void OnPngWarning(png_structp, png_const_charp) {}
 
-// Calls `call`, which calls libpng; false where that gives up. As it is left in the middle, `call`
-// must own nothing.
+// Calls `call`, which calls libpng; returns false if that gives up. As it is then left midway,
+// `call` must own nothing.
 template <typename Call>
 bool TryPng(png_structp png, const Call& call) {
     if (setjmp(png_jmpbuf(png))) return false;

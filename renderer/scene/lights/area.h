@@ -14,8 +14,8 @@ struct AreaLight {
     bool isHidden = false;  // its shape has alpha 0
     // The emitting surface; all but triangles belong to the shape table.
     std::variant<TriangleSampler, const Sphere*, const Disk*, const Revolved*> surface;
-    // Where what a mesh emits varies: by what L is multiplied, which triangle this is, and the mean
-    // factor over it, about.
+    // If the emission of a mesh varies: the factor of L, which triangle this is, and roughly the
+    // mean factor over it.
     const EmissionMap* map = nullptr;
     uint32_t triangle = 0;
     Rgb meanFactor = Rgb::Ones();

@@ -1,4 +1,4 @@
-// Lets what a mesh emits vary over it.
+// Varies the emission of a mesh over its surface.
 #pragma once
 
 #include "renderer/scene/coverage.h"
@@ -19,7 +19,7 @@ struct EmissionMap {
         return textures->Evaluate(emission, TextureContext{Vec3f::Zero(), uv}).max(0.f);
     }
 
-    // Returns the same for light sampling, which meets the surface as often as rays do.
+    // Returns the same for light sampling, times the probability that a ray hits the surface.
     Rgb Covered(uint32_t triangle, float b1, float b2) const {
         const Rgb e = At(triangle, b1, b2);
         if (!shape->coverage) return e;

@@ -14,7 +14,7 @@ struct GoniometricLight {
     Mat3f lightFromWorld;
     std::shared_ptr<const LightImage> image;  // null: I in all directions
 
-    // Throws Error where the image cannot be read.
+    // Throws Error if the image cannot be read.
     static GoniometricLight Make(const Description&, const LightEntity&, Warnings&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
     LightBounds Bounds() const;

@@ -12,8 +12,8 @@ namespace lull {
 // brightness guides the sampling (pbrt 3rd ed., 14.2.4).
 class InfiniteLight {
   public:
-    // Reads the image, if any. Throws Error where it cannot be read; texels that are not finite or
-    // negative count as black, with a counted warning. `isCompensated`: see EnvironmentMap.
+    // Reads the image, if any. Throws Error if it cannot be read; texels that are negative or not
+    // finite count as black, with a counted warning. `isCompensated`: see EnvironmentMap.
     static InfiniteLight Make(const Description&, const LightEntity&, float worldRadius,
                               bool isCompensated, Warnings&);
 

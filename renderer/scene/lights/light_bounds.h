@@ -16,8 +16,8 @@ struct LightBounds {
     bool isTwoSided = false;
 };
 
-// Returns what LightBounds has for a light of this power: positive unless the light is black, and
-// so that float can hold sums over many lights.
+// Returns the value that LightBounds has for a light of this power: positive unless the light is
+// black, and small enough that float can hold sums over many lights.
 inline float BoundedPower(const Rgb& power) {
     constexpr float kLeast = 1e-30f, kMost = 1e27f;
     const float luminance = Luminance(power.abs());

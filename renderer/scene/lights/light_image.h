@@ -17,7 +17,7 @@ struct LightImage {
 };
 
 // Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
-// Texels that are not finite or negative count as black, with a counted warning. Throws Error where
+// Texels that are negative or not finite count as black, with a counted warning. Throws Error if
 // the image cannot be read.
 std::shared_ptr<const LightImage> ReadLightImage(const Description&, const LightEntity&, Warnings&);
 

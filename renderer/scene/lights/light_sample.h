@@ -10,8 +10,8 @@ struct LightSample {
     Vec3f wi;       // towards the light, unit, world
     float pdf;      // 1/sr; 1 for delta lights
     bool isDelta;   // no other strategy can find this direction
-    bool isHidden;  // the emitter is invisible to rays, only this sampling finds it
-    // Where the light sits; n is zero for lights that are points. A light at infinity sits nowhere.
+    bool isHidden;  // the emitter is invisible to rays; only light sampling finds it
+    // The point on the light; n is zero for point lights. A light at infinity has no point.
     bool isAtInfinity = false;
     Vec3f p = Vec3f::Zero(), pError = Vec3f::Zero(), n = Vec3f::Zero();
 };

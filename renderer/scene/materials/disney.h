@@ -22,7 +22,7 @@ struct Disney {
                                                       : kScattersBelow | kNeedsTangents;
     }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-    // Returns nothing where the diffuse part does not scatter below the surface.
+    // Returns nothing if the diffuse part does not scatter below the surface.
     std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
 
     template <typename F>

@@ -1,4 +1,4 @@
-// Represents a layered or measured material that a file has tabulated.
+// Represents a layered or measured material, tabulated in a file.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ struct Fourier {
 
     explicit Fourier(const MaterialReader& in);
 
-    // Returns why the file could not be read, "" where it was.
+    // Returns why the file could not be read, "" if it was.
     std::string Problem(const MaterialReader&) const { return problem; }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 

@@ -17,7 +17,7 @@ struct Hair {
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 
-    // The offset across the hair is a texture coordinate, so that no hair is constant.
+    // The offset across the hair is a texture coordinate, so hair is never constant.
     template <typename F>
     void VisitTextures(F&& f) const {
         for (const auto* t : {&sigmaA, &color})

@@ -1,4 +1,4 @@
-// Represents no surface at all, where two media meet: "none". Paths go straight through.
+// Represents no surface, only the boundary of two media: "none". Paths go straight through.
 #pragma once
 
 #include "renderer/scene/materials/material_inputs.h"

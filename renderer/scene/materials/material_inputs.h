@@ -1,5 +1,5 @@
-// Holds what the kinds of material share: how they read their parameters and what they are given
-// at a hit point.
+// Holds what all kinds of material share: how they read their parameters, and their inputs at a hit
+// point.
 //
 // A kind is a struct K with
 //     static constexpr const char* kName                 as in scene files;
@@ -42,7 +42,7 @@ struct MaterialReader {
     std::optional<FloatTexture> FloatOrNone(const std::string& name) const {
         return textures.GetFloatOrNone(entity, name);
     }
-    // Reads an index of refraction: "eta", or "index" by its older name; 1.5.
+    // Reads an index of refraction: "eta", or "index", its older name; 1.5 by default.
     FloatTexture IndexOfRefraction() const {
         const std::optional<FloatTexture> eta = FloatOrNone("eta");
         return eta ? *eta : Float("index", 1.5f);
@@ -50,7 +50,7 @@ struct MaterialReader {
 };
 
 // Holds what lobes are made from at a hit point. `materials` is the whole table, for mixtures.
-// `hit` is null where a material without ExtraNeeds is made into lobes once and for all.
+// `hit` is null if a material without ExtraNeeds is turned into lobes once and for all.
 struct MaterialInputs {
     const TextureTable& textures;
     TextureContext context;
@@ -58,7 +58,7 @@ struct MaterialInputs {
     const SurfaceInteraction* hit = nullptr;
 
     float operator()(const FloatTexture& t) const { return textures.Evaluate(t, context); }
-    // Colours may be anything from textures; scattering takes them as nonnegative.
+    // Textures may give any colour; for scattering negative values count as 0.
     Rgb Color(const SpectrumTexture& t) const { return Raw(t).max(0.f); }
     Rgb Raw(const SpectrumTexture& t) const { return textures.Evaluate(t, context); }
 };
@@ -69,7 +69,7 @@ inline bool IsAlwaysBlack(const SpectrumTexture& t) {
 }
 
 // Adds the lobes of the operand-th material of the table, without its bump map. In material.cpp,
-// which alone knows every kind.
+// the only file that knows every kind.
 void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
 
 }  // namespace lull

@@ -9,7 +9,7 @@ struct Matte {
     static constexpr const char* kName = "matte";
 
     SpectrumTexture kd;
-    FloatTexture sigma;  // degrees, held in [0, 90]; 0: Lambertian, else Oren and Nayar's model
+    FloatTexture sigma;  // degrees, clamped to [0, 90]; 0: Lambertian, else Oren-Nayar
 
     explicit Matte(const MaterialReader& in)
         : kd(in.Spectrum("Kd", 0.5f)), sigma(in.Float("sigma", 0)) {}

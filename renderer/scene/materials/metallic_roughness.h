@@ -14,12 +14,12 @@ struct UvSlot {
     bool secondUv = false;
 };
 
-// Reads, each texture multiplied by the parameter NAMEfactor and with NAMEuv 1 looked up by the
-// second texture coordinates: "basecolor"; "metallicroughness" (roughness in green, metallic in
-// blue; the factors are "metallicfactor" and "roughnessfactor"); "specular", "specularcolor",
-// "transmission", "clearcoat", "clearcoatroughness". Further "ior"; "solid": what is transmitted is
-// refracted, else the surface is a thin sheet; "vertexcolors": the mesh's colours multiply the base
-// colour.
+// Reads the following textures, each multiplied by the parameter NAMEfactor, and looked up with the
+// second texture coordinates if NAMEuv is 1: "basecolor"; "metallicroughness" (roughness in green,
+// metallic in blue; the factors are "metallicfactor" and "roughnessfactor"); "specular",
+// "specularcolor", "transmission", "clearcoat", "clearcoatroughness". Also "ior"; "solid":
+// transmitted light is refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's
+// colours multiply the base colour.
 struct MetallicRoughness {
     static constexpr const char* kName = "metallicroughness";
 
@@ -35,7 +35,7 @@ struct MetallicRoughness {
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 
-    // Returns what it reads of a hit beyond what its textures do.
+    // Returns what it reads of a hit besides its textures' needs.
     SurfaceNeeds ExtraNeeds() const;
 
     template <typename F>

@@ -13,8 +13,8 @@ struct Mix {
 
     explicit Mix(const MaterialReader& in);
 
-    // Returns what is wrong with the operands, "" where both exist. A material can only be named
-    // once it was made, so that there are no cycles.
+    // Returns what is wrong with the operands, "" if both exist. A material can only be named after
+    // it was made, so there are no cycles.
     std::string Problem(const MaterialReader& in) const;
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;

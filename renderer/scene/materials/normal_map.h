@@ -7,15 +7,15 @@
 namespace lull {
 
 // Holds normals in the frame of the surface's tangents, each coordinate from -1 to 1 stored as 0 to
-// 1: x along u, y along v as that grows upwards in the image (glTF 2.0, 3.9.3).
+// 1: x along u, y along v, which grows upwards in the image (glTF 2.0, 3.9.3).
 struct NormalMap {
     SpectrumTexture texture;
     float scale = 1;        // of x and y
     bool secondUv = false;  // which texture coordinates it is looked up with
 };
 
-// Turns hit->ns, and the tangents with it, to what the map says. The hit needs tangents. It stays
-// as it is where the result has no direction or lies beyond the surface.
+// Turns hit->ns, and the tangents with it, as the map says. The hit needs tangents. It stays
+// unchanged if the result has no direction or points below the surface.
 void ApplyNormalMap(const NormalMap&, const TextureTable&, SurfaceInteraction* hit);
 
 }  // namespace lull

@@ -56,7 +56,7 @@ class Roughness {
         return {alphaU, alphaV};
     }
 
-    // Says whether both tangents always have the same roughness, so that the frame may be any.
+    // Says whether both tangents always have the same roughness, so that any frame will do.
     bool IsIsotropic() const { return isIsotropic; }
 
     template <typename F>

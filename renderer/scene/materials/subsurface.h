@@ -1,5 +1,5 @@
 // Represents translucent solids that light enters through a dielectric surface and leaves
-// elsewhere, by their coefficients ("subsurface") or by how they look ("kdsubsurface").
+// elsewhere, given by their coefficients ("subsurface") or their appearance ("kdsubsurface").
 #pragma once
 
 #include "renderer/scene/diffusion_profile.h"
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what both kinds share: the surface, whose light that is let in goes on below.
+// Holds what both kinds share: the surface, below which transmitted light continues.
 struct TranslucentSolid {
     SpectrumTexture kr, kt;
     Roughness roughness;
@@ -28,7 +28,7 @@ struct TranslucentSolid {
     }
 };
 
-// Has its coefficients of absorption and scattering, 1/length times "scale", or those of a "name".
+// Is given coefficients of absorption and scattering, 1/length times "scale", or those of a "name".
 struct Subsurface : TranslucentSolid {
     static constexpr const char* kName = "subsurface";
 
@@ -45,7 +45,7 @@ struct Subsurface : TranslucentSolid {
     }
 };
 
-// Has the albedo that it shows under even light, and the mean free path times "scale".
+// Is given the albedo that it shows under uniform light, and the mean free path times "scale".
 struct KdSubsurface : TranslucentSolid {
     static constexpr const char* kName = "kdsubsurface";
 

@@ -1,4 +1,4 @@
-// Represents a medium whose density varies in space as a grid says.
+// Represents a medium whose density is given by a grid.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace lull {
 
-// Fills the unit cube of its own space; outside there is nothing. The densities are at the middles
-// of cells and 0 beyond the outermost.
+// Fills the unit cube of its own space; outside there is nothing. The densities are at the centres
+// of cells, and 0 beyond the outermost.
 struct GridMedium {
     float sigmaT;  // extinction per unit of length in the world where the density is 1
     Rgb albedo;
@@ -22,8 +22,8 @@ struct GridMedium {
     // Interpolates the density at a point of grid space.
     float Density(const Vec3f& p) const;
 
-    // Estimates the share of light that gets along the ray, whose direction is unit, up to tMax: by
-    // ratio tracking, with Russian roulette below 0.1 (pbrt-v3; Novak et al. 2014).
+    // Estimates the transmittance along the ray, whose direction is unit, up to tMax: by ratio
+    // tracking, with Russian roulette below 0.1 (pbrt-v3; Novak et al. 2014).
     float Transmittance(const Ray& worldRay, Sampler& sampler) const;
 
     // Finds where the ray, of unit direction, scatters: by delta tracking (Woodcock et al. 1965).

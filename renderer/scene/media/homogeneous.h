@@ -10,12 +10,12 @@ struct HomogeneousMedium {
     Rgb sigmaS, sigmaT;  // scattering and extinction, per unit of length
     float g;             // of the phase function
 
-    // Returns the share of light that goes `length` through the medium, which may be infinite.
+    // Returns the share of light that passes through `length` of the medium, which may be infinite.
     Rgb Transmittance(float length) const {
         return (-sigmaT * std::min(length, std::numeric_limits<float>::max())).exp();
     }
 
-    // Samples a distance by the extinction of one channel, chosen evenly (pbrt 3rd ed., 15.2.1).
+    // Samples a distance by the extinction of one channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
     // `length` is that of the ray to the next surface.
     MediumSample Sample(float length, Sampler& sampler) const {
         const int channel = std::min(int(sampler.Get1D() * 3), 2);

@@ -1,4 +1,4 @@
-// Holds what a ray meets in a medium.
+// Holds what happens to a ray in a medium.
 #pragma once
 
 #include <optional>

@@ -8,8 +8,7 @@
 namespace lull {
 
 // Finds absorption and reduced scattering, 1/mm, of a material of Jensen et al. 2001 or Narasimhan
-// et al. 2006 by the name that pbrt-v3 has for it. Returns false, with both as they were, for
-// others.
+// et al. 2006 by its name in pbrt-v3. Returns false, and leaves both unchanged, for other names.
 bool FindMediumPreset(const std::string& name, Rgb* sigmaA, Rgb* sigmaS);
 
 }  // namespace lull

@@ -8,11 +8,11 @@
 
 namespace lull {
 
-// Flat curves face every ray; cylinders do as well, but have the normals of tubes; ribbons face
-// where their normals say.
+// Flat curves face every ray; so do cylinders, but with the normals of tubes; ribbons are oriented
+// by their normals.
 enum class CurveKind { Flat, Cylinder, Ribbon };
 
-// Holds one Bezier curve. Its width goes evenly from that at u = 0 to that at u = 1.
+// Holds one Bezier curve. Its width changes linearly from u = 0 to u = 1.
 struct CurvePiece {
     std::array<Vec3f, 4> p;
     std::array<float, 2> width;
@@ -29,8 +29,8 @@ struct Curves {
     bool flipNormals = false;                   // reverseOrientation xor the transform mirrors
     // How far rays start from a curve, per coordinate and width. pbrt-v3's 2 in shape space.
     Vec3f errorPerWidth = Vec3f::Constant(2);
-    // Where a transform stretches or mirrors, width and sides are those in shape space, which the
-    // pieces are then in.
+    // If a transform stretches or mirrors, width and sides are those in shape space, in which the
+    // pieces are then given.
     std::optional<QuadricPlacement> place;
 
     uint32_t PrimitiveCount() const { return uint32_t(pieces.size()) << splitDepth; }
@@ -38,20 +38,20 @@ struct Curves {
     Bounds3f WorldBounds(uint32_t primitive) const;
 };
 
-// Returns the point that lies t of the way from a to b.
+// Returns the point at t of the way from a to b.
 inline Vec3f Between(float t, const Vec3f& a, const Vec3f& b) { return (1 - t) * a + t * b; }
 
-// Where a ray meets a curve: u runs along the piece, v across it, both from 0 to 1.
+// Where a ray hits a curve: u runs along the piece, v across it, both from 0 to 1.
 struct CurveHit {
     float t, u, v;
 };
 
-// Returns the nearest hit in (0, ray.tMax), if any. The piece is halved until it is straight within
-// a twentieth of its width, and the hit lies where the ray is nearest to it in the plane across the
-// ray, as in pbrt-v3 (Nakamaru and Ohno 2002). A width of 0 is not hit.
+// Returns the nearest hit in (0, ray.tMax), if any. The piece is halved until it is straight to
+// within a twentieth of its width; the hit is where it is nearest to the ray in the plane
+// perpendicular to the ray, as in pbrt-v3 (Nakamaru and Ohno 2002). A width of 0 is not hit.
 std::optional<CurveHit> Intersect(const Curves&, uint32_t primitive, const Ray&);
 
-// Fills in everything about the hit but wo, material and light.
+// Fills in everything about the hit except wo, material and light.
 void Interact(const Curves&, uint32_t primitive, const Ray&, const CurveHit&,
               SurfaceInteraction* hit);
 

@@ -22,7 +22,7 @@ struct Mesh {
     std::vector<Vec3f> p;
     std::vector<Vec3f> n;   // empty or one a vertex; need not be unit
     std::vector<Vec2f> uv;  // empty or one a vertex
-    // What only some materials read, each empty or one a vertex: the second texture coordinates,
+    // What only some materials read, each empty or one per vertex: the second texture coordinates,
     // colours with alpha, and tangents along u, whose fourth number is the side of the other
     // tangent: (n x tangent) times it.
     std::vector<Vec2f> uv1;
@@ -31,8 +31,8 @@ struct Mesh {
     bool reverseOrientation = false;
     bool flipNormals = false;  // reverseOrientation xor the transform mirrors
 
-    // Fills in everything about the hit but wo, material and light; b1 and b2 weigh the second
-    // and third vertex.
+    // Fills in everything about the hit except wo, material and light; b1 and b2 are the weights of
+    // the second and third vertex.
     void Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
                   SurfaceInteraction* hit) const;
 
@@ -40,8 +40,8 @@ struct Mesh {
     Vec2f Uv1(uint32_t triangle, float b1, float b2) const;  // as Uv where there is no second set
     std::array<float, 4> Color(uint32_t triangle, float b1, float b2) const;  // 1 without colours
     float Area(uint32_t triangle) const;
-    // The side that emits is pbrt-v3's: vertex normals decide, without regard to
-    // ReverseOrientation; those of a light are taken together.
+    // The emitting side is pbrt-v3's: vertex normals decide, regardless of ReverseOrientation;
+    // those of a triangle are added.
     TriangleSampler Sampler(uint32_t triangle) const;
 };
 

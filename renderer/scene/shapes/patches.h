@@ -1,4 +1,4 @@
-// Makes meshes of shapes that are given as functions of two parameters.
+// Makes meshes of parametric surfaces.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// Spans "nu" by "nv" heights "Pz" over the unit square, two triangles a cell. Throws Error with
-// file and line where the counts do not agree or a height is not finite.
+// Spans "nu" by "nv" heights "Pz" over the unit square, two triangles per cell. Throws Error with
+// file and line if the counts do not agree or a height is not finite.
 MeshData HeightfieldMesh(const ShapeEntity&);
 
 // Evaluates a rational B-spline surface (Piegl and Tiller 1997) at 30x30 points between "u0", "u1",

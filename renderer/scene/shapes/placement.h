@@ -1,4 +1,4 @@
-// Reads where shapes stand that are intersected in their own space.
+// Places shapes that are intersected in their own space.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -8,12 +8,13 @@ namespace lull {
 
 bool Mirrors(const Mat4d& m);
 
-// Takes the scale out of a transform, for the sizes of the shape to be multiplied by, and returns
-// it. A transform that stretches is left as it is: nothing is returned.
+// Removes the uniform scale from a transform and returns it; the sizes of the shape are to be
+// multiplied by it. A transform that stretches stays unchanged: nothing is returned.
 std::optional<float> TakeScale(Mat4d* m);
 
-// Returns where a shape stands, with its scale taken out into *scale: sampling takes a shape's area
-// and the cone that it subtends from its sizes. Throws Error where a shape that emits is stretched.
+// Returns the placement of a shape without its scale, which goes to *scale: sampling computes a
+// shape's area and the cone that it subtends from its sizes. Throws Error if an emitting shape is
+// stretched.
 QuadricPlacement PlacementOf(const ShapeEntity&, float* scale);
 
 }  // namespace lull

@@ -43,7 +43,7 @@ void Interact(const Sphere&, const Ray&, float t, SurfaceNeeds, SurfaceInteracti
 void Interact(const Disk&, const Ray&, float t, SurfaceNeeds, SurfaceInteraction* hit);
 
 // Sample a point as seen from `from`: spheres by the cone they subtend, disks by area. As in
-// pbrt-v3 clipping is left out of account. The placement must have no scale.
+// pbrt-v3, clipping is ignored. The placement must have no scale.
 std::optional<ShapeSample> Sample(const Sphere&, const Vec3f& from, const Vec2f& u);
 std::optional<ShapeSample> Sample(const Disk&, const Vec3f& from, const Vec2f& u);
 

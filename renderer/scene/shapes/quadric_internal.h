@@ -14,8 +14,8 @@ Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper)
 // Transforms a point with absolute error bounds, and bounds the error of the result.
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error);
 
-// Turns the point and, where they are needed, hit->dpdu ... dndv, given in shape space, into world
-// space and derives the normals, for which dpdu and dpdv must always be there.
+// Transforms the point and, where needed, hit->dpdu ... dndv from shape space to world space and
+// derives the normals, for which dpdu and dpdv must always be given.
 void FinishQuadricHit(const QuadricPlacement&, const Vec3f& pShape, const Vec3f& errorShape,
                       SurfaceNeeds, SurfaceInteraction* hit);
 

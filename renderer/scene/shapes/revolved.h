@@ -7,7 +7,7 @@
 namespace lull {
 
 // Represents {x^2 + y^2 = r2[0] + r2[1] z + r2[2] z^2, zMin <= z <= zMax, phi <= phiMax}. The curve
-// that turns starts at `start` (v = 0) and ends at `end` (v = 1); phi counts from it.
+// that turns starts at `start` (v = 0) and ends at `end` (v = 1); phi is measured from it.
 struct Revolved {
     QuadricPlacement place;
     bool isParabola = false;  // the curve; else a straight line
@@ -23,15 +23,15 @@ struct Revolved {
 
 // Make the shapes from their sizes (pbrt 3rd ed., 3.3 and 3.5). The cylinder stands on zMin; the
 // cone has its tip at `height`; the paraboloid touches the origin and has `radius` at zMax; the
-// hyperboloid turns the line from p1 to p2. `phiMax` in radians. The result has no area, and must
-// not be used, where HasArea says so.
+// hyperboloid turns the line from p1 to p2. `phiMax` in radians. The result must not be used if
+// HasArea says that it has no area.
 Revolved MakeCylinder(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeCone(float radius, float height, float phiMax);
 Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeHyperboloid(const Vec3f& p1, const Vec3f& p2, float phiMax);
 bool HasArea(const Revolved&);
 
-// As for the other quadrics. Only cylinders are sampled: evenly by area.
+// As for the other quadrics. Only cylinders are sampled: uniformly by area.
 std::optional<float> Intersect(const Revolved&, const Ray&);
 void Interact(const Revolved&, const Ray&, float t, SurfaceNeeds, SurfaceInteraction* hit);
 std::optional<ShapeSample> Sample(const Revolved&, const Vec3f& from, const Vec2f& u);

@@ -1,4 +1,4 @@
-// Holds a point chosen on an emitting shape, and what area and solid angle have to do with it.
+// Holds a point sampled on an emitting shape, and converts between area and solid angle.
 #pragma once
 
 #include "renderer/base/math.h"
@@ -10,7 +10,7 @@ struct ShapeSample {
     float pdf = 0;       // 1/sr, as seen from the reference point; positive and finite
 };
 
-// Converts a density by area to one by solid angle; 0 where that would not be finite.
+// Converts a density by area to one by solid angle; 0 if that would not be finite.
 inline float SolidAnglePdf(float areaPdf, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
     const Vec3f d = p - from;
     const float distance2 = d.squaredNorm();

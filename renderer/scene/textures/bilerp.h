@@ -24,7 +24,7 @@ SurfaceNeeds Needs(const Bilerp<T>& bilerp, const TextureTable&) {
     return Needs(bilerp.mapping);
 }
 
-// Reads the corners, which are constants for pbrt-v3: textures there are not looked up.
+// Reads the corners, which are constants in pbrt-v3: textures are not looked up there.
 template <typename T>
 Made<T, Bilerp<T>> MakeBilerp(const TextureInput& input) {
     const auto corner = [&](const char* name, float otherwise) -> T {

@@ -5,15 +5,15 @@
 
 namespace lull {
 
-// Without differentials pbrt-v3's "closedform" antialiasing takes one point as well, so that
-// there is one kind for both values of "aamode".
+// Without differentials pbrt-v3's "closedform" antialiasing also takes one point, so that one kind
+// serves both values of "aamode".
 template <typename T>
 struct Checkerboard {
     std::variant<Mapping2D, Mapping3D> mapping;  // as "dimension" says
     TextureHandle<T> tex1, tex2;
 };
 
-// Says whether floor(x) is odd; stays in float, since x may be beyond every integer type.
+// Says whether floor(x) is odd; in float, since x may exceed every integer type.
 inline bool IsOdd(float x) {
     const float lower = std::floor(x);
     return lower - 2 * std::floor(lower * 0.5f) != 0;

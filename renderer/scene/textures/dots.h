@@ -1,4 +1,4 @@
-// Scatters discs over the unit squares of a mapping, at most one a square.
+// Scatters discs over the unit squares of a mapping, at most one per square.
 #pragma once
 
 #include "renderer/scene/textures/mapping.h"
@@ -33,8 +33,8 @@ SurfaceNeeds Needs(const Dots<T>& dots, const TextureTable& table) {
     return Needs(dots.mapping) | table.Needs(dots.inDot) | table.Needs(dots.aroundDots);
 }
 
-// pbrt-v3 hands "inside" and "outside" over in the wrong order, so that "outside" is what the dots
-// show. Materials made for pbrt-v3 show it, so it is kept.
+// pbrt-v3 passes "inside" and "outside" in the wrong order, so that the dots show "outside". Scenes
+// made for pbrt-v3 rely on it, so it is kept.
 template <typename T>
 Made<T, Dots<T>> MakeDots(const TextureInput& input) {
     const TextureHandle<T> inside = GetTexture<T>(input, "inside", 1);

@@ -1,4 +1,4 @@
-// Looks up image files as pbrt-v3 filters them, where that is asked for.
+// Looks up image files with pbrt-v3's filtering, if asked for.
 #pragma once
 
 #include "renderer/scene/textures/mapping.h"
@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// Takes the finest level wherever the footprint is not known, which is at all hits but the
-// camera's: pbrt-v3's path and volpath carry no ray differentials beyond these either, not even to
+// Uses the finest level wherever the footprint is not known, which is at all but the camera's hits:
+// pbrt-v3's path and volpath carry no ray differentials beyond these either, not even through
 // mirrors.
 template <typename T>
 struct FilteredImageMap {

@@ -48,12 +48,11 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
 }
 
 // Reads "filename" or "embeddedimage" (into Description::images), "gamma" (the file is
-// sRGB-encoded; without it: as its extension suggests), "scale" (after linearisation), "channel"
-// (of a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap"
-// ("repeat", "black", "clamp", "mirrored"; "wrapt" of its own for the second axis) and the mapping.
-// "trilinear" and "maxanisotropy" (8; up to 1024) have an effect where images are filtered as
-// pbrt-v3 does. Throws Error with file and line if the image cannot be read; with `substitute` that
-// becomes pbrt-v3's grey.
+// sRGB-encoded; by default as its extension suggests), "scale" (after linearisation), "channel" (of
+// a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap" ("repeat",
+// "black", "clamp", "mirrored"; "wrapt" for the second axis alone) and the mapping. "trilinear" and
+// "maxanisotropy" (8; up to 1024) have an effect with pbrt-v3's filtering. Throws Error with file
+// and line if the image cannot be read; with `substitute` that becomes pbrt-v3's grey.
 template <typename T>
 Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input);
 

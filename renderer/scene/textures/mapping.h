@@ -13,7 +13,7 @@ struct UvMapping {
 
 // Scales, turns and shears as well (KHR_texture_transform).
 struct AffineUvMapping {
-    // Rows, as plain numbers: the variant must not be aligned to more than its kinds were.
+    // Rows, as plain numbers, so that the variant needs no larger alignment.
     std::array<float, 3> s, t;
 
     Vec2f operator()(const Vec2f& uv) const {

@@ -12,18 +12,18 @@ namespace lull {
 // Holds an image and its copies of half the size each, down to a single texel.
 class MipPyramid {
   public:
-    // Takes an image of 1 or 3 interleaved channels, its rows from the bottom, neither side 0.
-    // Where a side is no power of two the image is enlarged to the next ones as pbrt-v3 does it
-    // (Lanczos, over two texels to each side), and what becomes negative is 0. Throws Error where
-    // the memory does not suffice.
+    // Takes an image of 1 or 3 interleaved channels, its rows from the bottom, neither side 0. If a
+    // side is not a power of two, the image is enlarged to the next one as in pbrt-v3 (Lanczos,
+    // over two texels to each side), and negative results become 0. Throws Error if there is not
+    // enough memory.
     MipPyramid(int width, int height, int channels, std::vector<float> texels, Wrap wrapS,
                Wrap wrapT);
 
     int LevelCount() const { return int(levels.size()); }
     size_t Bytes() const;
 
-    // T is float for images of one channel, or Rgb. Points are those of texture space, any at all;
-    // results are finite where the texels are.
+    // T is float for images of one channel, or Rgb. Any point of texture space is valid; results
+    // are finite if the texels are.
 
     // Interpolates a level, 0 being the finest.
     template <typename T>
@@ -34,8 +34,8 @@ class MipPyramid {
     T Trilinear(const Vec2f& st, float width) const;
 
     // Averages over an ellipse by a Gaussian. `d0` and `d1` are how far st moves from one sample of
-    // the film to the next in either direction; the longer is at most `maxAnisotropy` (> 0) times
-    // as long as the shorter, which else is made longer.
+    // the film to the next in either direction; the shorter is lengthened so that the longer is at
+    // most `maxAnisotropy` (> 0) times as long.
     template <typename T>
     T Ewa(const Vec2f& st, Vec2f d0, Vec2f d1, float maxAnisotropy) const;
 

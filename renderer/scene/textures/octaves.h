@@ -20,7 +20,7 @@ using Fbm = Octaves<T, FractionalBrownianMotion>;
 template <typename T>
 using Wrinkled = Octaves<T, Turbulence>;
 
-// Reads "octaves". Beyond 64 no float coordinate has a fraction left that noise could show.
+// Reads "octaves". Beyond 64 float coordinates have no fraction left for noise to show.
 inline int GetOctaves(const TextureInput& input) {
     return std::clamp(input.entity.parameters.GetInt("octaves", 8), 0, 64);
 }

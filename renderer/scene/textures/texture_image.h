@@ -1,4 +1,4 @@
-// Holds the images of imagemap textures, one for all textures that read the same file.
+// Holds the images of imagemap textures, shared by all textures that read the same file.
 #pragma once
 
 #include <map>
@@ -21,17 +21,17 @@ struct Texels {
     std::vector<T> values;  // rows from the bottom, channels interleaved
 };
 
-// Holds an image ready for look-ups. The first row is the lowest, since texture space has (0, 0)
-// at the lower left. pbrt-v3 resamples images to powers of two first; here they stay as they are,
-// and so do their texels: 8-bit ones go through a table, half ones through the processor's
-// conversion. Only half and float texels that have to be linearised are converted beforehand.
+// Holds an image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at
+// the lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and
+// the type of their texels: 8-bit ones are decoded by a table, halves by the processor. Only half
+// and float texels that have to be linearised are converted beforehand.
 struct TextureImage {
     int width = 0, height = 0;
     std::variant<Texels<uint8_t, 1>, Texels<uint8_t, 3>, Texels<Half, 1>, Texels<Half, 3>,
                  Texels<float, 1>, Texels<float, 3>>
         texels;
     std::array<float, 256> decode{};  // 8-bit texel to linear
-    std::optional<Rgb> uniform;       // the value of all texels, where it is one
+    std::optional<Rgb> uniform;       // the value of all texels, if they are equal
 
     size_t Bytes() const;
     bool IsGrey() const;
@@ -39,27 +39,28 @@ struct TextureImage {
 
 // Says what to keep of an image. Luminance asks for one channel: grey images as they are, others by
 // their luminance; as in pbrt-v3 that is the luminance of the *encoded* colours, linearised
-// afterwards. A single channel of a grey image is its grey; Alpha is 1 where there is none, and is
+// afterwards. A single channel of a grey image is its grey; Alpha is 1 if there is none, and is
 // never linearised.
 enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha };
 
-// Makes a TextureImage of an image as read. `gamma` says that texels are sRGB-encoded.
+// Makes a TextureImage of an image as it was read. `gamma` says that texels are sRGB-encoded.
 TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels channels);
 
 // Shares images between textures.
 class TextureImages {
   public:
-    // Read the image unless it is here already. Throw Error as ReadImage does.
+    // Read the image unless it has been read already. Throw Error as ReadImage does.
     std::shared_ptr<const TextureImage> Get(const std::string& path, bool gamma,
                                             TextureChannels channels);
     std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, bool gamma,
                                             TextureChannels channels);
 
-    // Returns the image, `scale` times as bright, and its smaller copies. It must be one of these.
+    // Returns the image, multiplied by `scale`, with its smaller copies. It must be one of these
+    // images.
     std::shared_ptr<const MipPyramid> GetPyramid(const std::shared_ptr<const TextureImage>&,
                                                  float scale, Wrap wrapS, Wrap wrapT);
 
-    // Returns the memory taken by images; by the pyramids alone, where images are in these.
+    // Returns the memory taken by images, or by the pyramids alone if there are any.
     size_t Bytes() const;
 
   private:

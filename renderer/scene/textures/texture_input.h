@@ -14,13 +14,13 @@ struct TextureInput {
     const Description& description;
     const TextureTable& table;  // holds all textures before this one
     TextureImages& images;
-    bool substitute;  // replace what is not modelled, with a counted warning
+    bool substitute;  // replace what is not supported, with a counted warning
     Warnings& warnings;
     TextureFiltering filtering = TextureFiltering::Bilinear;
 };
 
-// Is what a maker returns: a new texture of its kind or kinds, or, where another texture or a
-// constant says the same, the handle of that.
+// The result of a maker: a new texture of its kind or kinds, or the handle of an equivalent texture
+// or constant.
 template <typename T, typename... Kind>
 using Made = std::variant<TextureHandle<T>, Kind...>;
 

@@ -1,4 +1,4 @@
-// Ripples like water under wind: waves whose height another, coarser noise sets.
+// Ripples like water under wind: waves whose height is set by another, coarser noise.
 #pragma once
 
 #include "renderer/scene/textures/octaves.h"

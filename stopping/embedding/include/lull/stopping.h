@@ -1,5 +1,5 @@
-/* Lets a renderer ask when its picture has had enough samples: lull's stopping module, for C and
- * all that calls C.
+/* Lets a renderer ask when its picture has enough samples: lull's stopping module, for C and
+ * everything that can call C.
  *
  *     lull_settings settings = {0};              // all that is 0 has its default
  *     settings.width = 1920, settings.height = 1080;
@@ -12,20 +12,20 @@
  *     }
  *     lull_stopper_destroy(stopper);
  *
- * A picture is cut into blocks, each of which stops by itself: where a block goes on is known, so
- * that the rest need not be sampled again. Blocks may have different numbers of samples.
+ * A picture is cut into blocks, each of which stops on its own, so that only blocks that go on need
+ * more samples. Blocks may have different numbers of samples.
  *
  * Errors. Functions return LULL_OK or another lull_status; then lull_error_message() says, in the
  * same thread, what is wrong and what would be right, and nothing has changed: no result is
- * written, no block has taken note of anything (but for LULL_OUT_OF_MEMORY and LULL_INTERNAL, after
- * which a stopper is only good for being destroyed). Null pointers are errors as others, unless it
- * is said that they may be null. Nothing throws, prints or ends the program.
+ * written, no block's state changes (except for LULL_OUT_OF_MEMORY and LULL_INTERNAL, after which a
+ * stopper can only be destroyed). Null pointers are errors like others, unless stated otherwise.
+ * Nothing throws, prints or ends the program.
  *
- * Threads. All functions can be called from any thread at any time, but nobody may use a stopper
- * while or after it is destroyed. Blocks are judged at the same time where threads ask for
- * different ones; whoever asks for the same one waits. lull_stopper_observe() shares its work
- * between the threads that oneTBB has for the caller. Reading a model uses the HDF5 library, which
- * allows one thread at a time: a program that uses HDF5 itself keeps the two apart.
+ * Threads. All functions can be called from any thread at any time, but a stopper must not be used
+ * while or after it is destroyed. Different blocks can be judged concurrently; calls for the same
+ * block wait for each other. lull_stopper_observe() shares its work between the threads that oneTBB
+ * has for the caller. Reading a model uses the HDF5 library, which allows one thread at a time: a
+ * program that uses HDF5 itself must not do so meanwhile.
  *
  * The same pictures lead to the same answers, bit for bit, on any number of threads.
  */
@@ -46,52 +46,52 @@ extern "C" {
 
 typedef enum lull_status {
     LULL_OK = 0,
-    LULL_BAD_ARGUMENT = 1, /* a setting, a size, an spp, a rule that there is not */
+    LULL_BAD_ARGUMENT = 1, /* an invalid setting, size or spp, or an unknown rule */
     LULL_BAD_FILE = 2,     /* a model or thresholds file is missing or damaged, or a saved state */
     LULL_OUT_OF_MEMORY = 3,
-    LULL_INTERNAL = 4 /* a mistake of lull's own */
+    LULL_INTERNAL = 4 /* a bug in lull */
 } lull_status;
 
 typedef enum lull_format {
     LULL_LINEAR_FLOAT = 0, /* float, linear R, G, B with Rec. 709 primaries; 1 is the display's
-                              white. What is not finite counts as black. */
+                              white. Values not finite count as black. */
     LULL_SRGB8 = 1         /* unsigned char, sRGB, as in a PNG. A half in 8 bits is rounded, which
-                              rules that look at it take for a little noise. */
+                              looks like a little noise to rules that read it. */
 } lull_format;
 
-/* Holds what a stopper is made from; begin with all zeros. */
+/* Holds the settings of a stopper; begin with all zeros. */
 typedef struct lull_settings {
     int width, height; /* pixels of the whole picture; from 40 to 65,536 each */
-    /* Who decides. A model, by its name ("entropy", the default; "noise", "paper") or by its file
+    /* What decides: a model, by its name ("entropy", the default; "noise", "paper") or by its file
      * ("own.h5"); or any other rule of `lull render --stop` ("entropy:0.64", "lnoise",
-     * "fixed:400"). One of the two, the other is NULL. */
+     * "fixed:400"). Set one of the two; the other is NULL. */
     const char *model, *rule;
     /* The folder of installed models. NULL: $LULL_MODELS if that is set, else share/lull/models
      * where the library is installed. */
     const char* models;
     /* Pixels a side of the blocks, at least 40; 0: 200, which the models were trained on. What is
-     * left at the right and at the bottom is a block of its own from 40 pixels on, and is else
-     * added to its neighbour. A block as large as the picture is the whole picture. */
+     * left at the right and at the bottom is a block of its own if it has 40 pixels or more, and
+     * is otherwise added to its neighbour. A block as large as the picture is the whole picture. */
     int block;
-    /* Samples per pixel between two pictures of a block, if that is always the same: the first has
-     * so many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
-     * one when 40 spp have passed since the last that they looked at; "noise" and "paper" look at
-     * 40, 80, 120, ... spp only, and at 20, 60, 100, ... with 20. The default model compares a
-     * picture with earlier ones, of 1 / sqrt(2) of its spp, 1 / 2, ...: where spp double from one
-     * picture to the next (64, 128, 256), it never comes to a vote. */
+    /* Samples per pixel between two pictures of a block, if always the same: the first picture has
+     * as many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
+     * one when 40 spp have passed since the last one that they looked at; "noise" and "paper" look
+     * only at 40, 80, 120, ... spp, and at 20, 60, 100, ... with 20. The default model compares a
+     * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: if the spp double from one
+     * picture to the next (64, 128, 256), it never votes. */
     int pass;
-    int cap;        /* The spp that the picture has at most, if above 10,000; 0: not known */
+    int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known */
     double caution; /* Divides the threshold of visible noise of "entropy", "noise" and the rules
                        `entropy` and `lnoise`: 2 stops later, 0.5 sooner; 0: 1 */
 } lull_settings;
 
-/* Shows pixels; read during the call only. Strides are in bytes and may be negative; 0 means that
- * there is nothing between: channels of a pixel, pixels of a row, rows from the top down. */
+/* Points to pixels, which are read only during the call. Strides are in bytes and may be negative;
+ * 0 means contiguous channels of a pixel, pixels of a row, and rows, from the top down. */
 typedef struct lull_picture {
     int width, height;
     int format;       /* a lull_format */
     const void* mean; /* of all samples so far: the first channel of the pixel at the top left */
-    const void* half; /* the same of one fixed half of the samples; NULL where there is none */
+    const void* half; /* the same of one fixed half of the samples; NULL if there is none */
     ptrdiff_t row_stride, pixel_stride, channel_stride;
 } lull_picture;
 
@@ -99,23 +99,23 @@ typedef struct lull_rect {
     int x, y, width, height; /* pixels; x to the right, y down */
 } lull_rect;
 
-/* Says how it stands with a block. No number is NaN. */
+/* Describes the state of a block. No number is NaN. */
 typedef struct lull_answer {
     int stop;         /* 1: needs no more samples; stays so */
     int judged;       /* 1: the call looked at the picture; 0: the numbers are older */
-    int spp;          /* of the picture that was shown last, or of that which stopped it */
-    int next_spp;     /* the least spp that will be looked at; 0: it looks at none */
+    int spp;          /* of the picture that was shown last, or of the one that stopped it */
+    int next_spp;     /* the least spp that will be looked at next; 0: none */
     int votes;        /* for stopping, in a row, */
     int votes_needed; /* and how many stop the block; 1 for rules that do not vote */
-    /* Between which spp people would stop to see noise in 80 of 100 cases, once it has stopped, for
-     * models that know; 0: not known. */
+    /* Once it has stopped: between which spp people would cease to see noise in 80 of 100 cases,
+     * for models that know; 0: not known. */
     int people_low, people_high;
     double value;         /* what the rule compares, */
     double threshold;     /* with what */
     double probability;   /* that people would see noise (models), 1 before there is an estimate;
-                             -1: the rule knows none */
+                             -1: the rule has none */
     double visible_noise; /* RMS of the noise in lightness (0 to 100), less on texture, at the last
-                             look where a half was shown; -1: not known */
+                             look with a half; -1: not known */
 } lull_answer;
 
 /* Judges the blocks of one picture, from its first samples to its last. */
@@ -135,12 +135,12 @@ LULL_API lull_status lull_stopper_block_rect(const lull_stopper* stopper, int bl
 /* Returns 1 if the rule compares with a half of the samples, so that pictures must have one. */
 LULL_API int lull_stopper_needs_half(const lull_stopper* stopper);
 
-/* Shows the whole picture, all of which has `spp` samples per pixel, but for blocks that have
- * stopped, whose pixels are not read; `spp` is more than at the last call. Writes as many answers
- * as there are blocks, unless `answers` is NULL. LULL_BAD_ARGUMENT. */
+/* Shows the whole picture, which has `spp` samples per pixel except in blocks that have stopped,
+ * whose pixels are not read; `spp` is more than at the last call. Writes an answer for each block,
+ * unless `answers` is NULL. LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* picture,
                                           int spp, lull_answer* answers);
-/* The same for one block: a picture of its size. `answer` may be NULL. */
+/* Does the same for one block, with a picture of its size. `answer` may be NULL. */
 LULL_API lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
                                                 const lull_picture* picture, int spp,
                                                 lull_answer* answer);
@@ -150,16 +150,16 @@ LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
 /* Returns 1 if all blocks have stopped, and for NULL. */
 LULL_API int lull_stopper_done(const lull_stopper* stopper);
 
-/* Writes all that a stopper has noted to `bytes`, for a checkpoint of the renderer. `*size` is the
- * room there, and then what is needed; with `bytes` NULL it only says that. LULL_BAD_ARGUMENT if
- * the room is too small. The layout is that of this machine and version. */
+/* Writes the state of a stopper to `bytes`, for a checkpoint of the renderer. `*size` is the room
+ * there on entry, and the size needed on return; if `bytes` is NULL nothing else is done.
+ * LULL_BAD_ARGUMENT if the room is too small. The layout is that of this machine and version. */
 LULL_API lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes, size_t* size);
-/* Takes it up again in a stopper with the same settings. LULL_BAD_FILE if the bytes are damaged or
- * belong to other settings; the stopper is then as it was. */
+/* Restores that state in a stopper with the same settings. LULL_BAD_FILE if the bytes are damaged
+ * or belong to other settings; the stopper is then unchanged. */
 LULL_API lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_t size);
 
-/* Returns what went wrong in the last call of this thread that returned other than LULL_OK; never
- * NULL; valid until the next such call. */
+/* Returns what went wrong in the last call of this thread that did not return LULL_OK; never NULL;
+ * valid until the next such call. */
 LULL_API const char* lull_error_message(void);
 /* Returns the version of the library, such as "0.1.0". */
 LULL_API const char* lull_version(void);
