@@ -24,7 +24,7 @@ uint64_t SeedOf(uint64_t seed, int round) {
 // Cells that the first round has to record in.
 constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
 
-// What a vertex costs with a guide over without (renderer/GUIDING.md).
+// What a vertex costs with a guide over without (renderer/docs/guiding.md).
 constexpr double kVertexCost = 1.45;
 
 int RoundSamples(int round) { return kFirstRound << round; }

@@ -16,7 +16,7 @@ double ParseDuration(const std::string& text);
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
 // Returns the seconds to leave for the files of an image: twice what they take of a
-// core that nobody shares (renderer/README.md).
+// core that nobody shares (renderer/docs/rendering.md).
 double SecondsToWrite(int64_t pixels);
 
 }  // namespace lull

@@ -76,7 +76,7 @@ typedef struct lull_settings {
     /* Samples per pixel between two pictures of a block, if always the same: the first picture has
      * as many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
      * one when 40 spp have passed since the last one that they looked at; "noise" and "paper" look
-     * only at 40, 80, 120, ... spp, and at 20, 60, 100, ... with 20. The default model compares a
+     * only at 40, 80, 120, ... spp (20, 60, 100, ... with 20 here). The default model compares a
      * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: if the spp double from one
      * picture to the next (64, 128, 256), it never votes. */
     int pass;
