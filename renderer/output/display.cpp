@@ -158,7 +158,7 @@ Display::Display(const DisplayAddress& address, const std::string& name, const P
         try {
             state->Run();
         } catch (const std::exception&) {
-            // Where even this memory is lacking, the render has other worries.
+            // Out of memory even for this: the render will report that itself.
         }
     }).detach();
 }

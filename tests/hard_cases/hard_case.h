@@ -1,5 +1,5 @@
-// Inputs that are built to break a path tracer or a stopping rule, each with its answer known. The
-// program's `selftest` and the test program run the same cases; neither is known here.
+// Inputs built to break a path tracer or a stopping rule, each with a known answer. The program's
+// `selftest` and the test program run the same cases; neither is known here.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace lull {
 
 struct HardCaseOptions {
     bool isLong = false;  // the counts of rays, samples and trials of a nightly run
-    uint64_t seed = 1;    // of everything random, so that a failure can be had again
+    uint64_t seed = 1;    // of everything random, so that a failure can be repeated
 };
 
 // Holds what came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
@@ -48,10 +48,10 @@ std::vector<HardCase> RandomCases();
 // Returns the result that is furthest out of its tolerance, or closest to it. At least one.
 HardCaseResult Worst(std::span<const HardCaseResult> results);
 
-// Counts what must never happen. The note of what it was for the first time follows the total.
+// Counts what must never happen. A note on the first occurrence follows the total.
 struct Failures {
     int64_t trials = 0, count = 0;
-    std::string first;  // of the first failure: the seed or whatever else it can be had again by
+    std::string first;  // of the first failure: the seed or whatever else repeats it
 
     void Note(bool failed, const std::function<std::string()>& how);
     HardCaseResult Result(const std::string& trialName) const;

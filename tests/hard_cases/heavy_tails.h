@@ -1,4 +1,4 @@
-// Samples of which the few that matter come seldom: rules that look at the samples they stop can
+// Samples of which the few that matter are rare: rules that look at the samples that they stop can
 // stop just where those are still missing, and leave the image too dark.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Says how often a path carries what. All pixels have the same mean, 0.25.
+// Describes how the contributions of paths are distributed. All pixels have the same mean, 0.25.
 struct Tail {
     std::string name;
     double rarity;  // the share of the paths that find the rare light; 0: there is none
@@ -17,7 +17,7 @@ struct Tail {
 
 std::vector<Tail> HeavyTails();
 
-// Holds what a rule makes of a block.
+// Holds what a rule does to a block.
 struct StopOutcome {
     int spp = 0;        // 10,000 where it never stops
     double bias = 0;    // of the block's mean, relative

@@ -1,4 +1,4 @@
-// Makes small scenes from pbrt-v3 text and compares their radiance with what is known of it.
+// Makes small scenes from pbrt-v3 text and compares their radiance with known answers.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ HardCaseResult CompareRadiance(const Scene& scene, double answer, double relativ
 
 inline const char* const kSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
-// Returns a trianglemesh in pbrt-v3's words.
+// Returns a trianglemesh as pbrt-v3 text.
 std::string MeshText(const std::string& indices, const std::string& points);
 
 // Returns the mesh of the box between two corners, its normals outwards.

@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Runs `command`, a single one, which keeps its state in the file `checkpoint`, and sends it
-// `signal` at the moment when that file has been written.
+// Runs a single command, which keeps its state in the file `checkpoint`, and sends it `signal` as
+// soon as that file has been written.
 inline Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
                             int signal, const std::string& checkpoint) {
     return RunShell(directory, fmt::format("LD_PRELOAD='{}' RENAMED_FILE='{}' RENAMED_SIGNAL={} {}",

@@ -1,4 +1,4 @@
-// Turns pbrt-v3's materials into glTF's metallic-roughness material, as near as that comes.
+// Turns pbrt-v3's materials into glTF's metallic-roughness material, as closely as possible.
 #pragma once
 
 #include <map>
@@ -10,15 +10,15 @@
 
 namespace lull {
 
-// Adds materials and the images they use to a file, each once. What has no like in glTF is warned
-// of: it becomes a matte grey.
+// Adds materials and the images they use to a file, each once. What glTF cannot express becomes
+// matte grey, with a warning.
 class MaterialWriter {
   public:
     MaterialWriter(const Description& description, GlbFile* file, Warnings* warnings)
         : description(description), file(file), warnings(warnings) {}
 
-    // Returns the material of a shape, with what it emits and what cuts it out; -1 where it is
-    // "none", a surface that is not there.
+    // Returns the material of a shape, with its emission and its cutout; -1 if it is "none", which
+    // is no surface.
     int Of(const ShapeEntity& shape);
 
   private:

@@ -1,4 +1,4 @@
-// Makes the triangles that glTF knows of the shapes that lull knows.
+// Turns lull's shapes into triangles for glTF.
 #pragma once
 
 #include "renderer/scene/shape_table.h"
@@ -13,8 +13,8 @@ struct GltfMesh {
     std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-// Triangulates a shape and carries it by `m`, which may mirror. Spheres and disks become 64 by 32
-// and 64 patches; clipped spheres are taken as whole. Nothing comes of curves.
+// Triangulates a shape and transforms it by `m`, which may mirror. Spheres and disks become 64 by
+// 32 and 64 patches; clipped spheres are treated as whole. Curves give nothing.
 GltfMesh MakeGltfMesh(const Shape& shape, const Mat4d& m);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Carries what surrounds the shapes of a pbrt-v3 scene into glTF: the view, lights, environment.
+// Converts what surrounds the shapes of a pbrt-v3 scene to glTF: the view, lights, environment.
 #pragma once
 
 #include <string>
@@ -13,18 +13,18 @@ namespace lull {
 // world is left-handed, as pbrt's is, so that the camera sees the same.
 Mat4d GltfFromWorld(const Description& description);
 
-// Adds the camera, with what of the image it sees. Throws Error for others than perspective ones;
-// a lens is left out with a warning.
+// Adds the camera with its field of view. Throws Error for cameras that are not perspective; a lens
+// is dropped with a warning.
 void AddCamera(const Description& description, const Mat4d& gltfFromWorld, GlbFile* file,
                Warnings& warnings);
 
-// Adds point, spot and distant lights; others are left out with a warning. The falloff of spots is
-// glTF's.
+// Adds point, spot and distant lights; others are dropped with a warning. Spot lights fall off as
+// in glTF.
 void AddLights(const Description& description, const Mat4d& gltfFromWorld, GlbFile* file,
                Warnings& warnings);
 
 // Writes the sum of the infinite lights as a latitude-longitude image for `--environment`. Returns
-// whether there are any; nothing is written where not.
+// whether there are any; otherwise nothing is written.
 bool WriteEnvironment(const Description& description, const Mat4d& gltfFromWorld,
                       const std::string& path);
 

@@ -10,7 +10,7 @@ namespace lull {
 
 namespace {
 
-// The module lies to the program as it does where it is installed.
+// The path from the program to the module is the same in the build tree as where it is installed.
 std::string ModulePath() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
     return (program.parent_path().parent_path() / LULL_MODULE_FOLDER / "formats.so").string();

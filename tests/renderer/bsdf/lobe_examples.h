@@ -18,8 +18,8 @@ struct NamedLobe {
     Lobe lobe;
 };
 
-// Returns lobes of every kind that spreads light: smallest to largest alpha, anisotropic both
-// ways, both sides of the interface dense.
+// Returns lobes of every kind that spreads light: smallest to largest alpha, anisotropic both ways,
+// either side of the interface denser.
 inline std::vector<NamedLobe> SpreadLobes() {
     const Rgb color(0.9f, 0.5f, 0.2f);
     std::vector<NamedLobe> lobes = {

@@ -1,4 +1,4 @@
-// Computes scattering once more, in double and in the textbook forms with angles, to compare with.
+// Computes scattering again for comparison, in double and in the textbook forms with angles.
 #pragma once
 
 #include <complex>
@@ -20,7 +20,7 @@ inline double ReferenceFresnel(double cosI, std::complex<double> n) {
     return (std::norm(s) + std::norm(p)) / 2;
 }
 
-// Returns the reflectance between dielectrics seen from the side that the sign of the cosine says.
+// Returns the reflectance between dielectrics, seen from the side given by the sign of the cosine.
 inline double ReferenceDielectric(double cosI, double eta) {
     const double n = cosI > 0 ? eta : 1 / eta;
     const double c = std::abs(cosI);

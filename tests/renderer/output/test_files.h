@@ -35,7 +35,7 @@ struct TemporaryDirectory {
     // Writes a file, with the directories that its name has, and returns its path.
     std::string Write(const std::string& name, std::string_view bytes) const {
         std::filesystem::create_directories((path / name).parent_path());
-        // A new file, for some file systems wait for the disk when an old one is cut to nothing.
+        // A new file, as some file systems wait for the disk when an old one is truncated.
         std::filesystem::remove(path / name);
         std::ofstream out(path / name, std::ios::binary);
         out.write(bytes.data(), std::streamsize(bytes.size()));

@@ -1,4 +1,4 @@
-// Stands for the viewer tev: listens, takes down what it is sent, and puts the image together.
+// Stands in for the viewer tev: listens, records what it is sent, and assembles the image.
 #pragma once
 
 #include <arpa/inet.h>
@@ -17,7 +17,7 @@
 
 namespace lull {
 
-// Listens on a port of this machine that was free. Takes down one connection after the other.
+// Listens on a free port of this machine. Records one connection after the other.
 class ViewerServer {
   public:
     // `limit`: closes each connection after so many bytes. `reads`: whether it reads at all.

@@ -8,8 +8,8 @@
 
 namespace lull {
 
-// Returns noise around a smooth image. Like any source it depends on nothing but pixel, index and
-// seed. The sums are inexact in double, so that the order of additions shows in the last bits.
+// Returns noise around a smooth image. Like any source it depends only on pixel, index and seed.
+// The sums are inexact in double, so that the order of additions shows in the last bits.
 inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
     sampler.StartSample(pixel, index);
     const Vec2f u = sampler.Get2D();
@@ -18,7 +18,7 @@ inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t
     return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
 }
 
-// Says of a synthetic sample what it has met first. The sampler is where the sample has left it.
+// Returns the first hit of a synthetic sample. The sampler continues where the sample left it.
 inline FirstHit SyntheticHit(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
     const Vec2f u = sampler.Get2D();
     return {.albedo = Rgb(u.x(), u.y(), 0.1f),

@@ -1,5 +1,5 @@
-// Takes the place of the accelerator's queries in a program that measures Embree: they do the same,
-// and keep the rays that a thread traces. A program that links this does not link the library's.
+// Replaces the accelerator's queries in a program that measures Embree: they do the same, and
+// record the rays that a thread traces. A program that links this does not link the library's.
 #pragma once
 
 #include <span>
@@ -28,7 +28,7 @@ extern thread_local RayLog* rayLog;
 RTCScene AdmitPackets(const Scene& scene);
 
 // Traces the rays in packets of 8 or 16, gathering each packet first; `areCoherent` tells Embree
-// that those of a packet go nearly the same way. Returns how many hit.
+// that the rays of a packet have similar directions. Returns how many hit.
 template <int width>
 size_t TracePackets(RTCScene world, std::span<const RecordedRay> rays, bool isOcclusion,
                     bool areCoherent);

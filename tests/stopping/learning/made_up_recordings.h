@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Returns a recording whose noise in lightness is `noise` / sqrt(spp) and whose entropies are above
+// Returns a recording whose noise in lightness is `noise` / sqrt(spp) and whose entropies exceed
 // 0.3 by a tenth of that, both with some spread over sub-blocks and time.
 inline BlockRecording MakeRecording(double noise, int end, unsigned seed) {
     std::mt19937 generator(seed);
