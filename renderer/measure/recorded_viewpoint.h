@@ -34,9 +34,9 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
 
 // Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
 // where an interrupted recording with the same limits left film and state, and adds what was
-// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and its onProgress
-// reports progress towards the limits. Of several ranks, the first has the recordings. Throws as
-// Render() does.
+// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and is told of
+// progress towards the limits. Of several ranks, the first has the recordings. Throws as Render()
+// does.
 RenderResult RecordBlocks(const SampleSource&, RenderOptions render, const std::vector<int>& limits,
                           Film*, const RenderState* interrupted, ViewpointRecording*);
 

@@ -28,10 +28,10 @@ std::string NameOf(const AovSet&);
 // Reads such names, in any order. Throws Error naming the first unknown one, or if there is none.
 AovSet ParseAovs(const std::string& names);
 
-// Holds the first hit of a path: a surface, or a point in a medium, which has no normal, object or
-// material.
+// Says what one path has met first: a surface, or a point in a medium, which has no normal, object
+// or material.
 struct FirstHit {
-    Rgb albedo = Rgb::Zero();        // in [0, 1]; for lights their radiance
+    Rgb albedo = Rgb::Zero();        // in [0, 1]; where light is seen instead, that
     Vec3f normal = Vec3f::Zero();    // shading, unit, world, on the viewer's side
     Vec3f position = Vec3f::Zero();  // world
     float depth = 0;        // from the camera's plane along its axis; environment cameras: distance

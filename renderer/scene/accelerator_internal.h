@@ -89,7 +89,7 @@ inline RTCRay MakeRay(const Ray& ray, float time) {
     return r;
 }
 
-// Implement the queries of the accelerator; see there.
+// Do what the accelerator is asked for; see there.
 inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, float time,
                         Hit* hit) {
     RTCRayHit r;

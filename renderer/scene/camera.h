@@ -37,8 +37,8 @@ struct Camera {
     bool HasLens() const { return lensRadius > 0 || lenses; }
 
     // Returns the ray through `film` (pixels) and the lens point that u chooses, at `time` from 0
-    // where the shutter opens to 1; direction unit. The radiance that it finds is multiplied by
-    // *weight, which is 1 except for realistic cameras, and 0 if nothing passes their lenses.
+    // where the shutter opens to 1; direction unit. The radiance that it finds counts *weight
+    // times, which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
     Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
         *weight = 1;
         if (projection == Projection::Perspective && !motion) [[likely]]
@@ -50,9 +50,9 @@ struct Camera {
         return GenerateRay(film, lens, time, &weight);
     }
 
-    // Returns the ray one pixel further along an axis (0 or 1) than `ray`, which is that through
-    // `film` and `lens`. For realistic cameras it is extrapolated from a 20th of a pixel, as in
-    // pbrt-v3; nothing if no light passes there.
+    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that through `film`
+    // and `lens`. For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it;
+    // nothing where no light passes there.
     std::optional<Ray> NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
                                int axis) const;
 
@@ -60,7 +60,7 @@ struct Camera {
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
-    // For all but perspective cameras at rest: separate, so that these do not pay for it.
+    // Of all but perspective cameras at rest: apart, so that these do not pay for it.
     Ray GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const;
     Ray Move(const Ray& ray, float time) const;
 };

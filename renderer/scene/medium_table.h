@@ -27,7 +27,7 @@ struct MediumTable {
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
-    // or infinite coefficients, and grids whose extinction differs between channels.
+    // or infinite coefficients and extinction that differs between channels of a grid.
     MediumTable(const Description&, Warnings&);
 
     // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;

@@ -1,4 +1,4 @@
-// Identifies the file that a rule has read, for the headers of images rendered with it.
+// Identifies the file that a rule has read, in the headers of what was rendered with it.
 #pragma once
 
 #include <string>

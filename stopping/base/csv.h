@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// Returns a text as a field: in quotation marks if it has a comma, a quotation mark or a line
-// break.
+// Returns a text as a field: in quotation marks where a comma, a quotation mark or the end of a
+// line would break the line.
 inline std::string CsvField(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";

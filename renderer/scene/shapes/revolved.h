@@ -23,8 +23,8 @@ struct Revolved {
 
 // Make the shapes from their sizes (pbrt 3rd ed., 3.3 and 3.5). The cylinder stands on zMin; the
 // cone has its tip at `height`; the paraboloid touches the origin and has `radius` at zMax; the
-// hyperboloid turns the line from p1 to p2. `phiMax` in radians. The result must not be used if
-// HasArea says that it has no area.
+// hyperboloid turns the line from p1 to p2. `phiMax` in radians. The result has no area, and must
+// not be used, where HasArea says so.
 Revolved MakeCylinder(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeCone(float radius, float height, float phiMax);
 Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);
