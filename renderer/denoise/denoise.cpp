@@ -1,0 +1,116 @@
+#include "renderer/denoise/denoise.h"
+
+#include <cmath>
+
+#include "renderer/denoise/feature_filter.h"
+#include "renderer/denoise/fireflies.h"
+
+namespace lull {
+
+namespace {
+
+constexpr PatchOptions kPatches{.radius = 9, .patchRadius = 3};
+constexpr float kBandwidths[] = {0.5f, 1.f};
+constexpr float kFireflyLimit = 8;  // standard deviations
+constexpr float kLargest = 1e18f;   // its square is finite
+constexpr float kLeastLuminance = 1e-3f;
+constexpr int kNoiseRadius = 10;  // pixels over which halves say how large noise is
+constexpr float kLeastVariance = 1e-10f;
+
+float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
+
+Halves SaneColours(Halves halves) {
+    for (Planes* half : {&halves.a, &halves.b})
+        for (float& v : half->values) v = Sane(v);
+    return halves;
+}
+
+// Returns features in [-1, 1]: depth z becomes z / (z + median), which is 1 where there is nothing.
+Halves ScaleFeatures(Halves halves) {
+    constexpr int depth = kFeatures - 1;
+    for (Planes* half : {&halves.a, &halves.b})
+        for (float& v : half->values) v = std::isfinite(v) ? std::clamp(v, -kLargest, kLargest) : 0;
+    std::vector<float> depths;
+    for (size_t i = 0; i < halves.a.Area(); ++i)
+        depths.push_back(Sane((halves.a.Plane(depth)[i] + halves.b.Plane(depth)[i]) / 2));
+    const auto middle = depths.begin() + ptrdiff_t(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    const float median = std::max(*middle, 1e-6f);
+    for (Planes* half : {&halves.a, &halves.b}) {
+        for (int f = 0; f < depth; ++f)
+            for (size_t i = 0; i < half->Area(); ++i)
+                half->Plane(f)[i] = std::clamp(half->Plane(f)[i], -1.f, 1.f);
+        for (size_t i = 0; i < half->Area(); ++i) {
+            const float z = Sane(half->Plane(depth)[i]);
+            half->Plane(depth)[i] = z / (z + median);
+        }
+    }
+    return halves;
+}
+
+// Returns half the squared difference of the halves: of a pixel of either the variance, with one
+// degree of freedom.
+Planes SquaredDifference(const Halves& halves) {
+    Planes result = halves.a;
+    for (size_t i = 0; i < result.values.size(); ++i) {
+        const float difference = halves.a.values[i] - halves.b.values[i];
+        result.values[i] = difference * difference / 2;
+    }
+    return result;
+}
+
+// Estimates the variance of a pixel of either half: what the samples' squares say of the luminance,
+// shared out by colour, scaled to what the halves differ by in the pixels around, since points that
+// fill space evenly have less noise than their squares say.
+Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
+    const Planes differences = SquaredDifference(colour);
+    if (ofMean.count == 0) return BoxMean(BoxMean(differences, 1), 1);
+    Planes variance = differences;
+    for (size_t i = 0; i < variance.Area(); ++i) {
+        float mean[kColours], y = 0;
+        for (int c = 0; c < kColours; ++c) {
+            mean[c] = std::max(kLeastLuminance, (colour.a.Plane(c)[i] + colour.b.Plane(c)[i]) / 2);
+            y += mean[c] * (c == 0 ? 0.212671f : c == 1 ? 0.715160f : 0.072169f);
+        }
+        const float relative = 2 * Sane(ofMean.values[i]) / (y * y);
+        for (int c = 0; c < kColours; ++c)
+            variance.Plane(c)[i] = std::min(relative * mean[c] * mean[c], kLargest);
+    }
+    const Planes seen = BoxMean(differences, kNoiseRadius), said = BoxMean(variance, kNoiseRadius);
+    for (size_t i = 0; i < variance.values.size(); ++i)
+        variance.values[i] *=
+            std::clamp(seen.values[i] / std::max(said.values[i], 1e-12f), 0.2f, 5.f);
+    return BoxMean(std::move(variance), 1);
+}
+
+}  // namespace
+
+DenoisedPicture Denoise(const NoisyPicture& in) {
+    const Halves sane = SaneColours(in.colour);
+    CalmedHalves calm = TakeFireflies(sane.a, sane.b, kFireflyLimit);
+    DenoisedPicture result;
+    result.noisy = {std::move(calm.a), std::move(calm.b)};
+    result.excess = std::move(calm.excess);
+    result.variance = EstimateVariance(sane, in.variance);
+    for (float& v : result.variance.values) v = std::max(v, kLeastVariance);
+
+    const Halves scaled = ScaleFeatures(in.features);
+    const Planes features = FilterFeatures(scaled.a, scaled.b);
+    const Halves& noisy = result.noisy;
+    std::vector<Planes> a =
+        Regress(noisy.a, features, {noisy.b, result.variance}, kPatches, kBandwidths);
+    std::vector<Planes> b =
+        Regress(noisy.b, features, {noisy.a, result.variance}, kPatches, kBandwidths);
+    std::vector<Halves> candidates;
+    for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
+    result.halves = ChooseCandidates(std::move(candidates), noisy, result.variance);
+
+    result.picture = result.halves.a;
+    for (size_t i = 0; i < result.picture.values.size(); ++i)
+        result.picture.values[i] =
+            Sane((result.halves.a.values[i] + result.halves.b.values[i]) / 2);
+    GiveBack(result.excess, &result.picture);
+    return result;
+}
+
+}  // namespace lull

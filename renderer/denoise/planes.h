@@ -1,0 +1,31 @@
+// Holds images as planes, one a channel, as vector instructions want them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace lull {
+
+// Holds `count` channels of width x height values, channel by channel, row by row from the top.
+struct Planes {
+    int width = 0, height = 0, count = 0;
+    std::vector<float> values;
+
+    Planes() = default;
+    Planes(int width, int height, int count, float value = 0)
+        : width(width), height(height), count(count), values(Area() * size_t(count), value) {}
+
+    size_t Area() const { return size_t(width) * size_t(height); }
+    float* Plane(int c) { return values.data() + size_t(c) * Area(); }
+    const float* Plane(int c) const { return values.data() + size_t(c) * Area(); }
+    float* Row(int c, int y) { return Plane(c) + size_t(y) * size_t(width); }
+    const float* Row(int c, int y) const { return Plane(c) + size_t(y) * size_t(width); }
+};
+
+// Return the mean or the sum of each channel over the (2 radius + 1)^2 pixels around, those within
+// the image.
+Planes BoxMean(Planes, int radius);
+Planes BoxSum(Planes, int radius);
+
+}  // namespace lull

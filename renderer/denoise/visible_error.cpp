@@ -1,0 +1,110 @@
+#include "renderer/denoise/visible_error.h"
+
+#include <cmath>
+
+#include "stopping/signals/entropy_drop.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kSide = 10;         // sub-blocks a side
+constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
+constexpr int kSmoothRadius = 5;  // pixels
+
+float LuminanceOf(const Planes& p, size_t i) {
+    return 0.212671f * p.Plane(0)[i] + 0.715160f * p.Plane(1)[i] + 0.072169f * p.Plane(2)[i];
+}
+
+// Returns L, in [0, 100], and the slope by which luminance changes it: 0 above white.
+struct LightnessAt {
+    float lightness, slope;
+};
+LightnessAt LightnessOf(float y) {
+    if (!(y > 0.008856f)) return {std::max(0.f, 903.3f * y), 903.3f};
+    if (y >= 1) return {100, 0};
+    const float root = std::cbrt(y);
+    return {116 * root - 16, 116 / (3 * root * root)};
+}
+
+// Sums up a sub-block.
+struct Sums {
+    double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
+
+    void Add(const LightnessError& error, size_t i) {
+        const double l = error.lightness.values[i], d = error.deviation.values[i];
+        ++count;
+        lightness += l;
+        lightnessSquares += l * l;
+        squared += error.squared.values[i];
+        variance += d * d;
+        least += error.least.values[i];
+    }
+    // Returns the square of what an observer sees of a difference in lightness.
+    double Seen() const {
+        const NoiseVisibility visibility;
+        const double mean = lightness / count;
+        const double deviation = std::sqrt(std::max(0.0, lightnessSquares / count - mean * mean));
+        const double seen = FlareFactor(mean, visibility.flare) / (1 + deviation / visibility.mask);
+        return seen * seen;
+    }
+};
+
+}  // namespace
+
+LightnessError MeasureError(const DenoisedPicture& denoised) {
+    const auto square = [](float x) { return x * x; };
+    LightnessError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
+    error.squared = error.deviation = error.least = error.lightness;
+    for (size_t i = 0; i < error.lightness.Area(); ++i) {
+        const LightnessAt at = LightnessOf(LuminanceOf(denoised.picture, i));
+        const float a = LuminanceOf(denoised.noisy.a, i), b = LuminanceOf(denoised.noisy.b, i);
+        const float x = LuminanceOf(denoised.halves.a, i), y = LuminanceOf(denoised.halves.b, i);
+        const float scale = square(at.slope);
+        // The noise of both halves, and of what is made of them, is in it as products of the two.
+        const float squared = (square(x - b) + square(y - a) - square(a - b)) / 2;
+        constexpr float weights[] = {0.212671f, 0.715160f, 0.072169f};
+        float deviation = 0;  // the colours of a path go together
+        for (int c = 0; c < kColours; ++c)
+            deviation += weights[c] * std::sqrt(denoised.variance.Plane(c)[i]);
+        error.lightness.values[i] = at.lightness;
+        error.least.values[i] = scale * square(x - y) / 4;
+        error.squared.values[i] = scale * (squared - square(x - y) / 4);
+        error.deviation.values[i] = scale * square(deviation);
+    }
+    return error;
+}
+
+VisibleError MeasureVisibleError(const LightnessError& error, int x0, int y0, int x1, int y1) {
+    const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
+    double squared = 0, variance = 0, least = 0;
+    for (size_t v = 0; v < kSide; ++v)
+        for (size_t u = 0; u < kSide; ++u) {
+            Sums sums;
+            for (int y = y0 + ys[v]; y < y0 + ys[v + 1]; ++y)
+                for (int x = x0 + xs[u]; x < x0 + xs[u + 1]; ++x)
+                    sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
+            const double seen = sums.Seen() / sums.count;
+            squared += seen * sums.squared;
+            variance += seen * seen * sums.variance;
+            least += seen * sums.least;
+        }
+    constexpr double count = kSide * kSide;
+    const double floor = least / count;
+    VisibleError result;
+    result.least = std::sqrt(floor);
+    result.estimate = std::sqrt(std::max(floor, squared / count));
+    result.upper = std::sqrt(std::max(floor, (squared + kUpper * std::sqrt(variance)) / count));
+    return result;
+}
+
+Planes StandardError(const LightnessError& error) {
+    const Planes squared = BoxMean(error.squared, kSmoothRadius);
+    Planes result = BoxMean(error.least, kSmoothRadius);
+    for (size_t i = 0; i < result.Area(); ++i)
+        result.values[i] = std::sqrt(std::max(result.values[i], squared.values[i]));
+    return result;
+}
+
+}  // namespace lull

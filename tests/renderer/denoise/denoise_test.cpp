@@ -1,0 +1,149 @@
+#include "renderer/denoise/denoise.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "tests/renderer/denoise/example_pictures.h"
+
+namespace lull {
+namespace {
+
+void ExpectSane(const DenoisedPicture& result) {
+    for (const float v : result.picture.values) {
+        ASSERT_TRUE(std::isfinite(v));
+        ASSERT_GE(v, 0);
+    }
+}
+
+TEST(Denoise, LeavesLittleOfPureNoise) {
+    const Planes truth(160, 130, 3, 0.4f);
+    const NoisyPicture noisy = AddNoise(truth, FlatFeatures(160, 130), 0.1, 1);
+    const DenoisedPicture result = Denoise(noisy);
+    ExpectSane(result);
+    EXPECT_LT(Rms(result.picture, truth), Rms(MeanOf(noisy.colour), truth) / 10);
+    EXPECT_NEAR(SumOf(result.picture) / SumOf(MeanOf(noisy.colour)), 1, 2e-3);
+}
+
+TEST(Denoise, KeepsTextureThatFeaturesKnow) {
+    Planes features = FlatFeatures(160, 130);
+    std::mt19937 generator(2);
+    std::uniform_real_distribution<float> uniform(0.2f, 0.8f);
+    for (size_t i = 0; i < features.Area(); ++i)
+        for (int c = 0; c < 3; ++c)
+            features.Plane(c)[i] = c == 0 ? uniform(generator) : features.Plane(0)[i];
+    const Planes truth = MakePlanes(
+        160, 130, 3, [&](int, int x, int y) { return features.Row(0, y)[x] * (0.3 + 0.002 * x); });
+    const NoisyPicture noisy = AddNoise(truth, features, 0.1, 3);
+    EXPECT_LT(Rms(Denoise(noisy).picture, truth), Rms(MeanOf(noisy.colour), truth) / 5);
+}
+
+// Texture of which features know nothing, as strong as the noise: it has to come back as the noise
+// falls, and never may it be worse than the samples by more than a little.
+TEST(Denoise, GoesToTheMeanOfTheSamples) {
+    std::mt19937 generator(4);
+    std::normal_distribution<double> gauss(0.5, 0.05);
+    const Planes truth = MakePlanes(160, 130, 3, [&](int, int, int) { return gauss(generator); });
+    double before = 1;
+    for (const double noise : {0.07, 0.02, 0.005, 0.001}) {
+        const NoisyPicture noisy = AddNoise(truth, FlatFeatures(160, 130), noise, 5);
+        const double error = Rms(Denoise(noisy).picture, truth);
+        EXPECT_LT(error, 1.25 * Rms(MeanOf(noisy.colour), truth)) << noise;
+        EXPECT_LT(error, before);
+        before = error;
+    }
+}
+
+TEST(Denoise, KeepsLinesOfOnePixel) {
+    const Planes truth = MakePlanes(
+        160, 130, 3, [](int, int x, int y) { return (x + 2 * y) % 40 == 0 ? 0.8 : 0.3; });
+    const NoisyPicture noisy = AddNoise(truth, FlatFeatures(160, 130), 0.04, 6);
+    const Planes picture = Denoise(noisy).picture;
+    double line = 0;
+    int count = 0;
+    for (int y = 0; y < 130; ++y)
+        for (int x = 0; x < 160; ++x)
+            if ((x + 2 * y) % 40 == 0) line += double(picture.Row(1, y)[x]), ++count;
+    EXPECT_NEAR(line / count, 0.8, 0.03);
+    EXPECT_LT(Rms(picture, truth), Rms(MeanOf(noisy.colour), truth));
+}
+
+TEST(Denoise, DoesNotChangeWhatHasNoNoise) {
+    const Planes gradient =
+        MakePlanes(140, 60, 3, [](int c, int x, int) { return 0.01 * c + 0.004 * x; });
+    const Planes black(140, 60, 3, 0), white(140, 60, 3, 1), bright(140, 60, 3, 1e6f);
+    for (const Planes& truth : {gradient, black, white, bright}) {
+        const NoisyPicture noisy = AddNoise(truth, FlatFeatures(140, 60), 0, 7);
+        const Planes picture = Denoise(noisy).picture;
+        for (size_t i = 0; i < picture.values.size(); ++i)
+            ASSERT_NEAR(picture.values[i], truth.values[i], 1e-4f * truth.values[i] + 1e-4f);
+    }
+}
+
+// The mean of 20 x 20 pixels stays within what the noise of the samples leaves of it.
+TEST(Denoise, KeepsTheEnergyOfPatches) {
+    const Planes truth = MakePlanes(160, 120, 3, [](int, int x, int y) {
+        return 0.3 + 0.2 * std::sin(x * 0.1) * std::cos(y * 0.07);
+    });
+    NoisyPicture noisy = AddNoise(truth, FlatFeatures(160, 120), 0.05, 8);
+    for (int c = 0; c < 3; ++c) noisy.colour.b.Row(c, 63)[71] = 40;  // a firefly
+    const Planes picture = Denoise(noisy).picture, mean = MeanOf(noisy.colour);
+    for (int v = 0; v < 120; v += 20)
+        for (int u = 0; u < 160; u += 20) {
+            double difference = 0;
+            for (int y = v; y < v + 20; ++y)
+                for (int x = u; x < u + 20; ++x)
+                    difference += double(picture.Row(1, y)[x]) - double(mean.Row(1, y)[x]);
+            // 0.05 / sqrt 2 a pixel of the mean; the firefly's patch has 20 / 400 more.
+            const bool hasFirefly = v == 60 && u == 60;
+            EXPECT_LT(std::abs(difference / 400), hasFirefly ? 0.06 : 0.012) << u << " " << v;
+        }
+    EXPECT_NEAR(SumOf(picture) / SumOf(mean), 1, 2e-3);
+}
+
+TEST(Denoise, LeavesNoBlobsOfFireflies) {
+    const Planes truth(120, 120, 3, 0.3f);
+    NoisyPicture noisy = AddNoise(truth, FlatFeatures(120, 120), 0.05, 9);
+    for (int c = 0; c < 3; ++c) noisy.colour.a.Row(c, 60)[60] = 100;
+    const Planes picture = Denoise(noisy).picture;
+    float most = 0;
+    for (const float v : picture.values) most = std::max(most, v);
+    EXPECT_LT(most, 0.36f);
+}
+
+TEST(Denoise, TakesWhateverItIsGiven) {
+    const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+    NoisyPicture noisy = AddNoise(Planes(60, 50, 3, 0.4f), FlatFeatures(60, 50), 0.1, 10);
+    noisy.variance = Planes(60, 50, 1, 0.01f);
+    size_t i = 17;
+    for (const float value : {nan, inf, -inf, -3.f, 1e38f, 1e-40f})
+        for (Planes* planes : {&noisy.colour.a, &noisy.colour.b, &noisy.features.a,
+                               &noisy.features.b, &noisy.variance})
+            planes->values[(i += 131) % planes->values.size()] = value;
+    ExpectSane(Denoise(noisy));
+}
+
+TEST(Denoise, TakesPicturesOfAnySize) {
+    for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {1, 40}, {17, 3}, {129, 2}}) {
+        const NoisyPicture noisy =
+            AddNoise(Planes(width, height, 3, 0.4f), FlatFeatures(width, height), 0.01, 11);
+        const DenoisedPicture result = Denoise(noisy);
+        ExpectSane(result);
+        EXPECT_LT(Rms(result.picture, Planes(width, height, 3, 0.4f)), 0.02);
+    }
+}
+
+TEST(Denoise, IsTheSameOnAnyNumberOfThreads) {
+    const Planes truth =
+        MakePlanes(300, 150, 3, [](int, int x, int y) { return (x / 7 + y / 5) % 3 * 0.2 + 0.1; });
+    const NoisyPicture noisy = AddNoise(truth, FlatFeatures(300, 150), 0.1, 12);
+    const auto on = [&](size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return Denoise(noisy).picture.values;
+    };
+    EXPECT_EQ(on(1), on(4));
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,68 @@
+// Makes pictures whose truth is known, and noise for them.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "renderer/denoise/denoise.h"
+
+namespace lull {
+
+// Returns an image of `value(c, x, y)`.
+inline Planes MakePlanes(int width, int height, int count,
+                         const std::function<double(int c, int x, int y)>& value) {
+    Planes planes(width, height, count);
+    for (int c = 0; c < count; ++c)
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) planes.Row(c, y)[x] = float(value(c, x, y));
+    return planes;
+}
+
+// Returns a grey wall that faces the camera, as features see it.
+inline Planes FlatFeatures(int width, int height) {
+    return MakePlanes(width, height, kFeatures, [](int c, int, int) {
+        return c < 3 ? 0.5 : c == 5 ? 1.0 : c == 6 ? 3.0 : 0.0;
+    });
+}
+
+// Returns `truth` with Gaussian noise of this deviation in each half.
+inline NoisyPicture AddNoise(const Planes& truth, const Planes& features, double deviation,
+                             unsigned seed) {
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> gauss(0, deviation);
+    NoisyPicture noisy{{truth, truth}, {features, features}, {}};
+    for (Planes* half : {&noisy.colour.a, &noisy.colour.b})
+        for (float& v : half->values) v = std::max(0.f, v + float(gauss(generator)));
+    return noisy;
+}
+
+// Returns the mean of both halves.
+inline Planes MeanOf(const Halves& halves) {
+    Planes mean = halves.a;
+    for (size_t i = 0; i < mean.values.size(); ++i)
+        mean.values[i] = (mean.values[i] + halves.b.values[i]) / 2;
+    return mean;
+}
+
+// Returns the root mean square of what two images differ by, of the pixels more than `border` from
+// their border.
+inline double Rms(const Planes& a, const Planes& b, int border = 0) {
+    double sum = 0;
+    int count = 0;
+    for (int c = 0; c < a.count; ++c)
+        for (int y = border; y < a.height - border; ++y)
+            for (int x = border; x < a.width - border; ++x, ++count) {
+                const double d = double(a.Row(c, y)[x]) - double(b.Row(c, y)[x]);
+                sum += d * d;
+            }
+    return std::sqrt(sum / count);
+}
+
+inline double SumOf(const Planes& planes) {
+    double sum = 0;
+    for (const float v : planes.values) sum += double(v);
+    return sum;
+}
+
+}  // namespace lull

@@ -1,0 +1,61 @@
+#include "renderer/denoise/fireflies.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/denoise/example_pictures.h"
+
+namespace lull {
+namespace {
+
+Planes Grey(double value) {
+    return MakePlanes(120, 100, 3, [=](int, int, int) { return value; });
+}
+
+TEST(Fireflies, AreTakenAndGivenBack) {
+    const NoisyPicture noisy = AddNoise(Grey(0.3), FlatFeatures(120, 100), 0.05, 1);
+    Planes a = noisy.colour.a;
+    for (int c = 0; c < 3; ++c) a.Row(c, 40)[60] = 500;
+    const CalmedHalves calm = TakeFireflies(a, noisy.colour.b, 8);
+    EXPECT_LT(calm.a.Row(1, 40)[60], 1.5f);
+    EXPECT_NEAR(SumOf(calm.excess) / 3, 250, 1);
+
+    Planes picture = Grey(0.3);
+    const double before = SumOf(picture);
+    GiveBack(calm.excess, &picture);
+    EXPECT_NEAR((SumOf(picture) - before) / SumOf(calm.excess), 1, 1e-4);
+    float most = 0;
+    for (const float v : picture.values) most = std::max(most, v);
+    EXPECT_LT(most, 0.5f);
+    EXPECT_FLOAT_EQ(picture.Row(0, 99)[0], 0.3f);  // too far away
+}
+
+TEST(Fireflies, AreNotWhatBothHalvesSee) {
+    const NoisyPicture noisy = AddNoise(Grey(0.3), FlatFeatures(120, 100), 0.05, 2);
+    Planes a = noisy.colour.a, b = noisy.colour.b;
+    for (int c = 0; c < 3; ++c) {
+        a.Row(c, 40)[60] = 500, b.Row(c, 40)[60] = 499.8f;
+        for (int x = 80; x < 90; ++x)  // a lamp, whose edge the halves cover differently
+            a.Row(c, 20)[x] = b.Row(c, 20)[x] = 100;
+        a.Row(c, 20)[90] = 60, b.Row(c, 20)[90] = 40;
+    }
+    const CalmedHalves calm = TakeFireflies(a, b, 8);
+    EXPECT_EQ(calm.a.Row(0, 40)[60], 500);
+    EXPECT_EQ(calm.a.Row(0, 20)[90], 60);
+    EXPECT_EQ(SumOf(calm.excess), 0);
+}
+
+TEST(Fireflies, KeepTheirColourAndShareItByBrightness) {
+    Planes excess(120, 100, 3), picture = Grey(0.1);
+    excess.Row(0, 50)[50] = 40;
+    for (int c = 0; c < 3; ++c)
+        for (int x = 55; x < 65; ++x) picture.Row(c, 50)[x] = 0.8f;
+    const Planes before = picture;
+    GiveBack(excess, &picture);
+    const float dark = picture.Row(0, 50)[45] - before.Row(0, 50)[45];
+    const float bright = picture.Row(0, 50)[55] - before.Row(0, 50)[55];
+    EXPECT_NEAR(bright / dark, 8, 0.8);
+    for (size_t i = 0; i < picture.Area(); ++i) EXPECT_EQ(picture.Plane(1)[i], before.Plane(1)[i]);
+}
+
+}  // namespace
+}  // namespace lull

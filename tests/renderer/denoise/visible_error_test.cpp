@@ -1,0 +1,81 @@
+#include "renderer/denoise/visible_error.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/denoise/example_pictures.h"
+
+namespace lull {
+namespace {
+
+double LightnessOf(double y) { return y > 0.008856 ? 116 * std::cbrt(y) - 16 : 903.3 * y; }
+
+// Returns the root mean square, over the picture, of what two grey pictures differ by in lightness.
+double TrueError(const Planes& picture, const Planes& truth) {
+    double sum = 0;
+    for (size_t i = 0; i < picture.Area(); ++i) {
+        const double d = LightnessOf(std::min(1.f, picture.values[i])) -
+                         LightnessOf(std::min(1.f, truth.values[i]));
+        sum += d * d;
+    }
+    return std::sqrt(sum / double(picture.Area()));
+}
+
+// Noise and what is blurred, at noise that falls: the estimate follows the truth, and the bound is
+// seldom exceeded. Flare and detail make what is seen smaller than what there is.
+TEST(VisibleError, IsKnownWithoutAReference) {
+    std::mt19937 generator(1);
+    std::normal_distribution<double> gauss(0, 0.015);
+    const Planes texture = MakePlanes(120, 120, 1, [&](int, int, int) { return gauss(generator); });
+    const Planes truth = MakePlanes(120, 120, 3, [&](int, int x, int y) {
+        return 0.4 + 0.1 * std::sin(x * 0.15) + (x < 60 ? 0 : texture.Row(0, y)[x]);
+    });
+    int above = 0, count = 0;
+    for (const double noise : {0.2, 0.1, 0.05, 0.025})
+        for (unsigned seed = 1; seed <= 5; ++seed, ++count) {
+            const DenoisedPicture denoised =
+                Denoise(AddNoise(truth, FlatFeatures(120, 120), noise, seed));
+            const VisibleError error = MeasureVisibleError(MeasureError(denoised), 0, 0, 120, 120);
+            const double seen = 0.8;  // at L = 70 with detail of some 3 to 6
+            const double expected = seen * TrueError(denoised.picture, truth);
+            EXPECT_LE(error.least, error.estimate);
+            EXPECT_LE(error.estimate, error.upper);
+            EXPECT_LT(error.least, 1.3 * expected);
+            if (noise < 0.15) {
+                EXPECT_NEAR(error.estimate / expected, 1, 0.5) << noise;
+            }
+            above += expected > error.upper;
+        }
+    EXPECT_LE(above, count / 4);
+}
+
+TEST(VisibleError, IsNothingWhereNothingIsWrong) {
+    const Planes truth(50, 50, 3, 0.3f);
+    const DenoisedPicture denoised = Denoise(AddNoise(truth, FlatFeatures(50, 50), 0, 1));
+    const LightnessError error = MeasureError(denoised);
+    EXPECT_LT(MeasureVisibleError(error, 0, 0, 50, 50).upper, 0.02);
+    for (const float e : StandardError(error).values) EXPECT_LT(e, 0.02f);
+}
+
+TEST(VisibleError, IsNotSeenAboveWhite) {
+    const DenoisedPicture denoised =
+        Denoise(AddNoise(Planes(50, 50, 3, 5), FlatFeatures(50, 50), 0.5, 1));
+    EXPECT_EQ(MeasureVisibleError(MeasureError(denoised), 0, 0, 50, 50).upper, 0);
+}
+
+TEST(VisibleError, IsThatOfTheBlock) {
+    const Planes truth(200, 100, 3, 0.3f);
+    NoisyPicture noisy = AddNoise(truth, FlatFeatures(200, 100), 0, 1);
+    const NoisyPicture more = AddNoise(truth, FlatFeatures(200, 100), 0.2, 2);
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < 100; ++y)
+            for (int x = 120; x < 200; ++x) {
+                noisy.colour.a.Row(c, y)[x] = more.colour.a.Row(c, y)[x];
+                noisy.colour.b.Row(c, y)[x] = more.colour.b.Row(c, y)[x];
+            }
+    const LightnessError error = MeasureError(Denoise(noisy));
+    EXPECT_LT(MeasureVisibleError(error, 0, 0, 100, 100).upper, 0.05);
+    EXPECT_GT(MeasureVisibleError(error, 120, 0, 200, 100).upper, 0.1);
+}
+
+}  // namespace
+}  // namespace lull
