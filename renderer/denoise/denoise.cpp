@@ -25,26 +25,31 @@ Halves SaneColours(Halves halves) {
     return halves;
 }
 
-// Returns features in [-1, 1]: depth z becomes z / (z + median), which is 1 where there is nothing.
+// Returns features in [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
+// there is nothing.
 Halves ScaleFeatures(Halves halves) {
-    constexpr int depth = kFeatures - 1;
-    for (Planes* half : {&halves.a, &halves.b})
-        for (float& v : half->values) v = std::isfinite(v) ? std::clamp(v, -kLargest, kLargest) : 0;
-    std::vector<float> depths;
-    for (size_t i = 0; i < halves.a.Area(); ++i)
-        depths.push_back(Sane((halves.a.Plane(depth)[i] + halves.b.Plane(depth)[i]) / 2));
-    const auto middle = depths.begin() + ptrdiff_t(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    const float median = std::max(*middle, 1e-6f);
+    constexpr int disparity = kFeatures - 1;
+    std::vector<float> found;
     for (Planes* half : {&halves.a, &halves.b}) {
-        for (int f = 0; f < depth; ++f)
-            for (size_t i = 0; i < half->Area(); ++i)
-                half->Plane(f)[i] = std::clamp(half->Plane(f)[i], -1.f, 1.f);
+        for (int f = 0; f < disparity; ++f)
+            for (size_t i = 0; i < half->Area(); ++i) {
+                float& v = half->Plane(f)[i];
+                v = std::isfinite(v) ? std::clamp(v, -1.f, 1.f) : 0;
+            }
         for (size_t i = 0; i < half->Area(); ++i) {
-            const float z = Sane(half->Plane(depth)[i]);
-            half->Plane(depth)[i] = z / (z + median);
+            float& d = half->Plane(disparity)[i];
+            d = Sane(d);
+            if (d > 0) found.push_back(d);
         }
     }
+    if (found.empty()) return halves;
+    const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
+    std::nth_element(found.begin(), middle, found.end());
+    for (Planes* half : {&halves.a, &halves.b})
+        for (size_t i = 0; i < half->Area(); ++i) {
+            float& d = half->Plane(disparity)[i];
+            d /= d + *middle;
+        }
     return halves;
 }
 

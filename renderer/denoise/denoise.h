@@ -14,7 +14,7 @@ namespace lull {
 // Holds what is known of a picture. All images have one size.
 struct NoisyPicture {
     Halves colour;    // R, G, B: means of two halves of the samples, independent of each other
-    Halves features;  // means of albedo, normal and depth (see kFeatures), likewise
+    Halves features;  // means of albedo, normal and 1 / depth (see kFeatures), likewise
     // Variance of the luminance of the mean of all samples, from their squares; no channel where it
     // is not known: then the halves alone tell.
     Planes variance;

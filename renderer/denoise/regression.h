@@ -11,7 +11,7 @@
 namespace lull {
 
 inline constexpr int kColours = 3;   // R, G, B
-inline constexpr int kFeatures = 7;  // albedo R, G, B, normal X, Y, Z, depth
+inline constexpr int kFeatures = 7;  // albedo R, G, B, normal X, Y, Z, 1 / depth
 
 // Returns for each bandwidth what the features make of `colour`. Weights are those of the guide
 // (PatchWeights::Of), which is the other half of the samples, so that they do not depend on the
