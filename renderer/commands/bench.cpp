@@ -9,8 +9,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/render_files.h"
-#include "renderer/commands/render_settings.h"
+#include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/bench.h"
 #include "renderer/measure/compared_files.h"
@@ -94,8 +93,8 @@ std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& reg
     return rules;
 }
 
-// Holds all that the renders of both samplers have in common.
-struct Job {
+// Holds a scene that is ready, and all that its renders have in common.
+struct PreparedScene {
     std::unique_ptr<const Scene> scene;
     std::string sceneHash;
     Provenance provenance;
@@ -105,22 +104,23 @@ struct Job {
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
 };
 
-Job Prepare(const Options& options, bool leads) {
+PreparedScene Prepare(const Options& options, const Job& job) {
+    const bool leads = job.Rank() == 0;
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene);
-    Job job;
-    job.rules = MakeRules(options, input.region);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    PreparedScene prepared;
+    prepared.rules = MakeRules(options, input.region);
     if (!options.reference.empty())
-        job.reference = ReadImageOfSize(options.reference, input.region);
-    if (!options.external.empty()) job.external = ReadExternalImages(options.external);
-    for (const ExternalImage& external : job.external)
-        job.externalImages.push_back(ReadImageOfSize(external.file, input.region));
+        prepared.reference = ReadImageOfSize(options.reference, input.region);
+    if (!options.external.empty()) prepared.external = ReadExternalImages(options.external);
+    for (const ExternalImage& external : prepared.external)
+        prepared.externalImages.push_back(ReadImageOfSize(external.file, input.region));
     if (leads) CheckWritable(options.output + ".csv");
     if (leads && !options.report.empty()) CheckWritable(options.report);
-    job.scene = CompileScene(settings, &input);
-    job.sceneHash = SceneHash(input.description);
-    job.provenance = MakeProvenance(settings, *job.scene, input.film);
-    return job;
+    prepared.scene = CompileScene(settings, &input);
+    prepared.sceneHash = SceneHash(input.description);
+    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
+    return prepared;
 }
 
 // One way of rendering: what a curve is drawn for.
@@ -168,102 +168,75 @@ class PointCounter {
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-// Learns, where the variant is guided. Returns nothing if it was interrupted; learning begins anew
-// then, to the same bits.
-std::optional<Learning> Learn(const Options& options, const Variant& variant, const Job& job,
-                              const lull::Job& ranks) {
-    if (!variant.isGuided) return Learning();
-    return LearnGuide(options.guide, {.scene = *job.scene,
-                                      .region = job.provenance.crop,
-                                      .settings = options.render,
-                                      .sampler = variant.sampler,
-                                      .ranks = ranks.Count(),
-                                      .clock = {},
-                                      .keep = {},
-                                      .kept = {}});
-}
-
-// Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
-// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render, and
-// the first measures.
-bool BenchVariant(const Options& options, const Variant& variant, Job* job, lull::Job* ranks,
-                  std::vector<BenchPoint>* points) {
-    const bool leads = ranks->Rank() == 0;
-    const RenderSettings& settings = options.render;
-    const std::optional<Learning> learning = Learn(options, variant, *job, *ranks);
-    if (!learning) return false;
-    if (variant.isGuided && !learning->figures.isUsed) return true;
-    Provenance provenance = job->provenance;
+// Returns how to render a variant. Its checkpoints hold nothing of what was learned: learning
+// begins anew, to the same bits.
+SessionOptions MakeOptions(const Options& options, const Variant& variant,
+                           const PreparedScene& prepared, ProgressPrinter* printer, Job* job) {
+    Provenance provenance = prepared.provenance;
     provenance.sampler = variant.sampler;
     if (variant.isGuided) {
         provenance.guide = options.guide.mode;
         provenance.guideMegabytes = options.guide.megabytes;
     }
-    for (const ObservedRule& rule : job->rules) provenance.criterion += rule.text + " ";
-    RenderIdentity identity = IdentityOf(provenance, job->sceneHash);
-    const CheckpointOptions checkpoint{
-        .file = CheckpointName(options, variant),
-        .interval = settings.checkpoint.interval,
-        .resume = std::filesystem::exists(CheckpointName(options, variant))};
+    for (const ObservedRule& rule : prepared.rules) provenance.criterion += rule.text + " ";
+    SessionOptions how = MakeSessionOptions(options.render, variant.sampler, printer, job);
+    if (variant.isGuided) how.guide = options.guide;
+    how.checkpoint =
+        ResumeIfThere(CheckpointName(options, variant), options.render.checkpoint.interval);
+    how.checkpoint.keepsGuide = false;
+    how.identity = IdentityOf(provenance, prepared.sceneHash);
+    how.render.checkpointAtEnd = true;
+    return how;
+}
 
-    Film film(provenance.crop);
-    std::optional<RenderState> interrupted;
-    if (leads) interrupted = Resume(checkpoint, identity, &film);
-    std::vector<BlockHistory> histories(MakeBlocks(provenance.crop, settings.schedule).size());
-    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(variant));
-    ProgressPrinter printer = MakePrinter(settings, false);
-    RenderOptions render = MakeRenderOptions(settings, variant.sampler, &printer);
-    render.makeCriterion = MakeObservers(job->rules, provenance.crop, settings.schedule,
-                                         {.snapshots = true, .goesOn = true}, &histories);
-    render.checkpointAtEnd = true;
-    WriteCheckpoints(checkpoint, identity, film, &render);
-    const SampleSource source = variant.isGuided ? SamplesOf(*job->scene, learning->guide)
-                                                 : SamplesOf(*job->scene, settings.estimator);
-    ShareAmongRanks(ranks, &render);
-    ranks->Begin(TextOf(identity));
-    const RenderResult result =
-        Render(source, render, &film, interrupted ? &*interrupted : nullptr);
-    printer.Finish(result.progress);
-    if (result.cancelled) return false;
-    if (!leads) return true;
-
-    const ObservedRender observed{source, render, film, result, histories};
-    const bool makesReference = !job->reference;
-    if (makesReference) job->reference = TakeWholeImage(observed).image;
-    PointCounter counter(job->rules.size(), settings.quiet);
-    for (BenchPoint point : MeasurePoints(observed, job->rules, *job->reference, result.threads,
+// Adds the points of a variant, of which the first render's whole image is the reference, unless
+// another was given.
+void AddPoints(const Options& options, const Variant& variant, const ObservedRender& observed,
+               const GuideFigures& guidance, PreparedScene* prepared,
+               std::vector<BenchPoint>* points) {
+    const bool makesReference = !prepared->reference;
+    const int threads = observed.result.threads;
+    if (makesReference) prepared->reference = TakeWholeImage(observed).image;
+    PointCounter counter(prepared->rules.size(), options.render.quiet);
+    for (BenchPoint point : MeasurePoints(observed, prepared->rules, *prepared->reference, threads,
                                           [&] { counter.Add(); })) {
         point.sampler = NameOf(variant);
         point.sharesReference = makesReference;
-        point.seconds += learning->figures.seconds;
-        point.threadSeconds += learning->figures.seconds * result.threads;
+        point.seconds += guidance.seconds;
+        point.threadSeconds += guidance.seconds * threads;
         points->push_back(std::move(point));
     }
+}
+
+// Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
+// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render, and
+// the first measures.
+bool BenchVariant(const Options& options, const Variant& variant, PreparedScene* prepared, Job* job,
+                  std::vector<BenchPoint>* points) {
+    const RenderSettings& settings = options.render;
+    const PixelRect& region = prepared->provenance.crop;
+    ProgressPrinter printer = MakePrinter(settings, false);
+    std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
+    SessionOptions how = MakeOptions(options, variant, *prepared, &printer, job);
+    how.render.makeCriterion = MakeObservers(prepared->rules, region, settings.schedule,
+                                             {.snapshots = true, .goesOn = true}, &histories);
+    Session session(*prepared->scene, region, how);
+    if (!session.Learn()) return false;
+    if (variant.isGuided && !session.Guidance().isUsed) return true;
+    session.Resume();
+    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(variant));
+    const RenderResult result = session.Run();
+    printer.Finish(result.progress);
+    if (result.cancelled) return false;
+    if (session.Leads())
+        AddPoints(options, variant,
+                  {session.Source(), session.Options(), session.TheFilm(), result, histories},
+                  session.Guidance(), prepared, points);
     return true;
 }
 
-ExitCode RunBench(Options options, lull::Job* ranks) {
-    RenderSettings& settings = options.render;
-    settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
-    if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
-    Job job = Prepare(options, ranks->Rank() == 0);
-    CheckGuide(options.guide, *job.scene, settings.estimator);
-    CatchInterrupts();
-    std::vector<BenchPoint> points;
-    const std::vector<Variant> variants = Variants(options);
-    std::vector<std::string> names;
-    for (const Variant& variant : variants) {
-        names.push_back(NameOf(variant));
-        if (BenchVariant(options, variant, &job, ranks, &points)) continue;
-        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
-                   CheckpointName(options, variant));
-        return kInterrupted;
-    }
-    ranks->End();
-    if (ranks->Rank() > 0) return kDone;
-    for (size_t i = 0; i < job.external.size(); ++i)
-        points.push_back(MeasureExternal(job.external[i], job.externalImages[i], *job.reference));
-
+// Says what has to be known of the points.
+std::vector<std::string> Notes(const Options& options) {
     std::vector<std::string> notes;
     if (options.reference.empty())
         notes.push_back(fmt::format(
@@ -276,12 +249,36 @@ ExitCode RunBench(Options options, lull::Job* ranks) {
     if (options.guide.mode != GuideMode::Off)
         notes.push_back(
             "The seconds of guided points have all the time that was taken to learn in them.");
+    return notes;
+}
+
+ExitCode RunBench(Options options, Job* job) {
+    RenderSettings& settings = options.render;
+    settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
+    if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
+    PreparedScene prepared = Prepare(options, *job);
+    CheckGuide(options.guide, *prepared.scene, settings.estimator);
+    CatchInterrupts();
+    std::vector<BenchPoint> points;
+    const std::vector<Variant> variants = Variants(options);
+    std::vector<std::string> names;
+    for (const Variant& variant : variants) {
+        names.push_back(NameOf(variant));
+        if (!BenchVariant(options, variant, &prepared, job, &points))
+            return SayInterrupted(CheckpointName(options, variant));
+    }
+    job->End();
+    if (job->Rank() > 0) return kDone;
+    for (size_t i = 0; i < prepared.external.size(); ++i)
+        points.push_back(
+            MeasureExternal(prepared.external[i], prepared.externalImages[i], *prepared.reference));
+
     WriteFileAtomically(options.output + ".csv", BenchCsv(points));
     fmt::print("{}.csv\n", options.output);
     if (!options.report.empty()) {
         WriteFileAtomically(options.report,
-                            MakeBenchPage(SceneName(settings.scene.file), job.provenance, points,
-                                          names, *job.reference, notes));
+                            MakeBenchPage(SceneName(settings.scene.file), prepared.provenance,
+                                          points, names, *prepared.reference, Notes(options)));
         fmt::print("{}\n", options.report);
     }
     for (const Variant& variant : variants)
@@ -291,12 +288,12 @@ ExitCode RunBench(Options options, lull::Job* ranks) {
 
 }  // namespace
 
-void AddBenchCommand(CLI::App& app, Command* command, lull::Job* ranks) {
+void AddBenchCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* bench = app.add_subcommand(
         "bench", "Measures error against seconds and samples: fixed numbers, and stopping rules.");
     auto options = std::make_shared<Options>();
     AddOptions(*bench, options.get());
-    bench->callback([=] { *command = [=] { return RunBench(*options, ranks); }; });
+    bench->callback([=] { *command = [=] { return RunBench(*options, job); }; });
 }
 
 }  // namespace lull

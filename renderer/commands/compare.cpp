@@ -3,18 +3,19 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
-#include <sstream>
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/compare_options.h"
 #include "renderer/commands/comparison_table.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/render_files.h"
+#include "renderer/commands/session_options.h"
+#include "renderer/commands/talk.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/block_files.h"
 #include "renderer/measure/compared_files.h"
+#include "renderer/measure/image_files.h"
 #include "renderer/output/file_io.h"
 #include "renderer/ranks/job.h"
-#include "stopping/rules/thresholds.h"
 
 namespace lull {
 
@@ -67,7 +68,7 @@ ExitCode CompareFiles(CompareOptions options) {
 }
 
 // Holds a scene that is ready, and the rules to be compared on it.
-struct Job {
+struct PreparedScene {
     std::unique_ptr<const Scene> scene;
     Provenance provenance;
     std::vector<ObservedRule> rules;
@@ -80,53 +81,56 @@ ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) 
 }
 
 // Loads the scene and checks all that can be wrong before the work begins.
-Job Prepare(const CompareOptions& options, bool leads) {
+PreparedScene Prepare(const CompareOptions& options, const Job& job) {
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
 
-    Job job;
+    PreparedScene prepared;
     const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);
-    job.rules.push_back(MakeRule("automatic", automatic));
+    prepared.rules.push_back(MakeRule("automatic", automatic));
     std::string humanChecksum = "none";
     if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = settings;
         plain.caution = 1;
         const CriterionFactory human =
             ReadRule("--human", "thresholds:" + options.human, plain, input.region);
-        job.rules.push_back(MakeRule("human", human));
+        prepared.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
     }
-    if (leads) CheckOutputs(options);
-    if (leads) CheckCheckpoint(settings.checkpoint);
-    job.scene = CompileScene(settings, &input);
-    job.warnings = input.warnings.Counts();
-    job.provenance = MakeProvenance(settings, *job.scene, input.film);
-    job.provenance.criterion = automatic.rule;
-    job.provenance.checksum = automatic.checksum;
-    job.identity = IdentityOf(job.provenance, SceneHash(input.description));
-    job.identity["human"] = humanChecksum;
-    job.identity["snapshots"] = options.snapshots ? "yes" : "no";
-    job.identity["curves"] = options.report.empty() ? "no" : "yes";
-    return job;
+    if (job.Rank() == 0) {
+        CheckOutputs(options);
+        CheckCheckpoint(settings.checkpoint);
+    }
+    prepared.scene = CompileScene(settings, &input);
+    prepared.warnings = input.warnings.Counts();
+    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
+    prepared.provenance.criterion = automatic.rule;
+    prepared.provenance.checksum = automatic.checksum;
+    prepared.identity = IdentityOf(prepared.provenance, SceneHash(input.description));
+    prepared.identity["human"] = humanChecksum;
+    prepared.identity["snapshots"] = options.snapshots ? "yes" : "no";
+    prepared.identity["curves"] = options.report.empty() ? "no" : "yes";
+    return prepared;
 }
 
 // Renders the automatic image by itself.
-Verification Verify(const Job& job, const RenderSettings& settings, int threads,
+Verification Verify(const PreparedScene& prepared, const RenderSettings& settings, int threads,
                     const ComparedImage& expected) {
     ProgressPrinter printer = MakePrinter(settings, true);
-    RenderOptions options = MakeRenderOptions(settings, job.provenance.sampler, &printer);
-    options.schedule.smallestSide = job.rules.front().smallestSide;
-    options.threads = threads;
-    options.makeCriterion = job.rules.front().make;
-    Film film(job.provenance.crop);
+    SessionOptions how =
+        MakeSessionOptions(settings, prepared.provenance.sampler, &printer, nullptr);
+    how.render.schedule.smallestSide = prepared.rules.front().smallestSide;
+    how.render.threads = threads;
+    how.render.makeCriterion = prepared.rules.front().make;
     if (!settings.quiet) fmt::print(stderr, "lull: the automatic image by itself\n");
-    const RenderResult result = Render(SamplesOf(*job.scene, settings.estimator), options, &film);
+    Session session(*prepared.scene, prepared.provenance.crop, how);
+    const RenderResult result = session.Run();
     printer.Finish(result.progress);
 
-    return VerificationOf(result, film, expected);
+    return VerificationOf(result, session.TheFilm(), expected);
 }
 
-std::vector<std::string> WriteImages(const CompareOptions& options, const Job& job,
+std::vector<std::string> WriteImages(const CompareOptions& options, const PreparedScene& prepared,
                                      const Comparison& comparison) {
     std::vector<std::string> names;
     const std::vector<Block> blocks = MakeBlocks(comparison.region, options.render.schedule);
@@ -135,26 +139,63 @@ std::vector<std::string> WriteImages(const CompareOptions& options, const Job& j
         const std::string base = options.output + "." + image.name;
         std::vector<int> spp;
         for (const BlockCost& cost : image.costs) spp.push_back(cost.spp);
-        Provenance provenance = job.provenance;
+        Provenance provenance = prepared.provenance;
         provenance.criterion =
             image.rule.empty() ? fmt::format("fixed:{}", comparison.cap) : image.rule;
         if (image.name != "automatic") provenance.checksum.clear();
-        WriteImage(base + ".exr", base + ".png", *job.scene, image.image, blocks, spp, provenance,
-                   SumCosts(comparison, image).seconds);
+        WriteImage({base + ".exr", base + ".png"}, {*prepared.scene, provenance},
+                   {image.image, blocks, spp, SumCosts(comparison, image).seconds});
         names.insert(names.end(), {base + ".exr", base + ".png"});
     }
-    ThresholdsRow row{SceneName(options.render.scene.file), {}};
-    for (const BlockCost& cost : comparison.images.front().costs) row.spp.push_back(cost.spp);
-    std::ostringstream text;
-    WriteThresholds(text, {row});
+    std::vector<int> thresholds;
+    for (const BlockCost& cost : comparison.images.front().costs) thresholds.push_back(cost.spp);
     names.push_back(options.output + ".thresholds.csv");
-    WriteFileAtomically(names.back(), text.str());
+    WriteThresholdsOf(names.back(), options.render.scene.file, std::move(thresholds));
     return names;
 }
 
+// Returns a comparison to which images are to be added.
+Comparison Begin(const RenderSettings& settings, const PixelRect& region) {
+    Comparison comparison = BeginComparison(region, settings.schedule);
+    comparison.cap = settings.schedule.cap;
+    return comparison;
+}
+
+std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
+                                            const Comparison& comparison) {
+    std::vector<ComparedImage> images;
+    if (IsImageFile(options.human))
+        images.push_back(ReadImageBeside(options.human, "human", comparison));
+    if (!options.reference.empty())
+        images.push_back(ReadImageBeside(options.reference, "reference", comparison));
+    return images;
+}
+
+// Takes all images from a render, adds those that were read, and measures them.
+void AddImages(const CompareOptions& options, const std::vector<ObservedRule>& rules,
+               const ObservedRender& observed, std::vector<ComparedImage> fromFiles,
+               ComparisonReport* report) {
+    Comparison& comparison = report->comparison;
+    for (size_t i = 0; i < rules.size(); ++i)
+        comparison.images.push_back(TakeImage(observed, rules, i));
+    if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
+    for (ComparedImage& image : fromFiles) comparison.images.push_back(std::move(image));
+    if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
+        std::swap(comparison.images.back(), *(comparison.images.end() - 2));
+    Measure(&comparison);
+    if (options.snapshots)
+        report->estimates = JudgeEstimates(comparison.images.front(), comparison.images.back());
+}
+
+ExitCode SayInterrupted(const CheckpointOptions& checkpoint) {
+    PrintTalk("interrupted" + (checkpoint.file.empty()
+                                   ? "; nothing was written, as there is no --checkpoint"
+                                   : "; --resume goes on from " + checkpoint.file));
+    return kInterrupted;
+}
+
 // The ranks share the render that all images come from; the first does the rest.
-ExitCode CompareRenders(CompareOptions options, lull::Job* ranks) {
-    const bool leads = ranks->Rank() == 0;
+ExitCode CompareRenders(CompareOptions options, Job* job) {
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file);
@@ -162,89 +203,67 @@ ExitCode CompareRenders(CompareOptions options, lull::Job* ranks) {
         throw Error(
             "compare: a reference is missing: --snapshots renders one, to the cap; "
             "--reference R.exr takes one rendered before");
-    const Job job = Prepare(options, leads);
-    const PixelRect& region = job.provenance.crop;
-
+    const PreparedScene prepared = Prepare(options, *job);
+    const PixelRect& region = prepared.provenance.crop;
     ComparisonReport report;
-    Comparison& comparison = report.comparison;
-    comparison = BeginComparison(region, settings.schedule);
-    comparison.cap = settings.schedule.cap;
-    std::vector<ComparedImage> fromFiles;
-    if (IsImageFile(options.human))
-        fromFiles.push_back(ReadImageBeside(options.human, "human", comparison));
-    if (!options.reference.empty())
-        fromFiles.push_back(ReadImageBeside(options.reference, "reference", comparison));
+    report.comparison = Begin(settings, region);
+    std::vector<ComparedImage> fromFiles = ReadImagesBeside(options, report.comparison);
 
-    Film film(region);
-    std::optional<RenderState> interrupted;
-    if (leads) interrupted = Resume(settings.checkpoint, job.identity, &film);
-    report.histories.resize(comparison.blocks.size());
+    report.histories.resize(report.comparison.blocks.size());
     ProgressPrinter printer = MakePrinter(settings, !options.snapshots);
+    SessionOptions how = MakeSessionOptions(settings, prepared.provenance.sampler, &printer, job);
+    how.render.makeCriterion = MakeObservers(prepared.rules, region, settings.schedule,
+                                             {.snapshots = true,
+                                              .noise = true,
+                                              .curves = !options.report.empty(),
+                                              .goesOn = options.snapshots},
+                                             &report.histories);
+    how.checkpoint = settings.checkpoint;
+    how.identity = prepared.identity;
+    Session session(*prepared.scene, region, how);
+    session.Resume();
     CatchInterrupts();
-    RenderOptions render = MakeRenderOptions(settings, job.provenance.sampler, &printer);
-    render.makeCriterion = MakeObservers(job.rules, region, settings.schedule,
-                                         {.snapshots = true,
-                                          .noise = true,
-                                          .curves = !options.report.empty(),
-                                          .goesOn = options.snapshots},
-                                         &report.histories);
-    WriteCheckpoints(settings.checkpoint, job.identity, film, &render);
-    const SampleSource source = SamplesOf(*job.scene, settings.estimator);
-    ShareAmongRanks(ranks, &render);
-    ranks->Begin(TextOf(job.identity));
-    const RenderResult result =
-        Render(source, render, &film, interrupted ? &*interrupted : nullptr);
-    ranks->End();
-    if (!leads) return kDone;
+    const RenderResult result = session.Run();
+    job->End();
+    if (!session.Leads()) return kDone;
     printer.Finish(result.progress);
-    if (result.cancelled) {
-        fmt::print(stderr, "lull: interrupted{}\n",
-                   settings.checkpoint.file.empty()
-                       ? "; nothing was written, as there is no --checkpoint"
-                       : "; --resume goes on from " + settings.checkpoint.file);
-        return kInterrupted;
-    }
+    if (result.cancelled) return SayInterrupted(settings.checkpoint);
 
-    const ObservedRender observed{source, render, film, result, report.histories};
-    for (size_t i = 0; i < job.rules.size(); ++i)
-        comparison.images.push_back(TakeImage(observed, job.rules, i));
-    if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
-    for (ComparedImage& image : fromFiles) comparison.images.push_back(std::move(image));
-    if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
-        std::swap(comparison.images.back(), *(comparison.images.end() - 2));
-    Measure(&comparison);
-    if (options.snapshots)
-        report.estimates = JudgeEstimates(comparison.images.front(), comparison.images.back());
+    AddImages(options, prepared.rules,
+              {session.Source(), session.Options(), session.TheFilm(), result, report.histories},
+              std::move(fromFiles), &report);
     for (const int threads : options.verify) {
-        const Verification v = Verify(job, settings, threads, comparison.images.front());
+        const Verification v =
+            Verify(prepared, settings, threads, report.comparison.images.front());
         if (Interrupted()) break;
         report.verifications.push_back(v);
     }
 
-    report.provenance = job.provenance;
+    report.provenance = prepared.provenance;
     report.decisions = result.blocks;
-    report.warnings = job.warnings;
+    report.warnings = prepared.warnings;
     report.title = SceneName(settings.scene.file);
     if (options.snapshots)
         report.notes.push_back(
             "The reference holds the samples of the other images, so that errors near the cap are "
             "understated.");
-    WriteReport(options, report, WriteImages(options, job, comparison));
+    const std::vector<std::string> images = WriteImages(options, prepared, report.comparison);
+    WriteReport(options, report, images);
     if (!settings.checkpoint.file.empty()) std::filesystem::remove(settings.checkpoint.file);
     return Interrupted() ? kInterrupted : kDone;
 }
 
 }  // namespace
 
-void AddCompareCommand(CLI::App& app, Command* command, lull::Job* ranks) {
+void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* compare = app.add_subcommand(
         "compare", "Compares automatic stopping with people's thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
     AddCompareOptions(*compare, options.get());
     compare->callback([=] {
         *command = [=] {
-            if (!options->render.scene.file.empty()) return CompareRenders(*options, ranks);
-            return ranks->Rank() == 0 ? CompareFiles(*options) : kDone;
+            if (!options->render.scene.file.empty()) return CompareRenders(*options, job);
+            return job->Rank() == 0 ? CompareFiles(*options) : kDone;
         };
     });
 }

@@ -7,7 +7,7 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/render_settings.h"
+#include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/recorded_viewpoint.h"
 #include "renderer/output/file_io.h"
@@ -85,9 +85,8 @@ std::string CheckpointName(const Options& options) {
 ExitCode RunDataset(const Options& options, Job* job) {
     const bool leads = job->Rank() == 0;  // prints, and writes files
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene);
-    const PixelRect& region = input.region;
-    const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
     CheckRecordable(blocks, settings.schedule);
 
     // Leave out what is there already.
@@ -114,35 +113,23 @@ ExitCode RunDataset(const Options& options, Job* job) {
         MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
-    // Go on where an earlier run was interrupted.
-    const CheckpointOptions checkpoint{.file = CheckpointName(options),
-                                       .interval = settings.checkpoint.interval,
-                                       .resume = std::filesystem::exists(CheckpointName(options))};
-    Film pixels(region);
-    std::optional<RenderState> interrupted;
-    if (leads) interrupted = Resume(checkpoint, identity, &pixels);
-
     ProgressPrinter printer = MakePrinter(settings, false);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
+    how.checkpoint = ResumeIfThere(CheckpointName(options), settings.checkpoint.interval);
+    how.identity = identity;
+    Session session(*scene, input.region, how);
+    session.Resume();
     CatchInterrupts();
-    RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
-    WriteCheckpoints(checkpoint, identity, pixels, &render);
-    ShareAmongRanks(job, &render);
-    job->Begin(TextOf(identity));
     const RenderResult result =
-        RecordBlocks(SamplesOf(*scene, settings.estimator), render, limits, &pixels,
-                     interrupted ? &*interrupted : nullptr, &viewpoint);
+        session.Run([&](auto&&... render) { return RecordBlocks(render..., limits, &viewpoint); });
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    if (result.cancelled) {
-        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n",
-                   checkpoint.file);
-        return kInterrupted;
-    }
+    if (result.cancelled) return SayInterrupted(CheckpointName(options));
 
     AddToDataset(viewpoint, &dataset);
     WriteFileAtomically(options.output, EncodeDataset(dataset));
-    std::filesystem::remove(checkpoint.file);
+    std::filesystem::remove(CheckpointName(options));
     fmt::print("{}\n", options.output);
     return kDone;
 }

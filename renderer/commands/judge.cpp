@@ -9,7 +9,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
-#include "renderer/commands/render_files.h"
+#include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/study_render.h"
 #include "renderer/output/file_io.h"
@@ -46,7 +46,7 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     RenderSettings settings = options.render;
     ScheduleOptions& schedule = settings.schedule;
     schedule.cap = settings.cap.value_or(schedule.cap);
-    SceneInput input(settings.scene);
+    SceneInput input(settings.scene, {.grid = GridOf(schedule)});
     const std::vector<Block> blocks = MakeBlocks(input.region, schedule);
     const std::vector<int> levels =
         options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
@@ -77,26 +77,20 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     ViewpointRecording viewpoint = MakeViewpoint(name, schedule, identity, blocks.size());
     if (records) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
-    const std::string file = options.output + ".checkpoint";
-    const CheckpointOptions checkpoint{.file = file,
-                                       .interval = settings.checkpoint.interval,
-                                       .resume = std::filesystem::exists(file)};
-    Film film(input.region);
-    const std::optional<RenderState> interrupted = Resume(checkpoint, identity, &film);
-
     Study study = BeginStudy(name, input.region, levels, blocks, identity);
     ProgressPrinter printer = MakePrinter(settings, false);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, nullptr);
+    const std::string file = options.output + ".checkpoint";
+    how.checkpoint = ResumeIfThere(file, settings.checkpoint.interval);
+    how.identity = identity;
+    Session session(*scene, input.region, how);
+    session.Resume();
     CatchInterrupts();
-    RenderOptions render = MakeRenderOptions(settings, provenance.sampler, &printer);
-    WriteCheckpoints(checkpoint, identity, film, &render);
-    const RenderResult result =
-        RenderStudy(SamplesOf(*scene, settings.estimator), render, &film,
-                    interrupted ? &*interrupted : nullptr, &study, records ? &viewpoint : nullptr);
+    const RenderResult result = session.Run([&](auto&&... render) {
+        return RenderStudy(render..., &study, records ? &viewpoint : nullptr);
+    });
     printer.Finish(result.progress);
-    if (result.cancelled) {
-        fmt::print(stderr, "lull: interrupted; the same command goes on from {}\n", file);
-        return kInterrupted;
-    }
+    if (result.cancelled) return SayInterrupted(file);
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
     if (records) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <set>
 
 #include "renderer/base/memory.h"
@@ -11,29 +10,17 @@
 
 namespace lull {
 
-namespace {
-
-constexpr const char* kFilmic = "filmic (Hable 2010)";
-
-// Says whether a channel is a colour or a direction, to which 11 bits do no harm.
-bool MayBeHalf(const std::string& name) {
-    return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
-           name.starts_with("N.");
-}
-
-}  // namespace
-
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     AddChoiceOption<ToneMap>(
-        app, "--tone-map", &options->toneMap,
+        app, "--tone-map", &options->format.toneMap,
         {{"none", ToneMap::None}, {"filmic", ToneMap::Filmic}}, "none|filmic",
         "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
         "rules judge the picture without it");
-    app.add_option("--png-bits", options->pngBits, "Bits of each colour of the PNG")
+    app.add_option("--png-bits", options->format.pngBits, "Bits of each colour of the PNG")
         ->check(OneOf(std::set{8, 16}))
         ->type_name("8|16")
         ->capture_default_str();
-    app.add_flag("--exr-half", options->exrHalf,
+    app.add_flag("--exr-half", options->format.exrHalf,
                  "Colours and normals of the EXR take 16 bits, up to 65504, instead of 32");
     app.add_option("--display", options->display,
                    "Show the render as it goes on in the viewer tev, or another that speaks its\n"
@@ -47,19 +34,6 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
             }
         })
         ->type_name("HOST:PORT");
-}
-
-PngFormat MakePngFormat(const PictureOptions& options, double exposure) {
-    PngFormat format{.bits = options.pngBits, .toneMap = options.toneMap, .text = {}};
-    if (options.toneMap == ToneMap::Filmic) format.text["ToneMap"] = kFilmic;
-    if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
-    return format;
-}
-
-void ApplyTo(ExrImage* exr, const PictureOptions& options) {
-    if (options.toneMap == ToneMap::Filmic) exr->attributes["pngToneMap"] = kFilmic;
-    if (!options.exrHalf) return;
-    for (ExrChannel& channel : exr->channels) channel.isHalf |= MayBeHalf(channel.name);
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,

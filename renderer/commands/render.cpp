@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "renderer/commands/aov_options.h"
+#include "renderer/commands/choice_option.h"
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
-#include "renderer/commands/half_buffer.h"
 #include "renderer/commands/interrupt.h"
+#include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
-#include "renderer/commands/render_settings.h"
+#include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"
 #include "renderer/ranks/job.h"
-#include "renderer/render/learning_state.h"
-#include "renderer/render/time_limit.h"
+#include "renderer/render/half_buffer.h"
 
 namespace lull {
 
@@ -93,7 +95,12 @@ void AddOptions(CLI::App& app, Options* o) {
     AddPictureOptions(app, &o->pictures);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
-    AddHalfBufferOption(app, &o->halfBuffer);
+    AddChoiceOption<HalfBuffer>(
+        app, "--half-buffer", &o->halfBuffer,
+        {{"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}},
+        "auto|on|off",
+        "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
+        "may be when going on from a checkpoint");
     app.footer(kFooter);
 }
 
@@ -186,22 +193,50 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
     };
 }
 
-// Lets learning write checkpoints, where they are wanted.
-std::function<void(std::span<const std::byte>)> KeepsLearning(const CheckpointOptions& options,
-                                                              const RenderIdentity& identity,
-                                                              bool leads) {
-    if (options.file.empty() || !leads) return {};
-    return [&](std::span<const std::byte> guide) {
-        WriteLearningCheckpoint(options, identity, guide);
-    };
+// Says how the film is kept. Throws Error where the memory cannot hold it, or where it cannot be as
+// the user wants it.
+FilmOptions CheckedFilm(const Options& options, const CriterionFactory& factory,
+                        const PixelRect& region) {
+    const RenderSettings& settings = options.render;
+    const HalfUse use{.rule = LooksAtHalf(factory, settings.schedule) ? factory.rule : "",
+                      .clock = !options.clock.Text().empty(),
+                      .page = IsHtml(options.report),
+                      .checkpoint = !settings.checkpoint.file.empty()};
+    const FilmOptions film{.grid = GridOf(settings.schedule),
+                           .withHalf = KeepsHalf(options.halfBuffer, use)};
+    CheckFilmFits(region, film);
+    return film;
 }
 
-HalfUse UseOfHalf(const Options& options, const CriterionFactory& factory, bool withCurves) {
-    const RenderSettings& settings = options.render;
-    return {.rule = LooksAtHalf(factory, settings.schedule) ? factory.rule : "",
-            .clock = !options.clock.Text().empty(),
-            .page = withCurves,
-            .checkpoint = !settings.checkpoint.file.empty()};
+Provenance ProvenanceOf(const Options& options, const CriterionFactory& factory, const Scene& scene,
+                        const FilmSettings& film) {
+    Provenance provenance = MakeProvenance(options.render, scene, film);
+    provenance.criterion = factory.rule;
+    provenance.checksum = factory.checksum;
+    provenance.clock = options.clock.Text();
+    provenance.logRatios = factory.logRatios;
+    provenance.guide = options.guide.mode;
+    provenance.guideMegabytes = options.guide.megabytes;
+    return provenance;
+}
+
+// Returns what checkpoints and ranks have to agree on; nothing where there are none, as the hash of
+// a large scene takes its time.
+RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
+                           const Description& description, const Job& job) {
+    if (options.render.checkpoint.file.empty() && job.Count() == 1) return {};
+    RenderIdentity identity = IdentityOf(provenance, SceneHash(description));
+    identity["curves"] = IsHtml(options.report) ? "yes" : "no";
+    return identity;
+}
+
+// Prints what came of it.
+void PrintResult(const RenderSettings& settings, const Provenance& provenance,
+                 const RenderResult& result, const Film& film) {
+    if (settings.quiet) return;
+    PrintSummary(result, film, settings.schedule.cap);
+    if (!result.shares.empty()) PrintShares(result.shares);
+    if (result.timeUp) PrintShortfall(provenance, result);
 }
 
 ExitCode RunRender(Options options, Job* job) {
@@ -211,101 +246,58 @@ ExitCode RunRender(Options options, Job* job) {
     const std::function<double()> clock = StartClock(options.clock);
 
     // Check all that can be wrong before the work begins.
-    const TileGrid grid = GridOf(settings.schedule);
-    SceneInput input(settings.scene, {.grid = grid, .withHalf = false});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = false});
     const PixelRect& region = input.region;
     const CriterionFactory factory = ReadRule(options, region, &settings);
     CheckBlocks(region, settings.schedule, input.warnings);
-    const bool withCurves = IsHtml(options.report);
-    const FilmOptions filmOptions{
-        .grid = grid,
-        .withHalf = KeepsHalf(options.halfBuffer, UseOfHalf(options, factory, withCurves))};
-    CheckFilmFits(region, filmOptions);
+    const FilmOptions film = CheckedFilm(options, factory, region);
     const RenderFiles files =
         NameFiles(options.output.empty() ? input.film.filename : options.output, options.report,
                   !factory.logRatios.empty());
     if (leads) CheckWritable(files, settings.scene.file);
     if (leads) CheckCheckpoint(settings.checkpoint);
-    std::optional<AovFilm> layers = MakeAovFilm(options.aovs, region);
-    AovFilm* const aovs = layers ? &*layers : nullptr;
+    CheckLayersFit(options.aovs, region);
     const std::unique_ptr<Display> display = MakeDisplay(
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
-
     const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
 
-    Provenance provenance = MakeProvenance(settings, *scene, input.film);
-    provenance.criterion = factory.rule;
-    provenance.checksum = factory.checksum;
-    provenance.clock = options.clock.Text();
-    provenance.logRatios = factory.logRatios;
-    provenance.guide = options.guide.mode;
-    provenance.guideMegabytes = options.guide.megabytes;
-    RenderIdentity identity;
-    if (!settings.checkpoint.file.empty() || job->Count() > 1) {
-        identity = IdentityOf(provenance, SceneHash(input.description));
-        identity["curves"] = withCurves ? "yes" : "no";
-        if (aovs) identity["aov"] = TextOf(options.aovs);
-    }
-    Film film(region, filmOptions);
-    std::optional<RenderState> interrupted;
-    std::vector<std::byte> guide;  // what was learned, for checkpoints
-    if (leads) interrupted = Resume(settings.checkpoint, identity, &film, &guide, aovs);
-
+    Provenance provenance = ProvenanceOf(options, factory, *scene, input.film);
+    std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
+    ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
+    how.render.makeCriterion = MakeCriteria(factory, IsHtml(options.report), &histories);
+    how.render.trend = factory.trend;
+    how.render.display = display.get();
+    how.film = film;
+    how.aovs = options.aovs;
+    how.guide = options.guide;
+    how.checkpoint = settings.checkpoint;
+    how.identity = IdentityFor(options, provenance, input.description, *job);
+    how.clock = clock;
+    Session session(*scene, region, how);
+    session.Resume();
     CatchInterrupts();
-    const std::optional<Learning> learning =
-        LearnGuide(options.guide, {.scene = *scene,
-                                   .region = region,
-                                   .settings = settings,
-                                   .sampler = provenance.sampler,
-                                   .ranks = job->Count(),
-                                   .clock = clock,
-                                   .keep = KeepsLearning(settings.checkpoint, identity, leads),
-                                   .kept = guide});
-    if (!learning) {
+    if (!session.Learn()) {
         fmt::print(stderr, "interrupted while learning\n");
         return kInterrupted;
     }
-    provenance.guideFigures = learning->figures;
-    if (options.guide.mode != GuideMode::Off && !settings.checkpoint.file.empty())
-        guide = SaveLearning(*learning);
-    if (interrupted && interrupted->blocks.empty()) interrupted.reset();
-
-    std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
-    ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
-    RenderOptions renderOptions = MakeRenderOptions(settings, provenance.sampler, &printer);
-    renderOptions.makeCriterion = MakeCriteria(factory, withCurves, &histories);
-    renderOptions.trend = factory.trend;
-    if (clock)
-        renderOptions.secondsLeft = [&, reserve = SecondsToWrite(region.Area())] {
-            return clock() - reserve;
-        };
-    if (display && interrupted) display->Show(region, film);
-    WriteCheckpoints(settings.checkpoint, identity, film, &renderOptions, guide, aovs);
-    ShareAmongRanks(job, &renderOptions);
-    job->Begin(TextOf(identity) + (film.HasHalf() ? "half" : ""));
-    const bool isGuided = learning->figures.isUsed;
-    const SampleSource source =
-        isGuided ? SamplesOf(*scene, learning->guide) : SamplesOf(*scene, settings.estimator);
-    const RenderResult result =
-        Render(source, renderOptions, &film, interrupted ? &*interrupted : nullptr,
-               {.aovs = aovs,
-                .aovSource = isGuided ? AovSamplesOf(*scene, learning->guide, options.aovs)
-                                      : AovSamplesOf(*scene, settings.estimator, options.aovs),
-                .display = display.get()});
+    provenance.guideFigures = session.Guidance();
+    const RenderResult result = session.Run();
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    if (display) display->Show(region, film);  // some may have been undone
-    film.DropHalf();                           // what follows needs the memory
-
-    if (!settings.quiet) PrintSummary(result, film, settings.schedule.cap);
-    if (!settings.quiet && !result.shares.empty()) PrintShares(result.shares);
-    if (!settings.quiet && result.timeUp) PrintShortfall(provenance, result);
+    session.TheFilm().DropHalf();  // what follows needs the memory
+    PrintResult(settings, provenance, result, session.TheFilm());
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
 
-    WriteFiles(files, *scene, film, provenance, result, input.warnings, histories,
-               aovs ? MakeExtraLayers(*aovs, film, input.description, *scene) : ExtraLayers(),
-               options.pictures);
+    WriteFiles(files, {{*scene, provenance},
+                       session.TheFilm(),
+                       result,
+                       histories,
+                       input.warnings,
+                       session.Aovs(),
+                       input.description,
+                       options.pictures.format});
     PrintFiles(files, result);
     if (display) display->Finish();
     if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())

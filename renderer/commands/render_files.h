@@ -1,11 +1,8 @@
 // Writes the files of a render.
 #pragma once
 
-#include "renderer/commands/aov_options.h"
-#include "renderer/commands/picture_options.h"
 #include "renderer/measure/block_observer.h"
-#include "renderer/measure/image_error.h"
-#include "renderer/measure/report.h"
+#include "renderer/measure/image_files.h"
 
 namespace lull {
 
@@ -24,19 +21,20 @@ bool HasImageExtension(const std::string& output);
 // image or the scene.
 void CheckWritable(const RenderFiles&, const std::string& scene);
 
-// Names a scene in thresholds files: the file without folder and extension, or the folder where
-// the file is called scene.pbrt. Not empty, without what the format has no room for.
-std::string SceneName(const std::string& file);
+// Holds what there is to write of a render; `histories` have the curves for a page.
+struct FinishedRender {
+    PictureOrigin origin;
+    const Film& film;
+    const RenderResult& result;
+    const std::vector<BlockHistory>& histories;
+    const Warnings& warnings;
+    const AovFilm* aovs;  // null: no layers
+    const Description& description;
+    const PictureFormat& pictures;
+};
 
-// Writes all files, each whole or not at all; the image has `extra` as well, and a report whose
-// name ends in .html as a page, which shows the curves in `histories`. Throws Error.
-void WriteFiles(const RenderFiles&, const Scene&, const Film&, const Provenance&,
-                const RenderResult&, const Warnings&, const std::vector<BlockHistory>& histories,
-                ExtraLayers extra, const PictureOptions&);
-
-// Writes an image as EXR and PNG, as of a render whose block i, of those in `blocks`, took spp[i].
-void WriteImage(const std::string& exr, const std::string& png, const Scene&, const RgbImage&,
-                const std::vector<Block>& blocks, const std::vector<int>& spp, const Provenance&,
-                double seconds);
+// Writes all files, each whole or not at all; a report whose name ends in .html as a page. Throws
+// Error.
+void WriteFiles(const RenderFiles&, const FinishedRender&);
 
 }  // namespace lull

@@ -1,7 +1,5 @@
 #include "renderer/commands/render_settings.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -10,9 +8,6 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
-#include "renderer/commands/interrupt.h"
-#include "renderer/commands/render_files.h"
-#include "renderer/ranks/job.h"
 
 namespace lull {
 
@@ -115,34 +110,6 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .filtering = settings.scene.compile.filtering,
             .resolution = film.resolution,
             .crop = {film.cropMin, film.cropMax}};
-}
-
-RenderOptions MakeRenderOptions(const RenderSettings& settings, SamplerKind sampler,
-                                ProgressPrinter* printer) {
-    RenderOptions options;
-    options.schedule = settings.schedule;
-    options.sampler = sampler;
-    options.seed = settings.seed;
-    options.threads = settings.scene.compile.threads;
-    options.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
-    options.isCancelled = Interrupted;
-    return options;
-}
-
-void ShareAmongRanks(Job* job, RenderOptions* options) {
-    options->peers = job->ThePeers();
-    options->onSilence = [job](const std::vector<int>& ranks) {
-        job->Warn(
-            fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
-                        "last checkpoint, with any number of ranks",
-                        fmt::join(ranks, ", ")));
-    };
-}
-
-std::string TextOf(const RenderIdentity& identity) {
-    std::string text;
-    for (const auto& [key, value] : identity) text += key + "=" + value + "\n";
-    return text;
 }
 
 ProgressPrinter MakePrinter(const RenderSettings& settings, bool adaptive) {

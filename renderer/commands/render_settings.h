@@ -47,18 +47,6 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
 // Says from what an image is made; the rule is left to be filled in.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
-// Returns the options of a render, without a rule, that shows its progress and can be interrupted.
-// The printer must outlive it.
-RenderOptions MakeRenderOptions(const RenderSettings&, SamplerKind, ProgressPrinter*);
-
-class Job;
-
-// Lets all ranks share a render, of which a warning says so if one does not answer.
-void ShareAmongRanks(Job*, RenderOptions*);
-
-// Returns all that ranks have to agree on, for Job::Begin().
-std::string TextOf(const RenderIdentity&);
-
 // Makes what shows the progress on stderr; `adaptive` says whether blocks stop by themselves.
 ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
 

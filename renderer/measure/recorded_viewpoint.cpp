@@ -105,9 +105,9 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
         (*limits)[i] = std::min((*limits)[i], int(std::ceil(past * row->spp[i])));
 }
 
-RenderResult RecordBlocks(const SampleSource& source, RenderOptions render,
-                          const std::vector<int>& limits, Film* film,
-                          const RenderState* interrupted, ViewpointRecording* viewpoint) {
+RenderResult RecordBlocks(const SampleSource& source, RenderOptions render, Film* film,
+                          const RenderState* interrupted, const std::vector<int>& limits,
+                          ViewpointRecording* viewpoint) {
     const ScheduleOptions& schedule = render.schedule;
     const std::vector<Block> blocks = MakeBlocks(film->Region(), schedule);
     std::vector<BlockRecording> recordings(blocks.size());

@@ -37,7 +37,8 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
 // recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and is told of
 // progress towards the limits. Of several ranks, the first has the recordings. Throws as Render()
 // does.
-RenderResult RecordBlocks(const SampleSource&, RenderOptions render, const std::vector<int>& limits,
-                          Film*, const RenderState* interrupted, ViewpointRecording*);
+RenderResult RecordBlocks(const SampleSource&, RenderOptions render, Film*,
+                          const RenderState* interrupted, const std::vector<int>& limits,
+                          ViewpointRecording*);
 
 }  // namespace lull

@@ -32,6 +32,10 @@ std::string NameOf(const AovSet& set) {
     return names;
 }
 
+std::string TextOf(const AovSet& set) {
+    return NameOf(set) + (set.throughSpecular ? " through specular" : "");
+}
+
 AovSet ParseAovs(const std::string& names) {
     AovSet set;
     for (size_t begin = 0; begin <= names.size();) {

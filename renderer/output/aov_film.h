@@ -24,6 +24,8 @@ struct AovSet {
 
 // Names the layers: "albedo,normal,..." in the order above, without throughSpecular.
 std::string NameOf(const AovSet&);
+// Says the same in words, with throughSpecular, for checkpoints and headers.
+std::string TextOf(const AovSet&);
 
 // Reads such names, in any order. Throws Error naming the first unknown one, or if there is none.
 AovSet ParseAovs(const std::string& names);

@@ -1,7 +1,5 @@
 #include "renderer/render/checkpoint.h"
 
-#include "renderer/render/extras.h"
-
 #include <fmt/format.h>
 
 #include "renderer/output/file_io.h"
@@ -115,53 +113,6 @@ void ReadPixels(const Hdf5Group& group, const PixelRect& rect, Film* film) {
     });
 }
 
-constexpr int kAovSums = 11;  // of a pixel
-
-void WriteAovs(Hdf5Group& group, const PixelRect& rect, const AovFilm& aovs) {
-    std::vector<double> sums;
-    std::vector<float> nearest;
-    std::vector<int32_t> numbers;
-    ForEachPixel(rect, [&](const Vec2i& p) {
-        const AovPixel& pixel = aovs.At(p);
-        for (const auto& sum : {pixel.albedo, pixel.normal, pixel.position})
-            sums.insert(sums.end(), sum.begin(), sum.end());
-        sums.insert(sums.end(), {pixel.depth, pixel.squares});
-        nearest.push_back(pixel.nearest);
-        numbers.insert(numbers.end(),
-                       {int32_t(pixel.hits), int32_t(pixel.object), int32_t(pixel.material)});
-    });
-    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), kAovSums};
-    group.AddArray<double>("aov_sums", shape, sums);
-    group.AddArray<float>("aov_nearest", std::span(shape).first(2), nearest);
-    group.AddArray<int32_t>("aov_numbers", std::array<int64_t, 3>{shape[0], shape[1], 3}, numbers);
-}
-
-void ReadAovs(const Hdf5Group& group, const PixelRect& rect, AovFilm* aovs) {
-    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), kAovSums};
-    const auto sums = group.Array<double>("aov_sums", shape);
-    const auto nearest = group.Array<float>("aov_nearest", std::span(shape).first(2));
-    const auto numbers =
-        group.Array<int32_t>("aov_numbers", std::array<int64_t, 3>{shape[0], shape[1], 3});
-    size_t i = 0;
-    ForEachPixel(rect, [&](const Vec2i& p) {
-        AovPixel& pixel = aovs->At(p);
-        const double* sum = &sums[kAovSums * i];
-        for (auto* to : {&pixel.albedo, &pixel.normal, &pixel.position}) {
-            std::copy_n(sum, 3, to->begin());
-            sum += 3;
-        }
-        pixel.depth = sum[0];
-        pixel.squares = sum[1];
-        pixel.nearest = nearest[i];
-        if (std::min({numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]}) < 0)
-            throw Error("it has impossible numbers in its layers");
-        pixel.hits = uint32_t(numbers[3 * i]);
-        pixel.object = uint32_t(numbers[3 * i + 1]);
-        pixel.material = uint32_t(numbers[3 * i + 2]);
-        ++i;
-    });
-}
-
 bool HasSamples(const Film& film, const PixelRect& rect) {
     bool any = false;
     ForEachPixel(rect, [&](const Vec2i& p) { any |= film.At(p).count > 0; });
@@ -221,14 +172,15 @@ RenderIdentity IdentityOf(const Provenance& p, const std::string& sceneHash) {
     return identity;
 }
 
-void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
-                     const RenderState& state, const Film& film, std::span<const std::byte> guide) {
-    WriteCheckpoint(path, identity, state, film, guide, nullptr);
+std::string TextOf(const RenderIdentity& identity) {
+    std::string text;
+    for (const std::string& line : Lines(identity)) text += line + "\n";
+    return text;
 }
 
 void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
-                     const RenderState& state, const Film& film, std::span<const std::byte> guide,
-                     const AovFilm* aovs) try {
+                     const RenderState& state, const Film& film, const Layers& layers,
+                     std::span<const std::byte> guide) try {
     Hdf5Group root = Hdf5Group::CreateInMemory();
     root.SetString("format", kFormat);
     root.SetStrings("identity", Lines(identity));
@@ -245,7 +197,7 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
         if (!HasSamples(film, rect)) continue;
         Hdf5Group pixels = group.MakeGroup("pixels");
         WritePixels(pixels, rect, film);
-        if (aovs) WriteAovs(pixels, rect, *aovs);
+        WriteLayers(layers, rect, &pixels);
     }
     WriteFileAtomically(path, root.Image());
 } catch (const Error&) {
@@ -255,12 +207,7 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
 }
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
-                           std::vector<std::byte>* guide) {
-    return ReadCheckpoint(path, identity, film, guide, nullptr);
-}
-
-RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
-                           std::vector<std::byte>* guide, AovFilm* aovs) try {
+                           const Layers& layers, std::vector<std::byte>* guide) try {
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
         throw Error("it is no checkpoint of this version of the program");
@@ -282,7 +229,7 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
             (rect.max.array() > all.max.array()).any())
             throw Error("it has pixels outside the image");
         ReadPixels(group.Group("pixels"), rect, film);
-        if (aovs) ReadAovs(group.Group("pixels"), rect, aovs);
+        ReadLayers(group.Group("pixels"), rect, layers);
     }
     return state;
 } catch (const std::runtime_error& e) {

@@ -17,16 +17,20 @@ using RenderIdentity = std::map<std::string, std::string>;
 // and the hash of the scene (SceneHash()).
 RenderIdentity IdentityOf(const Provenance& provenance, const std::string& sceneHash);
 
-// Writes film and state to an HDF5 file, whole or not at all, and what was learned, if anything
-// (SaveLearning()). A state without blocks stands for a render that is still learning. Throws
-// Error.
-void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
-                     const Film&, std::span<const std::byte> guide = {});
+// Returns the same as a text, a line each.
+std::string TextOf(const RenderIdentity&);
 
-// Fills the film, which has no samples yet, and returns the state; `guide`, if given, receives what
-// was learned. Throws Error if the file cannot be read, is damaged, or was written by another
-// render: it then says what differs.
+// Writes film, layers and state to an HDF5 file, whole or not at all, and what was learned, if
+// anything (SaveLearning()). A state without blocks stands for a render that is still learning.
+// Throws Error.
+void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
+                     const Film&, const Layers& = {}, std::span<const std::byte> guide = {});
+
+// Fills the film, which has no samples yet, and the layers, and returns the state; `guide`, if
+// given, receives what was learned. A checkpoint with layers can be read without, but not the other
+// way round. Throws Error if the file cannot be read, is damaged, or was written by another render:
+// it then says what differs.
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity&, Film*,
-                           std::vector<std::byte>* guide = nullptr);
+                           const Layers& = {}, std::vector<std::byte>* guide = nullptr);
 
 }  // namespace lull

@@ -81,16 +81,15 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, bool hasCl
 }
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
-                   const RenderState* interrupted, const RenderExtras& extras)
+                   const RenderState* interrupted)
     : Executor(source, options, film, interrupted,
-               StartsOf(interrupted, bool(options.secondsLeft), *film), {}, extras) {}
+               StartsOf(interrupted, bool(options.secondsLeft), *film), {}) {}
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
                    const RenderState* interrupted, std::span<const BlockStart> starts,
-                   TileShare share, const RenderExtras& extras)
+                   TileShare share)
     : source(source),
       options(options),
-      extras(extras),
       film(film),
       share(std::move(share)),
       secondsBefore(interrupted ? interrupted->seconds : 0),
@@ -158,7 +157,7 @@ void Executor::RunTile() {
 void Executor::RunTile(const Tile& tile) {
     const double tileStart = ThreadSeconds(), wallStart = Seconds();
     const int64_t taken = TakeSamples(tile);
-    if (extras.display) extras.display->Show(tile.pixels, *film);
+    if (options.display) options.display->Show(tile.pixels, *film);
     if (FinishTile(tile, ThreadSeconds() - tileStart, {taken, Seconds() - wallStart}))
         OnPassEnd(tile.block);
     ReportProgress();
@@ -167,14 +166,11 @@ void Executor::RunTile(const Tile& tile) {
 
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
-    if (!extras.aovs) return RenderTile(source, tile, sampler, film);
-    const auto withAovs = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-        FirstHit firstHit;
-        const PathSample sample = extras.aovSource(s, pixel, index, &firstHit);
-        extras.aovs->At(pixel).Add(firstHit, sample.radiance);
-        return sample;
+    if (!options.layers) return RenderTile(source, tile, sampler, film);
+    const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
+        return options.layers.Take(s, pixel, index);
     };
-    return RenderTile(withAovs, tile, sampler, film);
+    return RenderTile(withLayers, tile, sampler, film);
 }
 
 void Executor::Restart(std::span<const BlockStart> starts, TileShare newShare) {
@@ -220,7 +216,7 @@ std::optional<Tile> Executor::TakeTile() {
         undo.Keep(tile->block,
                   TilesOf(schedule.Blocks()[tile->block].pixels, tile->block,
                           options.schedule.tileSize, share),
-                  *film, extras.aovs);
+                  *film, options.layers);
     return tile;
 }
 
@@ -231,7 +227,7 @@ void Executor::CallTime() {
 }
 
 void Executor::Undo() {
-    undo.UndoAll(film, extras.aovs);
+    undo.UndoAll(film, options.layers);
     samples = film->SampleCount();
 }
 
@@ -264,12 +260,12 @@ int Executor::Decide(int i, const Judgement& judgement) {
 }
 
 void Executor::ShowStops() {
-    if (!extras.display) return;
+    if (!options.display) return;
     const std::span<const Block> blocks = schedule.Blocks();
     shownStops.resize(blocks.size());
     for (size_t i = 0; i < blocks.size(); ++i)
         if (blocks[i].stopped && !std::exchange(shownStops[i], true))
-            extras.display->ShowStop(blocks[i].pixels);
+            options.display->ShowStop(blocks[i].pixels);
 }
 
 std::vector<std::unique_ptr<Criterion>> Executor::MakeCriteria(

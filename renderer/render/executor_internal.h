@@ -8,7 +8,6 @@
 #include <chrono>
 #include <mutex>
 
-#include "renderer/render/extras.h"
 #include "renderer/render/forecast.h"
 #include "renderer/render/undo.h"
 #include "stopping/base/parallel.h"
@@ -20,8 +19,7 @@ namespace lull {
 // waits for another, and a single block still fills every core.
 class Executor {
   public:
-    Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-             const RenderExtras& extras);
+    Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted);
     virtual ~Executor() = default;
 
     // Says whether the state has the blocks that the schedule will make of the region.
@@ -40,7 +38,7 @@ class Executor {
 
     // For one of several ranks: takes the tiles of the share. `starts` is where blocks are.
     Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-             std::span<const BlockStart> starts, TileShare, const RenderExtras& extras);
+             std::span<const BlockStart> starts, TileShare);
 
     // Begins anew where blocks are now, with no task at work: passes under way are given out once
     // more, of which pixels keep what they have.
@@ -74,7 +72,6 @@ class Executor {
 
     const SampleSource& source;
     const RenderOptions& options;
-    const RenderExtras extras;
     Film* film;
     TileShare share;
     const Clock::time_point start = Clock::now();

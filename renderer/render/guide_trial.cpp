@@ -41,7 +41,7 @@ std::optional<Arm> TakeSamples(const Scene& scene, const PixelRect& region, cons
         pixel.vertices += vertices;
         return sample;
     };
-    Film film(region);
+    Film film(region, {.grid = GridOf(options.schedule)});
     if (Render(source, options, &film).cancelled) return {};
     return arm;
 }

@@ -5,6 +5,8 @@
 #include <chrono>
 
 #include "renderer/base/color.h"
+#include "renderer/base/error.h"
+#include "renderer/output/progress.h"
 #include "renderer/render/guide_trial.h"
 #include "renderer/transport/guided_path_tracer.h"
 
@@ -55,10 +57,9 @@ RenderOptions MakeRenderOptions(const LearningOptions& options, int round, int s
 // Returns the mean luminance of a sample; nothing where it was cancelled.
 std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
                                     const LearningOptions& options) {
-    Film film(region);
-    if (Render(SamplesOf(scene, Estimator::Combined), MakeRenderOptions(options, -1, 1), &film)
-            .cancelled)
-        return {};
+    const RenderOptions render = MakeRenderOptions(options, -1, 1);
+    Film film(region, {.grid = GridOf(render.schedule)});
+    if (Render(SamplesOf(scene, Estimator::Combined), render, &film).cancelled) return {};
     double sum = 0;
     const std::vector<float> means = film.MeanImage();
     for (size_t i = 0; i < means.size(); i += 3)
@@ -75,9 +76,9 @@ bool RunRound(const Scene& scene, const PixelRect& region, const LearningOptions
         return RenderGuidedSample(scene, state.guide, sampler, pixel, index,
                                   {.record = &state.record, .usual = usual});
     };
-    Film film(region);
     const RenderOptions render =
         MakeRenderOptions(options, learning->round, RoundSamples(learning->round));
+    Film film(region, {.grid = GridOf(render.schedule)});
     return !Render(source, render, &film).cancelled;
 }
 
@@ -119,6 +120,42 @@ std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator)
     if (scene.maxDepth < 2) return "paths have one bounce at most";
     if (scene.lights.Count() == 0) return "the scene has no light";
     return {};
+}
+
+void CheckGuide(const GuideOptions& options, const Scene& scene, Estimator estimator) {
+    if (options.mode != GuideMode::On) return;
+    if (const auto why = WhyNotGuided(scene, estimator))
+        throw Error(fmt::format(
+            "--guide on: {}, and paths are not guided there; give --guide auto or off", *why));
+}
+
+Learning NotGuided(const std::string& why) {
+    Learning learning;
+    learning.isDone = true;
+    learning.figures.why = why;
+    return learning;
+}
+
+std::string TextOf(const GuideFigures& f, GuideMode mode) {
+    std::string text = fmt::format("guide: {}: {}", f.isUsed ? "used" : "not used", f.why);
+    if (f.rounds == 0) return text;
+    text += fmt::format("; learned from {} spp in {}, {:.1f} MB", f.samples,
+                        FormatDuration(f.seconds), double(f.bytes) / (1 << 20));
+    if (mode == GuideMode::Auto)
+        text += fmt::format("; variance {:.2f} +- {:.2f}, vertices {:.2f} of those without",
+                            f.variance, f.varianceError, f.vertices);
+    return text;
+}
+
+// A round takes as long as all before it and a bit more. When half of the time is gone
+// nevertheless, the render goes on without.
+void HeedClock(const std::function<double()>& clock, LearningOptions* options) {
+    constexpr double kStartsNoRound = 0.05, kGivesUp = 0.5;
+    const double all = clock();
+    options->isEnough = [=] { return all - clock() > kStartsNoRound * all; };
+    options->isCancelled = [=, isCancelled = options->isCancelled] {
+        return (isCancelled && isCancelled()) || all - clock() > kGivesUp * all;
+    };
 }
 
 bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& options,

@@ -30,6 +30,12 @@ struct GuideFigures {
     double variance = 1, varianceError = 0, vertices = 1;
 };
 
+// What a render is asked for.
+struct GuideOptions {
+    GuideMode mode = GuideMode::Off;
+    int megabytes = 64;  // that trees and sums may take, > 0
+};
+
 struct LearningOptions {
     GuideMode mode = GuideMode::On;
     int megabytes = 64;  // that trees and sums may take, > 0
@@ -43,6 +49,9 @@ struct LearningOptions {
     std::function<bool()> isEnough;
 };
 
+// Lets learning take a part of the time, of which `clock` returns the seconds that are left.
+void HeedClock(const std::function<double()>& clock, LearningOptions*);
+
 // Holds all that is needed to go on learning after a round, to the same bits.
 struct Learning {
     int round = 0;     // the next one
@@ -55,6 +64,15 @@ struct Learning {
 
 // Says whether paths of the scene can be guided; if not, why.
 std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
+
+// Throws Error where the scene cannot be guided but `--guide on` asks for it.
+void CheckGuide(const GuideOptions&, const Scene&, Estimator);
+
+// Returns what there is instead of learning where paths are not guided, for that reason.
+Learning NotGuided(const std::string& why);
+
+// Says what came of learning, in a line.
+std::string TextOf(const GuideFigures&, GuideMode);
 
 // Learns until that is done. `onRound` is called after each round but the last, with no thread at
 // work; it can be empty. Returns false if it was cancelled: `learning` is then not fit for use, and

@@ -31,6 +31,10 @@ struct Provenance {
     GuideFigures guideFigures = {};  // of what was learned; not part of the identity
 };
 
+// Names a scene in thresholds files: the file without folder and extension, or the folder where
+// the file is called scene.pbrt. Not empty, without what the format has no room for.
+std::string SceneName(const std::string& file);
+
 std::string NameOf(SamplerKind);
 std::string NameOf(Estimator);
 std::string NameOf(TextureFiltering);

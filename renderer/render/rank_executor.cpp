@@ -19,9 +19,9 @@ bool ComesBefore(const PixelRect& a, const PixelRect& b) {
 
 RankExecutor::RankExecutor(const SampleSource& source, const RenderOptions& options, Film* film,
                            const RenderState* interrupted, std::span<const BlockStart> starts,
-                           const RenderExtras& extras, tbb::task_arena* arena)
+                           tbb::task_arena* arena)
     : Executor(source, options, film, interrupted, starts,
-               {options.peers->Rank(), EvenDeal(options.peers->Count())}, extras),
+               {options.peers->Rank(), EvenDeal(options.peers->Count())}),
       peers(*options.peers),
       ranks(options.peers->Count()),
       arena(arena) {}

@@ -28,7 +28,7 @@ class RankExecutor : public Executor {
 
   protected:
     RankExecutor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-                 std::span<const BlockStart> starts, const RenderExtras&, tbb::task_arena*);
+                 std::span<const BlockStart> starts, tbb::task_arena*);
 
     static constexpr double patienceWithRanks = 0.5;  // seconds to answer a Ping
 
@@ -87,8 +87,7 @@ class RankExecutor : public Executor {
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
 // There is no display.
 RenderResult LeadRanks(const SampleSource&, const RenderOptions&, Film*,
-                       const RenderState* interrupted, const RenderExtras&, tbb::task_arena*);
-RenderResult FollowRanks(const SampleSource&, const RenderOptions&, Film*, const RenderExtras&,
-                         tbb::task_arena*);
+                       const RenderState* interrupted, tbb::task_arena*);
+RenderResult FollowRanks(const SampleSource&, const RenderOptions&, Film*, tbb::task_arena*);
 
 }  // namespace lull

@@ -8,8 +8,8 @@ namespace {
 class Follower final : public RankExecutor {
   public:
     Follower(const SampleSource& source, const RenderOptions& options, Film* film,
-             const RenderExtras& extras, tbb::task_arena* arena)
-        : RankExecutor(source, options, film, nullptr, {}, extras, arena) {
+             tbb::task_arena* arena)
+        : RankExecutor(source, options, film, nullptr, {}, arena) {
         pausing = true;  // until rank 0 has said where blocks are
     }
 
@@ -37,7 +37,7 @@ class Follower final : public RankExecutor {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, NewTilesOfRank(block, share.rank, before), film, extras.aovs);
+            GetPixels(reader, NewTilesOfRank(block, share.rank, before), film, options.layers);
         } else if (word == RankWord::TimeUp) {
             CallTime();
         } else if (word == RankWord::Pause) {
@@ -79,7 +79,7 @@ class Follower final : public RankExecutor {
     }
 
     void UndoPasses() {
-        for (const int block : undo.UndoAll(film, extras.aovs)) touched[size_t(block)] = true;
+        for (const int block : undo.UndoAll(film, options.layers)) touched[size_t(block)] = true;
     }
 
     // Sends what has changed since the last time, or may have.
@@ -89,7 +89,7 @@ class Follower final : public RankExecutor {
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
             const std::vector<PixelRect> tiles = TilesOfRank(i, share.rank);
-            if (!tiles.empty()) Post(0, PackPixels(i, tiles, *film, extras.aovs));
+            if (!tiles.empty()) Post(0, PackPixels(i, tiles, *film, options.layers));
         }
         Post(0, Pack(RankWord::Collected));
     }
@@ -103,12 +103,12 @@ class Follower final : public RankExecutor {
 }  // namespace
 
 RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given, Film* film,
-                         const RenderExtras& extras, tbb::task_arena* arena) {
+                         tbb::task_arena* arena) {
     RenderOptions options = given;
     options.makeCriterion = nullptr;
     options.onProgress = nullptr;
     options.onCheckpoint = nullptr;
-    Follower follower(source, options, film, extras, arena);
+    Follower follower(source, options, film, arena);
     return follower.Guarded([&] { return follower.Follow(); });
 }
 

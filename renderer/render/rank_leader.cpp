@@ -15,9 +15,9 @@ constexpr double longestPause = 20;  // times as long as a pause was is it until
 class Leader final : public RankExecutor {
   public:
     Leader(const SampleSource& source, const RenderOptions& options, Film* film,
-           const RenderState* interrupted, const RenderExtras& extras, tbb::task_arena* arena)
+           const RenderState* interrupted, tbb::task_arena* arena)
         : RankExecutor(source, options, film, interrupted,
-                       StartsOf(interrupted, bool(options.secondsLeft), *film), extras, arena),
+                       StartsOf(interrupted, bool(options.secondsLeft), *film), arena),
           speeds(options.peers->Count()),
           nextDeal(secondsBefore + options.dealInterval) {
         ForgetParts();
@@ -106,7 +106,7 @@ class Leader final : public RankExecutor {
         for (int rank = 1; rank < ranks && samples > 0; ++rank)
             for (int i = 0; i < int(blocks.size()); ++i) {
                 const std::vector<PixelRect> tiles = NewTilesOfRank(i, rank, before);
-                if (!tiles.empty()) Post(rank, PackPixels(i, tiles, *film, extras.aovs));
+                if (!tiles.empty()) Post(rank, PackPixels(i, tiles, *film, options.layers));
             }
         PostToAll(Pack(RankWord::Begin));
     }
@@ -177,7 +177,7 @@ class Leader final : public RankExecutor {
             TakePart(from, GetPart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
-            GetPixels(reader, TilesOfRank(block, from), film, extras.aovs);
+            GetPixels(reader, TilesOfRank(block, from), film, options.layers);
         } else if (word == RankWord::Quiet) {
             ++quiet;
         } else if (word == RankWord::Collected) {
@@ -248,9 +248,8 @@ class Leader final : public RankExecutor {
 }  // namespace
 
 RenderResult LeadRanks(const SampleSource& source, const RenderOptions& options, Film* film,
-                       const RenderState* interrupted, const RenderExtras& extras,
-                       tbb::task_arena* arena) {
-    Leader leader(source, options, film, interrupted, extras, arena);
+                       const RenderState* interrupted, tbb::task_arena* arena) {
+    Leader leader(source, options, film, interrupted, arena);
     return leader.Guarded([&] { return leader.Lead(); });
 }
 

@@ -66,12 +66,11 @@ std::vector<std::byte> PackCollect(bool undo) {
 }
 
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
-                                  const AovFilm* aovs) {
+                                  const Layers& layers) {
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
     std::vector<FilmPixel> pixels;
     std::vector<double> sums;
-    std::vector<AovPixel> aovPixels;
     for (const PixelRect& tile : tiles) {
         pixels.clear();
         CopyPixels(film, tile, &pixels);
@@ -85,10 +84,7 @@ std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles
         writer.Put(pixels.back().count);
         writer.Put(rejected);
         writer.PutAll(std::span<const double>(sums));
-        if (!aovs) continue;
-        aovPixels.clear();
-        aovs->Copy(tile, &aovPixels);
-        writer.PutAll(std::span<const AovPixel>(aovPixels));
+        PutLayers(layers, tile, &writer);
     }
     return std::move(writer.bytes);
 }
@@ -131,7 +127,7 @@ int GetBlock(StateReader& reader, size_t blocks) {
 }
 
 void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
-               AovFilm* aovs) {
+               const Layers& layers) {
     for (const PixelRect& tile : tiles) {
         std::vector<FilmPixel> pixels(size_t(tile.Area()));
         const auto count = reader.Get<uint32_t>();
@@ -142,10 +138,7 @@ void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* f
             if (film->HasHalf()) reader.GetAll(std::span<double>(pixel.halfSum));
         }
         SetPixels(pixels.data(), tile, film);
-        if (!aovs) continue;
-        std::vector<AovPixel> aovPixels(pixels.size());
-        reader.GetAll(std::span(aovPixels));
-        aovs->Set(aovPixels.data(), tile);
+        GetLayers(&reader, tile, layers);
     }
     reader.Finish();
 }

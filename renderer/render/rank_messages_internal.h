@@ -1,7 +1,7 @@
 // Puts what ranks say to each other (peers.h) into bytes.
 #pragma once
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/layers.h"
 #include "renderer/render/schedule.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
@@ -58,9 +58,8 @@ std::vector<std::byte> Pack(const StartMessage&);
 std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
-// The layers are null where there are none.
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&,
-                                  const AovFilm*);
+                                  const Layers&);
 
 // Read what follows on the word. Throw std::runtime_error for what was not packed so.
 StartMessage GetStart(StateReader&);
@@ -68,8 +67,8 @@ AnswerMessage GetAnswer(StateReader&);
 PartMessage GetPart(StateReader&);
 // Reads the number of a block, below `blocks`.
 int GetBlock(StateReader&, size_t blocks);
-// Reads sums of these tiles into the film, and into the layers unless null.
-void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*, AovFilm*);
+// Reads sums of these tiles into the film and the layers.
+void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*, const Layers&);
 
 // Returns the means of tiles, pixel by pixel, then the half means if they are wanted.
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed, const Film&);

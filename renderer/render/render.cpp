@@ -17,13 +17,12 @@ namespace {
 
 // This thread speaks with the other ranks, so the arena has none of its places for it.
 RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& options, Film* film,
-                             const RenderState* interrupted, const RenderExtras& extras,
-                             int threads) {
+                             const RenderState* interrupted, int threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads) + 1);
     tbb::task_arena arena(threads, 0);
     RenderResult result = options.peers->Rank() == 0
-                              ? LeadRanks(source, options, film, interrupted, extras, &arena)
-                              : FollowRanks(source, options, film, extras, &arena);
+                              ? LeadRanks(source, options, film, interrupted, &arena)
+                              : FollowRanks(source, options, film, &arena);
     result.threads = threads * options.peers->Count();
     return result;
 }
@@ -32,23 +31,18 @@ RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& op
 
 RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
                     const RenderState* interrupted) {
-    return Render(source, options, film, interrupted, {});
-}
-
-RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
-                    const RenderState* interrupted, const RenderExtras& extras) {
     if (interrupted && !Executor::Fits(*interrupted, film->Region(), options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-    if (extras.aovs && !(extras.aovs->Region() == film->Region()))
+    if (options.layers && !(options.layers.aovs->Region() == film->Region()))
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
-    if (!alone && extras.display) throw std::invalid_argument("several ranks have no viewer");
-    if (!alone) return RenderWithPeers(source, options, film, interrupted, extras, threads);
+    if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
+    if (!alone) return RenderWithPeers(source, options, film, interrupted, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
     RenderResult result =
-        arena.execute([&] { return Executor(source, options, film, interrupted, extras).Run(); });
+        arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
     result.threads = threads;
     return result;
 }

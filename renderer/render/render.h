@@ -3,9 +3,10 @@
 
 #include <functional>
 
+#include "renderer/output/display.h"
 #include "renderer/output/progress.h"
+#include "renderer/render/layers.h"
 #include "renderer/render/schedule.h"
-#include "renderer/transport/path_tracer.h"
 #include "stopping/rules/criterion.h"
 
 namespace lull {
@@ -69,6 +70,11 @@ struct RenderOptions {
     double dealInterval = 5;
     // Is told, once the render has been cancelled, of ranks that do not answer. Can be empty.
     std::function<void(const std::vector<int>& ranks)> onSilence;
+
+    // What is collected beside the film, from the same samples; they are the same bits with it.
+    Layers layers;
+    // Is shown every tile when it has been rendered, and every block that stops. Null: none.
+    Display* display = nullptr;
 };
 
 struct RenderResult {
@@ -83,11 +89,11 @@ struct RenderResult {
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
 using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index)>;
 
-// Renders the film's region, from the start or from where an interrupted render left film and
-// state. The pixels are the same bits for any
-// number of threads and, at equal samples per pixel, for any size of blocks and length of passes.
-// A clock decides how many samples blocks get that have not stopped, and nothing else. Passes on
-// what criteria and callbacks throw.
+// Renders the film's region, from the start or from where an interrupted render left film, layers
+// and state. The pixels are the same bits for any number of threads and ranks and, at equal samples
+// per pixel, for any size of blocks and length of passes. A clock decides how many samples blocks
+// get that have not stopped, and nothing else. Passes on what criteria and callbacks throw; throws
+// std::invalid_argument for layers of another region, and for a display on several ranks.
 //
 // A block whose `stopped` is set in a state without samples is left out.
 RenderResult Render(const SampleSource&, const RenderOptions&, Film*,

@@ -14,22 +14,26 @@ const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect& rect, Film* f
 }
 
 void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film,
-                    const AovFilm* aovs) {
+                    const Layers& layers) {
     Pixels& pixels = kept[block];
     pixels.tiles = tiles;
-    for (const PixelRect& tile : tiles) CopyPixels(film, tile, &pixels.values);
-    for (const PixelRect& tile : tiles)
-        if (aovs) aovs->Copy(tile, &pixels.aovs);
+    StateWriter writer;
+    for (const PixelRect& tile : tiles) {
+        CopyPixels(film, tile, &pixels.values);
+        PutLayers(layers, tile, &writer);
+    }
+    pixels.layers = std::move(writer.bytes);
 }
 
-std::vector<int> PassUndo::UndoAll(Film* film, AovFilm* aovs) {
+std::vector<int> PassUndo::UndoAll(Film* film, const Layers& layers) {
     std::vector<int> blocks;
     for (const auto& [block, pixels] : kept) {
         const FilmPixel* from = pixels.values.data();
-        for (const PixelRect& tile : pixels.tiles) from = SetPixels(from, tile, film);
-        const AovPixel* fromAovs = pixels.aovs.data();
-        for (const PixelRect& tile : pixels.tiles)
-            if (aovs) fromAovs = aovs->Set(fromAovs, tile);
+        StateReader reader(pixels.layers);
+        for (const PixelRect& tile : pixels.tiles) {
+            from = SetPixels(from, tile, film);
+            GetLayers(&reader, tile, layers);
+        }
         blocks.push_back(block);
     }
     kept.clear();

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/layers.h"
 
 namespace lull {
 
@@ -14,18 +14,17 @@ class PassUndo {
     bool Has(int block) const { return kept.contains(block); }
     // Copies the pixels of the block that are in these tiles, of the layers as well if there are
     // any.
-    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&,
-              const AovFilm* aovs = nullptr);
+    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&, const Layers&);
     // The pass has come to its end.
     void Forget(int block) { kept.erase(block); }
     // Puts all that is kept back. Returns the blocks.
-    std::vector<int> UndoAll(Film*, AovFilm* aovs = nullptr);
+    std::vector<int> UndoAll(Film*, const Layers&);
 
   private:
     struct Pixels {
         std::vector<PixelRect> tiles;
         std::vector<FilmPixel> values;  // tile by tile, each row by row
-        std::vector<AovPixel> aovs;     // empty: none are kept
+        std::vector<std::byte> layers;  // the same, by PutLayers()
     };
     std::map<int, Pixels> kept;
 };

@@ -14,8 +14,8 @@ void AddRow(const float* from, double weight, int width, double* to) {
 
 }  // namespace
 
-std::vector<float> Filter(std::span<const float> image, int width, int height,
-                          std::span<const double> alongX, std::span<const double> alongY) {
+std::vector<float> Convolve(std::span<const float> image, int width, int height,
+                            std::span<const double> alongX, std::span<const double> alongY) {
     const int radiusX = int(alongX.size()) / 2, radiusY = int(alongY.size()) / 2;
     std::vector<float> rows(image.size()), result(image.size());
     std::vector<float> padded(size_t(width + 2 * radiusX));

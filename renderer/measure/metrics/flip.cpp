@@ -90,7 +90,7 @@ std::vector<float> FilterByContrast(const std::vector<float>& plane, int width, 
         if (a[i] == 0) continue;
         const double sigma = std::sqrt(b[i] / 2) / std::numbers::pi * pixelsPerDegree;
         const std::vector<double> kernel = GaussianKernel(sigma, radius);
-        const std::vector<float> filtered = Filter(plane, width, height, kernel, kernel);
+        const std::vector<float> filtered = Convolve(plane, width, height, kernel, kernel);
         for (size_t p = 0; p < plane.size(); ++p)
             result[p] += float(weights[i] / weightSum) * filtered[p];
     }
@@ -171,8 +171,8 @@ Features FindFeatures(const std::vector<float>& achromatic, int width, int heigh
     std::vector<float> y(achromatic.size());
     std::ranges::transform(achromatic, y.begin(), [](float v) { return (v + 16) / 116; });
     const auto strength = [&](const std::vector<double>& kernel) {
-        std::vector<float> alongX = Filter(y, width, height, kernel, smooth);
-        const std::vector<float> alongY = Filter(y, width, height, smooth, kernel);
+        std::vector<float> alongX = Convolve(y, width, height, kernel, smooth);
+        const std::vector<float> alongY = Convolve(y, width, height, smooth, kernel);
         for (size_t i = 0; i < alongX.size(); ++i) alongX[i] = std::hypot(alongX[i], alongY[i]);
         return alongX;
     };

@@ -31,7 +31,7 @@ std::vector<float> SsimMap(std::span<const uint8_t> image, std::span<const uint8
     constexpr double c1 = (0.01 * 255) * (0.01 * 255), c2 = (0.03 * 255) * (0.03 * 255);
     const std::vector<double> window = GaussianKernel(1.5, kSsimRadius);
     const auto filter = [&](const std::vector<float>& values) {
-        return Filter(values, width, height, window, window);
+        return Convolve(values, width, height, window, window);
     };
     const std::vector<float> x = CentredLuma(image), y = CentredLuma(reference);
     const std::vector<float> meanX = filter(x), meanY = filter(y);

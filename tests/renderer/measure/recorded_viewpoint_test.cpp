@@ -27,7 +27,7 @@ ViewpointRecording Record(const std::vector<int>& limits) {
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
     const RenderResult result =
-        RecordBlocks(SyntheticSample, RoomOptions(), limits, &film, nullptr, &viewpoint);
+        RecordBlocks(SyntheticSample, RoomOptions(), &film, nullptr, limits, &viewpoint);
     EXPECT_FALSE(result.cancelled);
     return viewpoint;
 }
@@ -77,7 +77,7 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
     RenderOptions options = RoomOptions();
     RenderProgress last;
     options.onProgress = [&](const RenderProgress& progress) { last = progress; };
-    RecordBlocks(SyntheticSample, options, {0, 6}, &film, nullptr, &viewpoint);
+    RecordBlocks(SyntheticSample, options, &film, nullptr, {0, 6}, &viewpoint);
     EXPECT_EQ(last.samples, 8 * 45 * 44);
     EXPECT_EQ(last.samplesToCap, 0);
 }
@@ -92,10 +92,10 @@ TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
     options.isCancelled = [&] { return ++tiles > 9; };
     options.onCheckpoint = [&](const RenderState& s) { state = s; };
     EXPECT_TRUE(
-        RecordBlocks(SyntheticSample, options, {16, 6}, &film, nullptr, &viewpoint).cancelled);
+        RecordBlocks(SyntheticSample, options, &film, nullptr, {16, 6}, &viewpoint).cancelled);
     EXPECT_TRUE(viewpoint.blocks.empty());
     ASSERT_TRUE(state);
-    RecordBlocks(SyntheticSample, RoomOptions(), {16, 6}, &film, &*state, &viewpoint);
+    RecordBlocks(SyntheticSample, RoomOptions(), &film, &*state, {16, 6}, &viewpoint);
     const ViewpointRecording whole = Record({16, 6});
     for (const int i : {0, 1}) {
         EXPECT_EQ(viewpoint.blocks.at(i).spp, whole.blocks.at(i).spp);

@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "renderer/render/extras.h"
+#include "renderer/render/checkpoint.h"
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
@@ -22,7 +22,6 @@ struct Rendered {
     Film film{kRegion};
     AovFilm aovs{kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")};
     RenderOptions options;
-    RenderExtras extras;
     RenderResult result;
 
     Rendered() {
@@ -32,11 +31,10 @@ struct Rendered {
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
         };
-        extras.aovs = &aovs;
-        extras.aovSource = SampleWithHit;
+        options.layers = {&aovs, SampleWithHit};
     }
     void Run(const RenderState* interrupted = nullptr) {
-        result = Render(SyntheticSample, options, &film, interrupted, extras);
+        result = Render(SyntheticSample, options, &film, interrupted);
     }
 };
 
@@ -62,6 +60,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
         EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
         EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
         Film without(kRegion);
+        render.options.layers = {};
         Render(SyntheticSample, render.options, &without);
         EXPECT_TRUE(SamePixels(render.film, without));
     }
@@ -73,7 +72,8 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     std::atomic<int> taken = 0;
     render.options.threads = 2;
     render.options.makeCriterion = nullptr;
-    render.extras.aovSource = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* h) {
+    render.options.layers.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
+                                       FirstHit* h) {
         ++taken;
         return SampleWithHit(sampler, pixel, k, h);
     };
@@ -94,20 +94,20 @@ TEST(Aovs, GoOnFromCheckpoints) {
     {
         Rendered first;
         std::atomic<int> taken = 0;
-        first.extras.aovSource = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* h) {
+        first.options.layers.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* h) {
             ++taken;
             return SampleWithHit(s, pixel, k, h);
         };
         first.options.isCancelled = [&] { return taken > 50001; };
         first.options.onCheckpoint = [&](const RenderState& s) {
-            WriteCheckpoint(path, identity, s, first.film, {}, &first.aovs);
+            WriteCheckpoint(path, identity, s, first.film, first.options.layers);
         };
         first.options.checkpointInterval = 1e6;
         first.Run();
         EXPECT_TRUE(first.result.cancelled);
     }
     Rendered second;
-    state = ReadCheckpoint(path, identity, &second.film, nullptr, &second.aovs);
+    state = ReadCheckpoint(path, identity, &second.film, second.options.layers);
     second.Run(&state);
     EXPECT_TRUE(SamePixels(second.film, whole.film));
     EXPECT_TRUE(SameLayers(second.aovs, whole.aovs));
@@ -117,13 +117,13 @@ TEST(Aovs, GoOnFromCheckpoints) {
     state = ReadCheckpoint(path, identity, &film);
     WriteCheckpoint(path, identity, state, film);
     Rendered third;
-    EXPECT_THROW(ReadCheckpoint(path, identity, &third.film, nullptr, &third.aovs), Error);
+    EXPECT_THROW(ReadCheckpoint(path, identity, &third.film, third.options.layers), Error);
 }
 
 TEST(Aovs, OfAnotherRegionAreRefused) {
     Rendered render;
     AovFilm other({{0, 0}, {1, 1}}, render.aovs.Wanted());
-    render.extras.aovs = &other;
+    render.options.layers.aovs = &other;
     EXPECT_THROW(render.Run(), std::invalid_argument);
 }
 

@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/render/extras.h"
+#include "renderer/render/layers.h"
 #include "renderer/render/learning_state.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"

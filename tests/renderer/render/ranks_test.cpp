@@ -112,9 +112,8 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
             state = &before->state;
         }
         const SampleSource source = sourceOf(rank);
-        RenderExtras extras;
-        if (withLayers) extras = {.aovs = layers.get(), .aovSource = WithHits(source)};
-        RenderResult result = Render(source, options, film.get(), state, extras);
+        if (withLayers) options.layers = {layers.get(), WithHits(source)};
+        RenderResult result = Render(source, options, film.get(), state);
         if (rank > 0) return;
         shared.film = std::move(film);
         shared.layers = std::move(layers);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/render/extras.h"
+#include "renderer/render/render.h"
 
 namespace lull {
 

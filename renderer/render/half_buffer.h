@@ -1,8 +1,6 @@
-// `--half-buffer`: whether a render keeps the sums of the half of the samples on which noise is
-// estimated, 24 bytes a pixel.
+// Decides whether a render keeps the sums of the half of the samples on which noise is estimated,
+// 24 bytes a pixel.
 #pragma once
-
-#include <CLI/App.hpp>
 
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
@@ -17,8 +15,6 @@ struct HalfUse {
     bool clock = false, page = false;
     bool checkpoint = false;  // nobody does, but whoever goes on from it may
 };
-
-void AddHalfBufferOption(CLI::App& app, HalfBuffer*);
 
 // Says whether a rule looks at the half after any of the passes of a block.
 bool LooksAtHalf(const CriterionFactory&, const ScheduleOptions&);

@@ -1,18 +1,8 @@
-#include "renderer/commands/half_buffer.h"
+#include "renderer/render/half_buffer.h"
 
 #include "renderer/base/error.h"
-#include "renderer/commands/choice_option.h"
 
 namespace lull {
-
-void AddHalfBufferOption(CLI::App& app, HalfBuffer* choice) {
-    AddChoiceOption<HalfBuffer>(
-        app, "--half-buffer", choice,
-        {{"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}},
-        "auto|on|off",
-        "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
-        "may be when going on from a checkpoint");
-}
 
 bool LooksAtHalf(const CriterionFactory& factory, const ScheduleOptions& schedule) {
     const std::unique_ptr<Criterion> criterion = factory.make({});

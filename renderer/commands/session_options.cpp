@@ -1,0 +1,54 @@
+#include "renderer/commands/session_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/talk.h"
+#include "renderer/ranks/job.h"
+
+namespace lull {
+
+namespace {
+
+// Lets all ranks share a render, of which a warning says so if one does not answer.
+void ShareAmongRanks(Job* job, SessionOptions* options) {
+    options->agree = [job](const std::string& what) { job->Begin(what); };
+    options->render.peers = job->ThePeers();
+    options->render.onSilence = [job](const std::vector<int>& ranks) {
+        job->Warn(
+            fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
+                        "last checkpoint, with any number of ranks",
+                        fmt::join(ranks, ", ")));
+    };
+}
+
+}  // namespace
+
+SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sampler,
+                                  ProgressPrinter* printer, Job* job) {
+    SessionOptions options;
+    RenderOptions& render = options.render;
+    render.schedule = settings.schedule;
+    render.sampler = sampler;
+    render.seed = settings.seed;
+    render.threads = settings.scene.compile.threads;
+    render.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
+    render.isCancelled = Interrupted;
+    options.estimator = settings.estimator;
+    options.film.grid = GridOf(settings.schedule);
+    options.onResume = PrintTalk;
+    if (!settings.quiet && !settings.jsonProgress) options.onLearning = PrintTalk;
+    options.onWarning = [](const std::string& message) {
+        fmt::print(stderr, "\nlull: warning: {}\n", message);
+    };
+    if (job) ShareAmongRanks(job, &options);
+    return options;
+}
+
+ExitCode SayInterrupted(const std::string& checkpoint) {
+    PrintTalk("interrupted; the same command goes on from " + checkpoint);
+    return kInterrupted;
+}
+
+}  // namespace lull

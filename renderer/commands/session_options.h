@@ -1,0 +1,17 @@
+// Lets commands render: a session that prints on stderr what there is to say.
+#pragma once
+
+#include "renderer/commands/command.h"
+#include "renderer/commands/render_settings.h"
+
+namespace lull {
+
+// Returns the options of a session, without a rule and without a checkpoint, that can be
+// interrupted, and that the ranks of the job share; null: it has none. What is given by pointer
+// must outlive it.
+SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, ProgressPrinter*, Job*);
+
+// Says that a render was interrupted, and what goes on from where.
+ExitCode SayInterrupted(const std::string& checkpoint);
+
+}  // namespace lull

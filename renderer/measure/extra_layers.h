@@ -1,0 +1,20 @@
+// Turns the layers of a render into what its EXR is given beside the image.
+#pragma once
+
+#include "renderer/output/aov_channels.h"
+#include "renderer/scene/compile.h"
+
+namespace lull {
+
+// Holds what an EXR is given beside its image.
+struct ExtraLayers {
+    std::vector<ExrChannel> channels;
+    std::map<std::string, ExrAttribute> attributes;
+};
+
+// Returns the layers, and in the attributes "objectNames" and "materialNames", each a JSON object
+// of the numbers in the image and what they stand for: names where the scene has them, else kind,
+// file and line.
+ExtraLayers MakeExtraLayers(const AovFilm&, const Film&, const Description&, const Scene&);
+
+}  // namespace lull

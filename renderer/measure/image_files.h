@@ -1,0 +1,45 @@
+// Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
+#pragma once
+
+#include "renderer/measure/extra_layers.h"
+#include "renderer/measure/image_error.h"
+#include "renderer/output/png_format.h"
+#include "renderer/render/provenance.h"
+#include "renderer/render/render.h"
+
+namespace lull {
+
+// Says how pictures are stored.
+struct PictureFormat {
+    ToneMap toneMap = ToneMap::None;  // of the PNG
+    int pngBits = 8;
+    // Colours and normals of the EXR take 16 bits; depths, positions, numbers and counts 32.
+    bool exrHalf = false;
+};
+
+// Names the files of a picture.
+struct PictureFiles {
+    std::string exr, png;
+};
+
+// Says where a picture comes from.
+struct PictureOrigin {
+    const Scene& scene;
+    const Provenance& provenance;
+};
+
+// Writes the image of a render, each file whole or not at all; the EXR has `extra` as well. Throws
+// Error.
+void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const RenderResult&,
+                ExtraLayers extra, const PictureFormat&);
+
+// Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
+struct ImageOfBlocks {
+    const RgbImage& image;
+    const std::vector<Block>& blocks;
+    const std::vector<int>& spp;
+    double seconds;  // of processors
+};
+void WriteImage(const PictureFiles&, const PictureOrigin&, const ImageOfBlocks&);
+
+}  // namespace lull

@@ -1,0 +1,101 @@
+// Runs a render as a user asks for it: about Render() there are a film, layers, checkpoints, paths
+// that are guided, a clock, a viewer and other ranks. What there is to say goes to callbacks.
+//
+//     Session session(scene, region, options);
+//     session.Resume();
+//     if (!session.Learn()) ...  // interrupted
+//     const RenderResult result = session.Run();
+#pragma once
+
+#include "renderer/render/checkpoint.h"
+
+namespace lull {
+
+// Says where a render keeps what it takes to go on after an interruption.
+struct CheckpointOptions {
+    std::string file;        // empty: none
+    double interval = 60;    // seconds
+    bool resume = false;     // goes on from the file, if it is there
+    bool keepsGuide = true;  // else what was learned is learned anew, to the same bits
+};
+
+// Throws Error if the file could not be written, or if it is there and not to be resumed from, as
+// the render would replace it.
+void CheckCheckpoint(const CheckpointOptions&);
+
+// Returns the options of a render that goes on from the file without being told to.
+CheckpointOptions ResumeIfThere(const std::string& file, double interval);
+
+// Throws Error where the memory cannot hold such layers.
+void CheckLayersFit(const AovSet& wanted, const PixelRect& region);
+
+struct SessionOptions {
+    // The session itself sets `layers`, `secondsLeft`, `onCheckpoint` and `checkpointInterval`.
+    RenderOptions render;
+    Estimator estimator = Estimator::Combined;
+    FilmOptions film;
+    AovSet aovs;  // layers beside the film
+    GuideOptions guide;
+    CheckpointOptions checkpoint;
+    // What decides the pixels, for checkpoints and for ranks, which have to agree on it; the
+    // session adds its layers.
+    RenderIdentity identity;
+    // Returns the seconds until the files of the image have to be there. Can be empty.
+    std::function<double()> clock;
+    // Waits until all ranks are about to render the same, of which `what` is a text that says it
+    // all. Can be empty.
+    std::function<void(const std::string& what)> agree;
+    // Get lines on what was resumed, on learning, and on checkpoints that could not be written. Can
+    // be empty.
+    std::function<void(const std::string&)> onResume, onLearning, onWarning;
+};
+
+// As Render(), or what prepares it and calls it.
+using RenderFunction = std::function<RenderResult(const SampleSource&, const RenderOptions&, Film*,
+                                                  const RenderState* interrupted)>;
+
+class Session {
+  public:
+    // The scene must outlive it.
+    Session(const Scene&, const PixelRect& region, SessionOptions);
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    // Takes up what the checkpoint has, where it is to be resumed from. Throws as ReadCheckpoint().
+    void Resume();
+    // Learns, where paths are to be guided; goes on from where the checkpoint was. Returns false if
+    // it was interrupted. Each of several ranks learns all, to the same bits. Throws as
+    // CheckGuide().
+    bool Learn();
+    // Renders, once. Of several ranks, the first has the image. Throws as Render() does.
+    RenderResult Run(const RenderFunction& render = Render);
+
+    // Says whether this is the first or only rank, which has to do with files.
+    bool Leads() const;
+    Film& TheFilm() { return film; }
+    const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }  // null: none
+    const GuideFigures& Guidance() const { return learning.figures; }
+    // Return what was rendered, and how.
+    const SampleSource& Source() const { return source; }
+    const RenderOptions& Options() const { return options.render; }
+
+  private:
+    LearningOptions MakeLearningOptions() const;
+    void SetSources();
+    void KeepCheckpoints();
+    std::string TryToWrite(const RenderState&, const Film&, const Layers&, const std::string& said);
+    bool HasCheckpoint() const { return !options.checkpoint.file.empty(); }
+    bool KeepsGuide() const { return HasCheckpoint() && options.checkpoint.keepsGuide; }
+
+    const Scene& scene;
+    const PixelRect region;
+    SessionOptions options;
+    Film film;
+    std::optional<AovFilm> aovs;
+    std::optional<RenderState> interrupted;
+    Learning learning;
+    std::vector<std::byte> guide;  // what was learned, for checkpoints
+    SampleSource source;
+};
+
+}  // namespace lull

@@ -1,0 +1,173 @@
+// Sessions go on where they were interrupted, to the same bits, and say what there is to say.
+#include "renderer/render/session.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+// A box that is open to the camera, with a lamp that shines at its ceiling.
+std::unique_ptr<const Scene> MakeBox() {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    CompileOptions options;
+    options.threads = 1;
+    const Description d = ParsePbrt(directory.Write("box.pbrt", R"(
+LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [45]
+Film "image" "integer xresolution" [32] "integer yresolution" [24]
+WorldBegin
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [30 25 20]
+  Translate .4 .5 0  Rotate -90 1 0 0
+  Shape "disk" "float radius" [.2]
+AttributeEnd
+Material "matte" "rgb Kd" [.7 .5 .3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7 3 2 6 3 6 7]
+  "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1   -1 1 -1  1 1 -1  1 1 1  -1 1 1]
+WorldEnd
+)"),
+                                    warnings);
+    return Compile(d, options, warnings);
+}
+
+const PixelRect kRegion = {{0, 0}, {32, 24}};
+
+SessionOptions OptionsFor(const std::string& checkpoint) {
+    SessionOptions options;
+    options.render.schedule = {.blockSize = 16, .passLength = 20, .cap = 100};
+    options.render.threads = 1;
+    options.render.makeCriterion = [](const BlockInfo& block) {
+        return std::make_unique<ScriptedCriterion>(40 + 20 * block.index);
+    };
+    options.film.grid = GridOf(options.render.schedule);
+    options.aovs = {.albedo = true, .depth = true, .noise = true};
+    options.guide.mode = GuideMode::On;
+    options.checkpoint = {.file = checkpoint, .interval = 1e6, .resume = true};
+    options.identity = {{"scene", "box"}};
+    return options;
+}
+
+// Holds what a session has said.
+struct Said {
+    std::vector<std::string> resume, learning, warnings;
+
+    void Hear(SessionOptions* options) {
+        options->onResume = [this](const std::string& line) { resume.push_back(line); };
+        options->onLearning = [this](const std::string& line) { learning.push_back(line); };
+        options->onWarning = [this](const std::string& line) { warnings.push_back(line); };
+    }
+};
+
+TEST(Session, GoesOnFromWhereverItWasInterrupted) {
+    const auto scene = MakeBox();
+    Session whole(*scene, kRegion, OptionsFor(""));
+    ASSERT_TRUE(whole.Learn());
+    ASSERT_FALSE(whole.Run().cancelled);
+    ASSERT_TRUE(whole.Guidance().isUsed);
+
+    for (const bool keepsGuide : {true, false}) {
+        const TemporaryDirectory directory;
+        const std::string file = directory.File("c.h5");
+        int inLearning = 0, inRendering = 0, resumed = 0;
+        for (bool isDone = false; !isDone;) {
+            // Gets further than the last time, by as many tiles.
+            int left = 10 * (1 + inLearning + inRendering);
+            Said said;
+            SessionOptions options = OptionsFor(file);
+            options.checkpoint.keepsGuide = keepsGuide;
+            options.render.isCancelled = [&] { return left-- <= 0; };
+            said.Hear(&options);
+            Session session(*scene, kRegion, options);
+            session.Resume();
+            resumed += said.resume == std::vector<std::string>{"going on from " + file};
+            if (!session.Learn()) {
+                ++inLearning;
+                continue;
+            }
+            isDone = !session.Run().cancelled;
+            inRendering += !isDone;
+            EXPECT_TRUE(said.warnings.empty());
+            if (!isDone) continue;
+            EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm()));
+            EXPECT_TRUE(SameLayers(*session.Aovs(), *whole.Aovs()));
+        }
+        EXPECT_GT(inLearning, 0);
+        EXPECT_GT(inRendering, 0);
+        EXPECT_GE(resumed, inRendering);
+    }
+}
+
+TEST(Session, RefusesCheckpointsOfOtherLayers) {
+    const auto scene = MakeBox();
+    const TemporaryDirectory directory;
+    SessionOptions options = OptionsFor(directory.File("c.h5"));
+    options.guide.mode = GuideMode::Off;
+    options.render.checkpointAtEnd = true;
+    Session(*scene, kRegion, options).Run();
+    Session same(*scene, kRegion, options);
+    EXPECT_NO_THROW(same.Resume());
+    options.aovs.depth = false;
+    Session other(*scene, kRegion, options);
+    EXPECT_THROW(other.Resume(), Error);
+}
+
+// A disk stays full for more than one attempt.
+TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
+    const auto scene = MakeBox();
+    const TemporaryDirectory directory;
+    Said said;
+    SessionOptions options = OptionsFor(directory.File("missing/c.h5"));
+    options.guide.mode = GuideMode::Off;
+    options.checkpoint.interval = 1e-6;
+    said.Hear(&options);
+    Session session(*scene, kRegion, options);
+    session.Resume();
+    EXPECT_FALSE(session.Run().cancelled);
+    ASSERT_EQ(said.resume.size(), 1u);
+    EXPECT_TRUE(said.resume[0].starts_with("there is no "));
+    ASSERT_EQ(said.warnings.size(), 1u);
+    EXPECT_TRUE(said.warnings[0].starts_with("no checkpoint: "));
+}
+
+TEST(Session, LeavesCheckpointsOfOthersAlone) {
+    const TemporaryDirectory directory;
+    const std::string file = directory.File("c.h5");
+    EXPECT_NO_THROW(CheckCheckpoint({}));
+    EXPECT_NO_THROW(CheckCheckpoint({.file = file}));
+    EXPECT_FALSE(ResumeIfThere(file, 1).resume);
+    directory.Write("c.h5", "x");
+    EXPECT_THROW(CheckCheckpoint({.file = file}), Error);
+    EXPECT_NO_THROW(CheckCheckpoint({.file = file, .resume = true}));
+    EXPECT_TRUE(ResumeIfThere(file, 1).resume);
+}
+
+// Learning takes a part of the time, and the files of the image another.
+TEST(Session, HeedsTheClock) {
+    const auto scene = MakeBox();
+    std::atomic<int> asked = 0;
+    SessionOptions options = OptionsFor("");
+    options.render.makeCriterion = nullptr;
+    options.clock = [&] { return 60 - 0.01 * ++asked; };
+    Session session(*scene, kRegion, options);
+    ASSERT_TRUE(session.Learn());
+    const RenderResult result = session.Run();
+    ASSERT_TRUE(session.Options().secondsLeft);
+    EXPECT_LT(session.Options().secondsLeft(), options.clock());
+    EXPECT_FALSE(result.timeUp);
+    asked = 100000;
+    Session late(*scene, kRegion, options);
+    ASSERT_TRUE(late.Learn());
+    EXPECT_TRUE(late.Run().timeUp);
+}
+
+}  // namespace
+}  // namespace lull
