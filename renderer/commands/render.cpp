@@ -17,6 +17,7 @@
 #include "renderer/ranks/job.h"
 #include "renderer/render/learning_state.h"
 #include "renderer/render/time_limit.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -35,17 +36,7 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(Stopping rules (--stop):
-  learned[:NAME|:M.h5]    until a network that was trained on human judgements sees no noise
-  entropy[:T]             until the noise that the fall of SVD-entropy shows is below T (0.64)
-  lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.65)
-  dammertz[:T]            until a block's mean error in square-root brightness is below T (0.02)
-  cycles:T                until every pixel of the block has an error below T
-  luxtile:T               until the largest display error of the block is below T
-  thresholds:FILE[:NAME]  until the spp that a thresholds file has for the block
-  fixed:N                 until N samples per pixel
-
-Files, beside each other:
+    R"(Files, beside each other:
   OUT.exr             linear image, with the samples per pixel in channel "spp"
   OUT.png             the same image for displays, 8-bit sRGB
   OUT.spp.png         samples per pixel of each block in false colours
@@ -94,7 +85,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
     AddHalfBufferOption(app, &o->halfBuffer);
-    app.footer(kFooter);
+    app.footer("Stopping rules (--stop); a block stops\n" + RuleHelp(100) + "\n" + kFooter);
 }
 
 // Reads the rule and lets the schedule suit it.

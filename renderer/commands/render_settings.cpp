@@ -13,6 +13,7 @@
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/ranks/job.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -24,9 +25,10 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
 }
 
 void AddCautionOption(CLI::App& app, double* caution) {
+    const std::string rules = RuleNames([](const Rule& rule) { return rule.takesCaution; });
     app.add_option("--caution", *caution,
-                   "Divides the threshold of visible noise (entropy, lnoise, learned): 2 stops\n"
-                   "later, rarely too early, 0.5 sooner")
+                   "Divides the threshold of visible noise (" + rules +
+                       "): 2 stops\nlater, rarely too early, 0.5 sooner")
         ->check(CLI::Range(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();

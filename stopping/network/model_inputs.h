@@ -2,7 +2,6 @@
 // trained, from recordings, and where it judges, from pixels.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
