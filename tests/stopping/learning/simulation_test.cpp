@@ -6,6 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "stopping/network/model_file.h"
+#include "stopping/rules/lnoise.h"
 #include "tests/stopping/learning/channel_recordings.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
