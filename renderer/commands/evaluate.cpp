@@ -10,6 +10,7 @@
 #include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
 #include "stopping/learning/judged_rules.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -29,11 +30,10 @@ constexpr const char* kFooter =
 have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
 
-Rules for --stop: learned[:NAME|:MODEL.h5], entropy[:T], lnoise[:T], dammertz[:T], cycles:T,
-luxtile:T, fixed:N and thresholds:FILE. --rivals runs entropy, lnoise, dammertz, cycles and luxtile,
-each with the one setting that is best on the other viewpoints (leave one out); "setting" says
-which, and for all what would be best on all of them. "entropy, mask" is entropy with two settings
-that are chosen so: its threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
+--stop takes the rules of lull render. --rivals runs those that have one setting, each with the one
+that is best on the other viewpoints (leave one out); "setting" says which, and for all what would
+be best on all of them. "entropy, mask" is entropy with two settings that are chosen so: its
+threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
 
 Columns:
   views   how many viewpoints, and in them
@@ -75,7 +75,9 @@ void AddOptions(CLI::App& app, Options* o) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("RULE");
     AddCautionOption(app, &o->caution);
-    app.add_flag("--rivals", o->rivals, "Judge the rules that have one setting");
+    app.add_flag("--rivals", o->rivals,
+                 "Judge the rules that have one setting:\n" +
+                     RuleNames([](const Rule& rule) { return rule.sweep.largest > 0; }));
     AddChoiceOption<ChooseBy>(
         app, "--choose-by", &o->chooseBy,
         {{"error", ChooseBy::AbsoluteError}, {"critical", ChooseBy::CriticalError}},

@@ -19,6 +19,7 @@
 #include "renderer/measure/shortfall.h"
 #include "renderer/ranks/job.h"
 #include "renderer/render/half_buffer.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -37,17 +38,7 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(Stopping rules (--stop):
-  learned[:NAME|:M.h5]    until a network that was trained on human judgements sees no noise
-  entropy[:T]             until the noise that the fall of SVD-entropy shows is below T (0.64)
-  lnoise[:T]              until the visible noise in lightness (of 0 to 100) is below T (0.65)
-  dammertz[:T]            until a block's mean error in square-root brightness is below T (0.02)
-  cycles:T                until every pixel of the block has an error below T
-  luxtile:T               until the largest display error of the block is below T
-  thresholds:FILE[:NAME]  until the spp that a thresholds file has for the block
-  fixed:N                 until N samples per pixel
-
-Files, beside each other:
+    R"(Files, beside each other:
   OUT.exr             linear image, with the samples per pixel in channel "spp"
   OUT.png             the same image for displays, 8-bit sRGB
   OUT.spp.png         samples per pixel of each block in false colours
@@ -101,7 +92,7 @@ void AddOptions(CLI::App& app, Options* o) {
         "auto|on|off",
         "Keep the mean of half of the samples, 24 bytes a pixel: auto where it is needed, or\n"
         "may be when going on from a checkpoint");
-    app.footer(kFooter);
+    app.footer("Stopping rules (--stop); a block stops\n" + RuleHelp(100) + "\n" + kFooter);
 }
 
 // Reads the rule and lets the schedule suit it.

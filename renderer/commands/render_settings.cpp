@@ -8,6 +8,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -19,9 +20,10 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
 }
 
 void AddCautionOption(CLI::App& app, double* caution) {
+    const std::string rules = RuleNames([](const Rule& rule) { return rule.takesCaution; });
     app.add_option("--caution", *caution,
-                   "Divides the threshold of visible noise (entropy, lnoise, learned): 2 stops\n"
-                   "later, rarely too early, 0.5 sooner")
+                   "Divides the threshold of visible noise (" + rules +
+                       "): 2 stops\nlater, rarely too early, 0.5 sooner")
         ->check(CLI::Range(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();

@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <set>
 #include <stdexcept>
 
 #include "renderer/commands/choice_option.h"
+#include "stopping/learning/training_preset.h"
 
 namespace lull {
 
@@ -15,7 +17,9 @@ namespace {
 
 constexpr const char* kFooter =
     R"(Learns from recordings (see lull dataset) and the thresholds of people when these stop to see
-noise. The defaults are the paper's: an LSTM network on windows of k SVD-entropies of m sub-blocks.
+noise. The defaults are those of the model `entropy`: a small LSTM network on the noise that falls of
+SVD-entropies make visible, a number for the block. --preset paper takes the configuration of Buisine
+et al. 2021, a large one on windows of 8 SVD-entropies of 100 sub-blocks; other options change either.
 Viewpoints are joined by their exact names; those without thresholds are left aside.
 
 Features for --features (also --channels), a list with commas:
@@ -29,7 +33,8 @@ Features for --features (also --channels), a list with commas:
                      recorded without are left aside
   logspp             the logarithm of the samples per pixel
 --pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
-rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %.
+rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %; none gives it
+the value of each sub-block.
 
 --units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
 
@@ -52,7 +57,9 @@ Examples:
   lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
   lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
       --pool rms,q90 --units 16,8
-  lull train data.h5 --human human.csv --search grid.txt --csv search.csv --units 32 --epochs 10
+  lull train data.h5 --human human.csv --cross-validate --preset paper
+  lull train data.h5 --human human.csv --search grid.txt --csv search.csv --preset paper
+      --units 32 --epochs 10
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -72,8 +79,14 @@ bool ParseUnits(const std::string& text, std::vector<int>* units) {
     }
 }
 
+std::string UnitsText(const std::vector<int>& units) {
+    std::string text;
+    for (const int n : units) text.append(text.empty() ? "" : ",").append(std::to_string(n));
+    return text.empty() ? "none" : text;
+}
+
 void AddUnits(CLI::App& app, const std::string& name, std::vector<int>* units,
-              const std::string& help, const std::string& standard) {
+              const std::string& help) {
     app.add_option_function<std::string>(
            name,
            [=](const std::string& text) {
@@ -82,13 +95,13 @@ void AddUnits(CLI::App& app, const std::string& name, std::vector<int>* units,
            },
            help)
         ->type_name("N,N,...")
-        ->default_str(standard);
+        ->default_str(UnitsText(*units));
 }
 
 // Adds an option whose text is parsed by a function that throws std::invalid_argument.
 template <typename T>
 void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::string&), T* value,
-              const std::string& help) {
+              const std::string& help, const std::string& standard) {
     app.add_option_function<std::string>(
            names,
            [=](const std::string& text) {
@@ -99,8 +112,19 @@ void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::str
                }
            },
            help)
-        ->type_name("A,B,...");
+        ->type_name("A,B,...")
+        ->default_str(standard);
 }
+
+// Reads and writes a list that may be empty.
+std::vector<Pool> ParsePoolsOrNone(const std::string& text) {
+    return text == "none" ? std::vector<Pool>() : ParsePools(text);
+}
+std::string PoolsText(const std::vector<Pool>& pools) {
+    return pools.empty() ? "none" : PoolNames(pools);
+}
+
+std::string DefaultNote(bool isDefault) { return isDefault ? " [the default]" : ""; }
 
 template <typename T>
 void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most,
@@ -126,15 +150,17 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
         ->check(OneOf(std::set{4, 25, 100, 400}))
         ->type_name("4|25|100|400")
         ->capture_default_str();
-    AddNames(app, "--features,--channels", ParseFeatures, &s->features,
-             "What the network is given [H]");
-    AddNames(app, "--pool", ParsePools, &s->pools, "Statistics in place of all sub-blocks");
+    AddNames(app, "--features,--channels", ParseFeatures, &s->features, "What the network is given",
+             FeatureNames(s->features));
+    AddNames(app, "--pool", ParsePoolsOrNone, &s->pools, "Statistics in place of all sub-blocks",
+             PoolsText(s->pools));
     app.add_flag("--snorm,!--no-snorm", s->snorm,
-                 "Normalise entropies, attributes26 too, over the window [the default]");
+                 "Normalise entropies, attributes26 too, over the window" + DefaultNote(s->snorm));
     app.add_flag("--bnorm", s->bnorm, "Normalise the entropies, or attributes26, of each step");
     AddNames(app, "--spacing", ParseSpacing, &s->spacing,
              "Steps of a window n spp apart (fixed), or each at --ratio times\nthe spp of the one "
-             "before, looked at every n spp (geometric) [fixed]");
+             "before, looked at every n spp (geometric)",
+             SpacingName(s->spacing));
     AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Ratio of geometric spacing");
     NoiseVisibility* v = &s->visibility;
     AddReal(app, "--mask", &v->mask, 1e-3, 1e9,
@@ -152,8 +178,8 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
 }
 
 void AddTraining(CLI::App& app, TrainingOptions* t) {
-    AddUnits(app, "--units", &t->units, "Units of the LSTM layers, or none", "512,128,32");
-    AddUnits(app, "--dense", &t->dense, "Units of dense layers before the last one", "none");
+    AddUnits(app, "--units", &t->units, "Units of the LSTM layers, or none");
+    AddUnits(app, "--dense", &t->dense, "Units of dense layers before the last one");
     app.add_option("--dropout", t->dropout, "Share of each LSTM layer's inputs that is dropped")
         ->check(CLI::Range(0.0, 0.99))
         ->type_name("X")
@@ -169,10 +195,12 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
-    app.add_flag("--balance-viewpoints", t->balanceViewpoints,
-                 "Let each viewpoint count the same, however many blocks of it there are");
+    app.add_flag("--balance-viewpoints,!--no-balance-viewpoints", t->balanceViewpoints,
+                 "Let each viewpoint count the same, however many blocks of\nit there are" +
+                     DefaultNote(t->balanceViewpoints));
     app.add_flag("--class-weights,!--no-class-weights", t->balanceClasses,
-                 "Let noisy and noiseless samples count the same, as in the paper [the default]");
+                 "Let noisy and noiseless samples count the same, as in the paper" +
+                     DefaultNote(t->balanceClasses));
     AddReal(app, "--noisy-weight", &t->noisyWeight, 1e-3, 1e3,
             "What noisy samples count more: fewer stops too early");
 }
@@ -183,6 +211,24 @@ void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* l
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("NAME");
+}
+
+// Adds the option that sets all of a model and its training. It has to be added before those that
+// change single ones: what was given is applied in this order.
+void AddPreset(CLI::App& app, TrainingPlan* plan) {
+    std::set<std::string> names;
+    for (const TrainingPreset& preset : TrainingPresets()) names.insert(preset.name);
+    const auto set = [plan](const std::string& name) {
+        const auto preset = std::ranges::find(TrainingPresets(), name, &TrainingPreset::name);
+        plan->settings = preset->settings;
+        plan->training = preset->training;
+    };
+    const std::string& standard = TrainingPresets().front().name;
+    set(standard);
+    app.add_option_function<std::string>("--preset", set, "Defaults of the options from --k on")
+        ->check(OneOf(names))
+        ->type_name("entropy|paper")
+        ->default_str(standard);
 }
 
 }  // namespace
@@ -196,6 +242,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
         ->check(CLI::ExistingFile)
         ->type_name("H.csv");
     app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
+    AddPreset(app, &o->plan);
     AddSettings(app, &o->plan.settings);
     AddTraining(app, &o->plan.training);
     AddList(app, "--leave-out", &o->plan.leaveOut,

@@ -10,25 +10,11 @@
 
 #include "renderer/base/error.h"
 #include "stopping/base/parallel.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
 namespace {
-
-// Names rules with one setting, from where they stop at once to where they hardly ever do.
-struct Sweep {
-    const char* rule;
-    std::vector<double> settings;
-};
-const std::vector<Sweep>& Sweeps() {
-    static const std::vector<Sweep> sweeps = {
-        {"dammertz", {0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005, 0.0025}},
-        {"cycles", {0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005}},
-        {"luxtile", {0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.04, 0.02}},
-        {"lnoise", {8, 4, 2, 1, 0.7, 0.5, 0.35, 0.25}},
-        {"entropy", {8, 4, 2, 1, 0.7, 0.5, 0.35, 0.25}}};
-    return sweeps;
-}
 
 std::string Trim(const std::string& text) {
     const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
@@ -56,9 +42,9 @@ std::vector<std::string> BenchRules(int passLength, int cap) {
     std::vector<std::string> rules;
     for (const int spp : FixedLadder(passLength, cap))
         rules.push_back(fmt::format("fixed:{}", spp));
-    for (const Sweep& sweep : Sweeps())
-        for (const double setting : sweep.settings)
-            rules.push_back(fmt::format("{}:{}", sweep.rule, setting));
+    for (const Rule& rule : AllRules())
+        for (const double setting : rule.sweep.bench)
+            rules.push_back(fmt::format("{}:{}", rule.name, setting));
     return rules;
 }
 

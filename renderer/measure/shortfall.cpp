@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stopping/rules/rule_table.h"
+
 namespace lull {
 
 namespace {
 
-constexpr double visibleNoise = 0.65;  // the default threshold of `lnoise`
-
-bool CountsSamples(const std::string& rule) {
-    return rule.starts_with("fixed:") || rule.starts_with("thresholds:");
+bool CountsSamples(const std::string& text) {
+    const Rule* rule = FindRule(text);
+    return rule && rule->compares == RuleTrend::Samples;
 }
 
 // Returns the noise of blocks that the rule has stopped.
@@ -18,7 +19,7 @@ double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
     for (const BlockResult& b : blocks)
         if (b.block.stoppedByVote && std::isfinite(b.block.noise)) noise.push_back(b.block.noise);
-    if (noise.empty()) return visibleNoise;
+    if (noise.empty()) return std::stod(ArgumentOf("lnoise"));
     const auto middle = noise.begin() + noise.size() / 2;
     std::nth_element(noise.begin(), middle, noise.end());
     return *middle;

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "stopping/signals/lightness.h"
+
 namespace lull {
 
 namespace {
@@ -16,11 +18,8 @@ struct LinearTable {
     std::array<float, 256> values;
 
     LinearTable() {
-        for (int code = 0; code < 256; ++code) {
-            const double v = code / 255.0;
-            values[size_t(code)] =
-                float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-        }
+        for (int code = 0; code < 256; ++code)
+            values[size_t(code)] = float(DecodeSrgb(code / 255.0));
     }
 };
 

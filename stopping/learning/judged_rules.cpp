@@ -77,8 +77,10 @@ std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks,
     if (judged.rivals)
         for (Rival& rival : JudgeRivals(blocks, judged.chooseBy, judged.grid))
             rules.push_back({rival.rule, rival.bestOfAll, std::move(rival.viewpoints)});
+    RuleContext context = judged.context;
+    if (!blocks.empty()) context.passSpp = blocks.front().passSpp;
     for (const std::string& rule : judged.rules)
-        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, judged.context), "")});
+        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, context), "")});
     const bool anyShort = std::ranges::any_of(
         blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
     for (const std::string& path : judged.predicted) {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "stopping/base/state.h"
-#include "stopping/rules/baselines.h"
 #include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
@@ -105,7 +104,8 @@ Recorder::~Recorder() = default;
 
 void Recorder::StartCycles() {
     cycles.clear();
-    for (const double threshold : kCyclesThresholds) cycles.push_back(MakeCycles(threshold));
+    for (const double threshold : kCyclesThresholds)
+        cycles.push_back(MakeVoting(CyclesRule(threshold)));
 }
 
 Decision Recorder::Observe(const BlockView& view) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/noise_character.h"
 
@@ -62,11 +62,6 @@ inline constexpr int kRecordLength = [] {
     for (const Channel& channel : kChannels) length += channel.count;
     return length;
 }();
-
-// The rule `cycles` remembers pixels, so its stops cannot be told from one number a pass: it runs
-// at these thresholds, and what is recorded is where it stopped.
-inline constexpr std::array<double, 13> kCyclesThresholds = {
-    0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
 
 // Holds the history of one block.
 struct BlockRecording {

@@ -5,27 +5,33 @@
 #include <functional>
 #include <stdexcept>
 
+#include "stopping/rules/rule_table.h"
+
 namespace lull {
 
 namespace {
 
-// Names a rule that has one threshold, with the range in which it can be of use: beyond it, every
-// block stops at once or never.
+// Names a rule that has one threshold, and says whether the mask of its visible noise is chosen
+// beside it.
 struct RivalRule {
-    const char* name;
-    ErrorRule error;
-    double largest, least;
-    bool choosesMask = false;  // of kMasks, beside the threshold
+    const Rule* rule;
+    bool choosesMask = false;
+
+    std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
 };
+
+std::vector<RivalRule> RivalRules() {
+    std::vector<RivalRule> rivals;
+    for (const Rule& rule : AllRules()) {
+        if (rule.sweep.largest == 0) continue;
+        rivals.push_back({&rule});
+        if (rule.sweep.choosesMask) rivals.push_back({&rule, true});
+    }
+    return rivals;
+}
 
 // What NoiseVisibility::mask may be, the default first; the last hides nothing.
 constexpr double kMasks[] = {NoiseVisibility().mask, 8, 12, 16, 24, 1e9};
-
-constexpr RivalRule kErrorRules[] = {{"dammertz", ErrorRule::Dammertz, 1, 1e-4},
-                                     {"luxtile", ErrorRule::LuxTile, 1, 1e-4},
-                                     {"lnoise", ErrorRule::LNoise, 50, 0.01},
-                                     {"entropy", ErrorRule::Entropy, 50, 0.01},
-                                     {"entropy, mask", ErrorRule::Entropy, 50, 0.01, true}};
 
 std::string Text(double number) {
     char text[32];
@@ -48,8 +54,14 @@ struct Setting {
 
 std::vector<Setting> SettingsOf(const RivalRule& rule) {
     std::vector<Setting> settings;
+    const RuleSweep& sweep = rule.rule->sweep;
+    if (rule.rule->replay == Replay::RanAlong) {
+        for (const double t : kCyclesThresholds)
+            settings.push_back({.threshold = t, .text = Text(t)});
+        return settings;
+    }
     for (size_t mask = 0; mask < MasksOf(rule).size(); ++mask)
-        for (double t = rule.largest; t >= rule.least; t /= 1.01)
+        for (double t = sweep.largest; t >= sweep.least; t /= 1.01)
             settings.push_back(
                 {t, mask, rule.choosesMask ? Text(t) + ", " + Text(kMasks[mask]) : Text(t)});
     return settings;
@@ -113,12 +125,19 @@ Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
 }
 
 // Runs a rule over recordings, each of which it reads once for each mask.
-Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rule) {
+Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rival) {
+    if (rival.rule->replay == Replay::RanAlong)
+        return [=](size_t index, const Setting& setting, bool brief) {
+            return SimulateCycles(blocks[index], setting.threshold, brief);
+        };
     std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
-    for (const double mask : MasksOf(rule)) {
+    for (const double mask : MasksOf(rival)) {
+        const CriterionFactory factory =
+            MakeCriterionFactory(std::string(rival.rule->name) + ":1",
+                                 {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}});
         std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
         for (const JudgedBlock& block : blocks)
-            ofBlocks.push_back(MakeErrorSeries(*block.recording, rule.error, {.mask = mask}));
+            ofBlocks.push_back(MakeErrorSeries(block, *factory.voting));
     }
     return [=](size_t index, const Setting& setting, bool brief) {
         return SimulateErrorRule(blocks[index], series[setting.mask][index], setting.threshold,
@@ -137,16 +156,9 @@ std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy cho
     begins.push_back(blocks.size());
 
     std::vector<Rival> rivals;
-    for (const RivalRule& rule : kErrorRules)
-        rivals.push_back(JudgeRival(rule.name, blocks, begins, SettingsOf(rule),
+    for (const RivalRule& rule : RivalRules())
+        rivals.push_back(JudgeRival(rule.Name(), blocks, begins, SettingsOf(rule),
                                     MakeRun(blocks, rule), chooseBy, grid));
-    const Run cycles = [&](size_t index, const Setting& setting, bool brief) {
-        return SimulateCycles(blocks[index], setting.threshold, brief);
-    };
-    std::vector<Setting> settings;
-    for (const double threshold : kCyclesThresholds)
-        settings.push_back({.threshold = threshold, .text = Text(threshold)});
-    rivals.push_back(JudgeRival("cycles", blocks, begins, settings, cycles, chooseBy, grid));
     return rivals;
 }
 

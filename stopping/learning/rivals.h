@@ -14,8 +14,8 @@ namespace lull {
 enum class ChooseBy { AbsoluteError, CriticalError };
 
 struct Rival {
-    // "dammertz", "luxtile", "lnoise", "entropy", "cycles", or "entropy, mask": that with the mask
-    // of its visible noise chosen as well.
+    // A name of the table of rules; "entropy, mask" is that with the mask of its visible noise
+    // chosen as well.
     std::string rule;
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
@@ -26,8 +26,8 @@ struct Rival {
 
 // Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are kCyclesThresholds, else steps of 1 %; masks are 8, 12, 16, 24, 40 and
-// none (1e9). Throws std::invalid_argument if there are fewer than two viewpoints.
+// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Throws
+// std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid);
 
 }  // namespace lull

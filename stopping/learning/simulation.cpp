@@ -1,21 +1,14 @@
 #include "stopping/learning/simulation.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "stopping/base/parallel.h"
-#include "stopping/network/block_memory.h"
-#include "stopping/rules/baselines.h"
-#include "stopping/rules/entropy.h"
-#include "stopping/rules/learned.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
-#include "stopping/rules/votes.h"
-#include "stopping/signals/drop_history.h"
 
 namespace lull {
 
@@ -43,39 +36,44 @@ void AddVerdictsOfStop(const JudgedBlock& block, RuleOutcome* outcome) {
                                          .noisy = outcome->open || outcome->stop > spp});
 }
 
-// Checks that every second pass is enough for a model beyond 400 spp.
-void CheckSpacing(const Model& model, const JudgedBlock& block) {
-    const int n = model.settings.n;
-    if (n % (2 * block.passSpp) != 0)
-        throw std::invalid_argument("the model compares passes " + std::to_string(n) +
+// Adds the verdicts of a rule from its numbers, one for each record.
+void AddVerdicts(const JudgedBlock& block, std::span<const double> numbers, double threshold,
+                 RuleOutcome* outcome) {
+    const std::vector<int>& spp = block.recording->spp;
+    for (size_t i = 0; i < spp.size(); ++i)
+        if (HasVerdict(block, spp[i]))
+            outcome->verdicts.push_back(
+                {.spp = spp[i], .score = numbers[i], .noisy = !(numbers[i] < threshold)});
+}
+
+// Checks that every second pass is enough for what a rule compares beyond 400 spp.
+void CheckSpacing(const VotingRule& rule, const JudgedBlock& block) {
+    if (rule.spacing % (2 * block.passSpp) != 0)
+        throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +
                                     " spp apart, but recordings have one every " +
                                     std::to_string(2 * block.passSpp) + " spp");
 }
 
-double ParseNumber(const std::string& text, const std::string& rule) {
-    double value = 0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || rest != end)
-        throw std::invalid_argument("stopping rule '" + rule + "' cannot be simulated");
-    return value;
+// Lets the rule decide after every recorded pass, whether it has stopped the block or not.
+std::vector<Decision> Replayed(const JudgedBlock& block, const VotingRule& rule) {
+    CheckSpacing(rule, block);
+    const BlockRecording& recording = *block.recording;
+    Decider decider(rule, {.index = block.block});
+    std::vector<Decision> decisions;
+    for (int i = 0; i < recording.Count(); ++i) {
+        const int spp = recording.spp[size_t(i)];
+        decisions.push_back(decider.Decide(
+            spp, decider.Looks(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
+    }
+    return decisions;
 }
 
-Simulator ErrorSimulator(ErrorRule rule, double threshold) {
-    return [=](const JudgedBlock& block) {
-        return SimulateErrorRule(block, MakeErrorSeries(*block.recording, rule), threshold);
-    };
-}
-
-Simulator LearnedSimulator(const std::string& path, const RuleContext& context) {
-    const auto model = std::make_shared<const Model>(ReadModelFor(path, context));
-    return [=](const JudgedBlock& block) {
-        try {
-            return SimulateLearned(block, *model);
-        } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(path + ": " + error.what());
-        }
-    };
+std::vector<double> NumbersOf(std::span<const Decision> decisions) {
+    std::vector<double> numbers;
+    for (const Decision& decision : decisions)
+        numbers.push_back(decision.judged ? decision.value
+                                          : std::numeric_limits<double>::infinity());
+    return numbers;
 }
 
 // Returns the end of the pass that reaches `spp`.
@@ -94,56 +92,18 @@ Simulator ThresholdsSimulator(const std::string& path) {
     };
 }
 
-// Returns what the rule `entropy` compares with its threshold.
-std::vector<double> EntropyErrors(const BlockRecording& recording,
-                                  const NoiseVisibility& visibility) {
-    std::vector<double> errors;
-    DropHistory history;
-    for (int i = 0; i < recording.Count(); ++i) {
-        const int spp = recording.spp[size_t(i)];
-        std::optional<std::vector<double>> visible;
-        if (EntropyRuleLooks(spp, recording.spp.front())) {
-            const std::span<const float> h = recording.Values(i, "h100");
-            visible = AddVisible(spp, std::vector<double>(h.begin(), h.end()),
-                                 LightnessOf(recording, i), visibility, &history);
-        }
-        errors.push_back(visible ? MeanVisible(*visible) : std::numeric_limits<double>::infinity());
-    }
-    return errors;
-}
-
 }  // namespace
 
-ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule,
-                            const NoiseVisibility& visibility) {
-    const bool votes = rule == ErrorRule::LNoise || rule == ErrorRule::Entropy;
-    ErrorSeries series{.needed = votes ? VoteCounter().needed : 1};
-    if (rule == ErrorRule::Entropy) {
-        series.errors = EntropyErrors(recording, visibility);
-        return series;
-    }
-    const auto lux = MakeLuxTile(1);  // says at which spp it looks
-    for (int i = 0; i < recording.Count(); ++i) {
-        double error = 0;
-        if (rule == ErrorRule::Dammertz)
-            error = recording.Values(i, "dammertz")[0];
-        else if (rule == ErrorRule::LNoise)
-            error = PooledRms(recording.Values(i, "masked_noise"));
-        else if (lux->Need(recording.spp[size_t(i)]) != ViewNeed::Nothing)
-            error = recording.Values(i, "luxtile")[0];
-        else
-            error = std::numeric_limits<double>::infinity();
-        series.errors.push_back(error);
-    }
-    return series;
+ErrorSeries MakeErrorSeries(const JudgedBlock& block, const VotingRule& rule) {
+    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule.votes)};
 }
 
 int FirstBelow(const ErrorSeries& series, double threshold) {
-    int inRow = 0;
+    VoteCounter votes{.needed = series.needed};
     for (size_t i = 0; i < series.errors.size(); ++i) {
         if (std::isinf(series.errors[i])) continue;  // no look, no vote
-        inRow = series.errors[i] < threshold ? inRow + 1 : 0;
-        if (inRow == series.needed) return int(i);
+        votes.Cast(series.errors[i], threshold);
+        if (votes.Stops()) return int(i);
     }
     return -1;
 }
@@ -153,12 +113,7 @@ RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& serie
     const BlockRecording& recording = *block.recording;
     const int first = FirstBelow(series, threshold);
     RuleOutcome outcome = MakeOutcome(recording, first < 0 ? 0 : recording.spp[size_t(first)]);
-    if (brief) return outcome;
-    for (size_t i = 0; i < recording.spp.size(); ++i)
-        if (HasVerdict(block, recording.spp[i]))
-            outcome.verdicts.push_back({.spp = recording.spp[i],
-                                        .score = series.errors[i],
-                                        .noisy = !(series.errors[i] < threshold)});
+    if (!brief) AddVerdicts(block, series.errors, threshold, &outcome);
     return outcome;
 }
 
@@ -179,36 +134,13 @@ RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brie
     return outcome;
 }
 
-RuleOutcome SimulateLearned(const JudgedBlock& block, const Model& model) {
-    CheckSpacing(model, block);
-    const BlockRecording& recording = *block.recording;
-    const ModelSettings& settings = model.settings;
-    const VoteSchedule schedule{
-        .firstSpp = block.passSpp,
-        .n = settings.n,
-        .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : block.passSpp};
-    BlockMemory memory(settings);
-    VoteCounter votes{.needed = settings.votes};
-    int stop = 0;
-    std::vector<Verdict> verdicts;
-    for (int i = 0; i < recording.Count(); ++i) {
-        const int spp = recording.spp[size_t(i)];
-        Verdict verdict{
-            .spp = spp, .score = std::numeric_limits<double>::infinity(), .noisy = true};
-        if (schedule.Records(spp)) {
-            memory.Add(MeasuresOf(recording, i, settings));
-            const auto window = schedule.Votes(spp) ? memory.WindowAt(spp) : std::nullopt;
-            if (window) {
-                verdict.score = NoisyProbability(model.network, *window);
-                verdict.noisy = !(verdict.score < 0.5);
-                votes.Cast(verdict.score);
-                if (votes.Stops() && stop == 0) stop = spp;
-            }
-        }
-        if (HasVerdict(block, spp)) verdicts.push_back(verdict);
-    }
-    RuleOutcome outcome = MakeOutcome(recording, stop);
-    outcome.verdicts = std::move(verdicts);
+RuleOutcome SimulateVoting(const JudgedBlock& block, const VotingRule& rule) {
+    const std::vector<Decision> decisions = Replayed(block, rule);
+    const auto last = std::ranges::find(decisions, true, &Decision::stop);
+    RuleOutcome outcome = MakeOutcome(
+        *block.recording,
+        last == decisions.end() ? 0 : block.recording->spp[size_t(last - decisions.begin())]);
+    AddVerdicts(block, NumbersOf(decisions), rule.threshold, &outcome);
     return outcome;
 }
 
@@ -218,28 +150,30 @@ RuleOutcome SimulateStop(const JudgedBlock& block, int spp) {
     return outcome;
 }
 
-Simulator MakeSimulator(const std::string& given, const RuleContext& context) {
-    const size_t colon = given.find(':');
-    const std::string kind = given.substr(0, colon);
-    const std::string argument = colon == std::string::npos ? "" : given.substr(colon + 1);
-    if (kind == "thresholds" && !argument.empty()) return ThresholdsSimulator(argument);
-    // With its default, if it has one.
-    std::string rule = MakeCriterionFactory(given, context).rule;
-    rule = rule.substr(0, rule.find(", caution"));
-    if (kind == "learned") return LearnedSimulator(ModelPath(argument, context.models), context);
-
-    const double number = ParseNumber(rule.substr(rule.find(':') + 1), rule);
-    if (kind == "dammertz") return ErrorSimulator(ErrorRule::Dammertz, number);
-    if (kind == "luxtile") return ErrorSimulator(ErrorRule::LuxTile, number);
-    if (kind == "lnoise") return ErrorSimulator(ErrorRule::LNoise, number / context.caution);
-    if (kind == "entropy") return ErrorSimulator(ErrorRule::Entropy, number / context.caution);
-    if (kind == "cycles")
-        return [=](const JudgedBlock& block) { return SimulateCycles(block, number); };
-    if (kind == "fixed")
-        return [=](const JudgedBlock& block) {
-            return SimulateStop(block, PassReaching(int(number), block.passSpp));
+Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
+    // Each viewpoint has a row of its own.
+    if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
+        return ThresholdsSimulator(ArgumentOf(text));
+    const CriterionFactory factory = MakeCriterionFactory(text, context);
+    const Replay replay = FindRule(text)->replay;
+    if (replay == Replay::Counts)
+        return [factory](const JudgedBlock& block) {
+            return SimulateStop(
+                block, PassReaching(factory.stopAt({.index = block.block}), block.passSpp));
         };
-    throw std::invalid_argument("stopping rule '" + rule + "' cannot be simulated");
+    if (replay == Replay::RanAlong)
+        return [factory](const JudgedBlock& block) {
+            return SimulateCycles(block, factory.voting->threshold);
+        };
+    if (replay == Replay::Unknown || !factory.voting->recall)
+        throw std::invalid_argument("stopping rule '" + factory.rule + "' cannot be simulated");
+    return [factory](const JudgedBlock& block) {
+        try {
+            return SimulateVoting(block, *factory.voting);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error("stopping rule '" + factory.rule + "': " + error.what());
+        }
+    };
 }
 
 std::vector<ViewpointOutcome> Simulate(std::span<const JudgedBlock> blocks, const Simulator& rule,

@@ -13,21 +13,16 @@
 
 #include "stopping/learning/evaluation.h"
 #include "stopping/learning/training_samples.h"
-#include "stopping/network/model_file.h"
+#include "stopping/rules/voting.h"
 
 namespace lull {
 
-// Lists the rules that compare one number a pass with a threshold.
-enum class ErrorRule { Dammertz, LuxTile, LNoise, Entropy };
-
-// Holds these numbers for the recorded passes.
+// Holds the numbers that a rule compares with its threshold, for sweeps of that.
 struct ErrorSeries {
-    std::vector<double> errors = {};  // of each record; infinite where the rule does not look
+    std::vector<double> errors = {};  // of each record; infinite where there is none
     int needed = 1;                   // errors below the threshold in a row that stop the block
 };
-// `visibility` is for ErrorRule::Entropy.
-ErrorSeries MakeErrorSeries(const BlockRecording& recording, ErrorRule rule,
-                            const NoiseVisibility& visibility = {});
+ErrorSeries MakeErrorSeries(const JudgedBlock& block, const VotingRule& rule);
 
 // Returns the record at which a threshold stops the block; -1: none.
 int FirstBelow(const ErrorSeries& series, double threshold);
@@ -38,17 +33,19 @@ int FirstBelow(const ErrorSeries& series, double threshold);
 RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& series, double threshold,
                               bool brief = false);
 RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brief = false);
-RuleOutcome SimulateLearned(const JudgedBlock& block, const Model& model);
+// Decides as in a render, on signals that were recorded, with a rule that has them (recall) and was
+// made for the block's passes.
+RuleOutcome SimulateVoting(const JudgedBlock& block, const VotingRule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const JudgedBlock& block, int spp);
 
 // Says what a rule does to a block; can be called from several threads.
 using Simulator = std::function<RuleOutcome(const JudgedBlock& block)>;
 
-// Reads a rule as MakeCriterionFactory() does, with the files it names: dammertz[:T], cycles:T,
-// luxtile:T, lnoise[:T], entropy[:T], learned[:MODEL.h5], fixed:N, or thresholds:FILE, which takes
-// the rows that have the viewpoints' names. Throws std::invalid_argument and std::runtime_error as
-// that does; the simulator throws std::runtime_error for a block that a file does not have.
+// Reads a rule as MakeCriterionFactory() does, with the files it names and for the passes of the
+// recordings; but `thresholds:FILE` takes the rows that have the viewpoints' names. Throws
+// std::invalid_argument and std::runtime_error as that does, and for a rule that cannot be run on
+// recordings; the simulator throws std::runtime_error for a block that a file does not have.
 Simulator MakeSimulator(const std::string& rule, const RuleContext& context = {});
 
 // Runs a rule over blocks, on all cores; those of one viewpoint follow each other.

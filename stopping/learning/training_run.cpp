@@ -6,6 +6,7 @@
 
 #include "stopping/learning/certainty.h"
 #include "stopping/learning/simulation.h"
+#include "stopping/rules/learned.h"
 
 namespace lull {
 
@@ -45,8 +46,10 @@ std::optional<Network> TrainNetwork(const ModelSettings& settings, const Trainin
 
 void AddOutcomes(const Network& network, const ModelSettings& settings,
                  std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
-    const Model model{network, settings, ""};
-    const auto simulator = [&](const JudgedBlock& block) { return SimulateLearned(block, model); };
+    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
+    const auto simulator = [&](const JudgedBlock& block) {
+        return SimulateVoting(block, LearnedRule(model, block.passSpp));
+    };
     for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
         viewpoints->push_back(std::move(viewpoint));
 }

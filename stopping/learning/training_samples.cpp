@@ -6,56 +6,15 @@
 #include <stdexcept>
 
 #include "stopping/network/block_memory.h"
-#include "stopping/signals/lightness_noise.h"
 
 namespace lull {
 
-namespace {
-
-const char* const needed = ": recordings have H for m = 4, 25, 100 and 400, H1 and H2 for m = 100";
-
-std::string EntropyChannel(Feature feature, int m) {
-    if (feature == Feature::H && (m == 4 || m == 25 || m == 100 || m == 400))
-        return std::string("h").append(std::to_string(m));
-    if (feature == Feature::H1 && m == 100) return "h1";
-    if (feature == Feature::H2 && m == 100) return "h2";
-    throw std::invalid_argument(FeatureNames({&feature, 1}) + " with m = " + std::to_string(m) +
-                                needed);
-}
-
-}  // namespace
-
-SubBlockLightness LightnessOf(const BlockRecording& recording, int i) {
-    const std::span<const float> mean = recording.Values(i, "lightness");
-    const std::span<const float> deviation = recording.Values(i, "deviation");
-    return {.mean = {mean.begin(), mean.end()}, .deviation = {deviation.begin(), deviation.end()}};
+RecordedValues ValuesOf(const BlockRecording& recording, int i) {
+    return [&recording, i](std::string_view channel) { return recording.Values(i, channel); };
 }
 
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings) {
-    BlockMeasures measures{.spp = recording.spp[size_t(i)]};
-    for (Feature feature : settings.features) {
-        if (feature == Feature::LogSpp) continue;
-        if (IsDrop(feature)) {
-            const Feature entropy = EntropyOf(feature);
-            const std::span<const float> values =
-                recording.Values(i, EntropyChannel(entropy, settings.m));
-            measures.Of(entropy).assign(values.begin(), values.end());
-            if (feature == Feature::VisibleDrop) measures.lightness = LightnessOf(recording, i);
-            continue;
-        }
-        if (feature == Feature::DetailMaskedNoise) {
-            measures.Of(feature) =
-                DetailMaskedNoise(recording.Values(i, "half_noise"),
-                                  recording.Values(i, "deviation"), recording.Values(i, "texture"));
-            continue;
-        }
-        // Other features have the names of their channels.
-        const std::span<const float> values =
-            recording.Values(i, IsEntropy(feature) ? EntropyChannel(feature, settings.m)
-                                                   : FeatureNames({&feature, 1}));
-        measures.Of(feature).assign(values.begin(), values.end());
-    }
-    return measures;
+    return RecordedMeasures(recording.spp[size_t(i)], ValuesOf(recording, i), settings);
 }
 
 std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,

@@ -6,17 +6,16 @@
 #include <vector>
 
 #include "stopping/learning/dataset.h"
-#include "stopping/network/model_inputs.h"
+#include "stopping/network/recorded_measures.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
 
-// Returns what record i of a block says of the lightness of its sub-blocks.
-SubBlockLightness LightnessOf(const BlockRecording& recording, int i);
+// Returns what reads the channels of record i; the recording must outlive it.
+RecordedValues ValuesOf(const BlockRecording& recording, int i);
 
-// Returns what record i of a block says of the features that the settings ask for. Throws
-// std::invalid_argument if recordings do not have them: entropies are recorded for m = 4, 25, 100
-// and 400, H1 and H2 for m = 100 only, and older blocks have no attributes.
+// Returns what record i of a block says of the features that the settings ask for, as
+// RecordedMeasures() does.
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
 
 // Names a block that was recorded and that people judged.

@@ -1,5 +1,6 @@
 #include "stopping/network/model_inputs.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

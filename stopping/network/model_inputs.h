@@ -2,7 +2,6 @@
 // recordings, and for judging, from pixels.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "stopping/base/state.h"
+#include "stopping/rules/argument.h"
 
 namespace lull {
 
@@ -47,98 +47,60 @@ class FixedCriterion final : public Criterion {
     int target;
 };
 
-// Stops when an error estimate that needs no memory falls below a threshold.
-class ErrorCriterion final : public Criterion {
+// Remembers which pixels are active, and makes of the errors of all of them the largest of those.
+class CyclesGauge final : public Gauge {
   public:
-    ErrorCriterion(double (*error)(const BlockView&), double factor, double threshold,
-                   int minimumSpp)
-        : error(error), factor(factor), threshold(threshold), minimumSpp(minimumSpp) {}
-
-    ViewNeed Need(int spp) const override {
-        return spp >= minimumSpp ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
-    }
-    Decision Observe(const BlockView& view) override {
-        const ViewNeed need = Need(view.spp);
-        CheckView(view, need);
-        if (need == ViewNeed::Nothing) return {.threshold = threshold};
-        const double value = factor * error(view);
-        return {.stop = value < threshold, .judged = true, .value = value, .threshold = threshold};
-    }
-
-  private:
-    double (*error)(const BlockView&);
-    double factor, threshold;
-    int minimumSpp;
-};
-
-class CyclesCriterion final : public Criterion {
-  public:
-    explicit CyclesCriterion(double threshold)
+    explicit CyclesGauge(double threshold)
         : threshold(threshold), minimumSpp(CyclesMinimumSpp(threshold)) {}
 
     // Cycles tests after the sample of 0-based index k > minimum, hence the 1.
-    ViewNeed Need(int spp) const override {
-        const bool tests = spp - 1 > minimumSpp && spp % cyclesSpacing == 0;
-        return tests ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
-    }
+    bool Looks(int spp) const override { return spp - 1 > minimumSpp && spp % cyclesSpacing == 0; }
 
-    Decision Observe(const BlockView& view) override {
-        const ViewNeed need = Need(view.spp);
-        CheckView(view, need);
-        if (need == ViewNeed::Nothing) return {.value = largest, .threshold = threshold};
-
-        const size_t pixels = size_t(view.width) * size_t(view.height);
+    // Tests the active pixels. That none has failed means that all errors were below
+    // 5 * threshold, so that the largest decides.
+    bool Add(int, Signals signals) override {
+        const PixelErrors& pixels = std::get<PixelErrors>(signals);
         if (active.empty()) {
-            width = view.width;
-            active.assign(pixels, 1);
+            width = pixels.width;
+            active.assign(pixels.errors.size(), 1);
         }
-        if (active.size() != pixels || width != view.width)
+        if (active.size() != pixels.errors.size() || width != pixels.width)
             throw std::invalid_argument("the block has another size than before");
-
-        // Test the active pixels. That none has failed means that all errors were below
-        // 5 * threshold, so that the largest decides.
-        largest = 0;
-        for (size_t i = 0; i < pixels; ++i) {
+        value = 0;
+        for (size_t i = 0; i < active.size(); ++i) {
             if (!active[i]) continue;
-            const double error = CyclesPixelError(&view.mean[3 * i], &view.halfMean[3 * i]) / 5;
-            active[i] = !(error < threshold);
-            largest = std::max(largest, error);
+            active[i] = !(pixels.errors[i] < threshold);
+            value = std::max(value, pixels.errors[i]);
         }
-        Dilate(view.width, view.height);
-        return {
-            .stop = largest < threshold, .judged = true, .value = largest, .threshold = threshold};
+        Dilate();
+        return true;
     }
 
-    std::vector<std::byte> Save() const override {
-        StateWriter writer;
-        writer.Put(cyclesTag);
-        writer.Put(largest);
-        writer.Put(int32_t(width));
-        writer.PutAll(std::span(active));
-        return std::move(writer.bytes);
+    void Save(StateWriter* writer) const override {
+        writer->Put(value);
+        writer->Put(int32_t(width));
+        writer->PutAll(std::span(active));
     }
-    void Restore(std::span<const std::byte> state) override {
-        StateReader reader(state);
-        reader.Expect(cyclesTag);
-        largest = reader.Get<double>();
-        width = reader.Get<int32_t>();
-        active.resize(reader.Left());
-        reader.GetAll(std::span(active));
-        if (std::isnan(largest)) throw std::runtime_error("the saved state of cycles is damaged");
+    void Restore(StateReader* reader) override {
+        value = reader->Get<double>();
+        width = reader->Get<int32_t>();
+        active.resize(reader->Left());
+        reader->GetAll(std::span(active));
+        if (std::isnan(value)) throw std::runtime_error("the saved state of cycles is damaged");
     }
 
   private:
     // Activates the neighbours of active pixels: those in the row, then those in the column.
-    void Dilate(int width, int height) {
+    void Dilate() {
         std::vector<uint8_t> rows(active.size());
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                const size_t i = size_t(y) * size_t(width) + size_t(x);
-                rows[i] = active[i] | (x > 0 && active[i - 1]) | (x + 1 < width && active[i + 1]);
+        const size_t stride = size_t(width), height = active.size() / stride;
+        for (size_t y = 0; y < height; ++y)
+            for (size_t x = 0; x < stride; ++x) {
+                const size_t i = y * stride + x;
+                rows[i] = active[i] | (x > 0 && active[i - 1]) | (x + 1 < stride && active[i + 1]);
             }
-        const size_t stride = size_t(width);
-        for (int y = 0; y < height; ++y)
-            for (size_t i = size_t(y) * stride; i < size_t(y + 1) * stride; ++i)
+        for (size_t y = 0; y < height; ++y)
+            for (size_t i = y * stride; i < (y + 1) * stride; ++i)
                 active[i] =
                     rows[i] | (y > 0 && rows[i - stride]) | (y + 1 < height && rows[i + stride]);
     }
@@ -146,9 +108,15 @@ class CyclesCriterion final : public Criterion {
     double threshold;
     int minimumSpp;
     int width = 0;                // of the block, once it is known
-    double largest = 0;           // of the last test
     std::vector<uint8_t> active;  // 0 or 1 for each pixel; empty before the first test
 };
+
+// Reads one number of the block.
+std::function<Signals(int, const RecordedValues&)> RecordedNumber(const char* channel) {
+    return [channel](int, const RecordedValues& values) -> Signals {
+        return double(values(channel)[0]);
+    };
+}
 
 }  // namespace
 
@@ -164,8 +132,14 @@ double DammertzError(const BlockView& view) {
     return 3 * sum / double(view.mean.size());
 }
 
-std::unique_ptr<Criterion> MakeDammertz(double threshold, double factor) {
-    return std::make_unique<ErrorCriterion>(DammertzError, factor, threshold, 0);
+VotingRule DammertzRule(double threshold, bool byArea) {
+    return {.threshold = threshold,
+            .measure = [](const BlockView& view, const BlockInfo&) { return DammertzError(view); },
+            .recall = byArea ? nullptr : RecordedNumber("dammertz"),
+            .makeGauge =
+                [byArea](const BlockInfo& block) {
+                    return MakeMeasuredGauge(byArea ? std::sqrt(block.areaFraction) : 1);
+                }};
 }
 
 double CyclesPixelError(const float* mean, const float* halfMean) {
@@ -178,8 +152,20 @@ int CyclesMinimumSpp(double threshold) {
     return int(std::clamp(spp, 4.0, 1e9));
 }
 
-std::unique_ptr<Criterion> MakeCycles(double threshold) {
-    return std::make_unique<CyclesCriterion>(threshold);
+PixelErrors CyclesErrors(const BlockView& view) {
+    CheckView(view, ViewNeed::MeanAndHalf);
+    PixelErrors pixels{.width = view.width};
+    for (size_t i = 0; i < view.mean.size(); i += 3)
+        pixels.errors.push_back(CyclesPixelError(&view.mean[i], &view.halfMean[i]) / 5);
+    return pixels;
+}
+
+VotingRule CyclesRule(double threshold) {
+    return {.threshold = threshold,
+            .tag = cyclesTag,
+            .measure = [](const BlockView& view, const BlockInfo&) { return CyclesErrors(view); },
+            .makeGauge =
+                [threshold](const BlockInfo&) { return std::make_unique<CyclesGauge>(threshold); }};
 }
 
 double LuxTileError(const BlockView& view) {
@@ -191,8 +177,38 @@ double LuxTileError(const BlockView& view) {
     return largest;
 }
 
-std::unique_ptr<Criterion> MakeLuxTile(double threshold) {
-    return std::make_unique<ErrorCriterion>(LuxTileError, 1, threshold, luxMinimumSpp);
+VotingRule LuxTileRule(double threshold) {
+    return {.threshold = threshold,
+            .measure = [](const BlockView& view, const BlockInfo&) { return LuxTileError(view); },
+            .recall = RecordedNumber("luxtile"),
+            .makeGauge =
+                [](const BlockInfo&) { return MakeMeasuredGauge(1, {.firstSpp = luxMinimumSpp}); }};
+}
+
+CriterionFactory CountingFactory(std::function<int(const BlockInfo&)> stopAt) {
+    return {.make = [stopAt](const BlockInfo& block) { return MakeFixed(stopAt(block)); },
+            .stopAt = stopAt};
+}
+
+CriterionFactory ReadFixed(const std::string& argument, const RuleContext&) {
+    const int spp = ParsePositive<int>(argument, "a number of samples per pixel, at least 1");
+    return CountingFactory([spp](const BlockInfo&) { return spp; });
+}
+
+CriterionFactory ReadDammertz(const std::string& argument, const RuleContext&) {
+    const std::string suffix = ":area";
+    const bool byArea = argument.ends_with(suffix);
+    return FactoryOf(DammertzRule(
+        ParseThreshold(byArea ? argument.substr(0, argument.size() - suffix.size()) : argument),
+        byArea));
+}
+
+CriterionFactory ReadCycles(const std::string& argument, const RuleContext&) {
+    return FactoryOf(CyclesRule(ParseThreshold(argument)));
+}
+
+CriterionFactory ReadLuxTile(const std::string& argument, const RuleContext&) {
+    return FactoryOf(LuxTileRule(ParseThreshold(argument)));
 }
 
 }  // namespace lull

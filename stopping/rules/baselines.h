@@ -6,25 +6,35 @@
 // d = |I_R - A_R| + |I_G - A_G| + |I_B - A_B| and s = I_R + I_G + I_B.
 #pragma once
 
+#include <array>
 #include <memory>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/voting.h"
 
 namespace lull {
 
 // Stops a block at `spp` samples per pixel, or the end of the pass that reaches it.
 std::unique_ptr<Criterion> MakeFixed(int spp);
 
+// Makes such criteria, each for the spp that `stopAt` says.
+CriterionFactory CountingFactory(std::function<int(const BlockInfo&)> stopAt);
+
+// Read the arguments of rules: N; T or T:area; T; T.
+CriterionFactory ReadFixed(const std::string& argument, const RuleContext& context);
+CriterionFactory ReadDammertz(const std::string& argument, const RuleContext& context);
+CriterionFactory ReadCycles(const std::string& argument, const RuleContext& context);
+CriterionFactory ReadLuxTile(const std::string& argument, const RuleContext& context);
+
 // Returns the mean over the block of d / sqrt(s), where the term is 0 if s <= 0 (Dammertz,
 // Hanika, Keller, Lensch: A Hierarchical Automatic Stopping Condition for Monte Carlo Global
 // Illumination, WSCG 2010). It estimates the error in square-root brightness. Reads both means.
 double DammertzError(const BlockView& view);
 
-// Stops a block when factor * DammertzError() < threshold, with both > 0. The paper multiplies by
-// sqrt(block area / image area), which lets its recursive splitting compare blocks of different
-// sizes. Our blocks are not split, and with that factor the same noise would be tolerated more in
-// a larger image; so the factor is 1 unless the rule asks for it.
-std::unique_ptr<Criterion> MakeDammertz(double threshold, double factor = 1);
+// Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times
+// sqrt(block area / image area), as in the paper, whose recursive splitting so compares blocks of
+// different sizes. Our blocks are not split, and with that factor the same noise would be tolerated
+// more in a larger image. (Recordings do not know how large it was.)
+VotingRule DammertzRule(double threshold, bool byArea = false);
 
 // Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
 // the square root below 1 and the identity above. Both point to three components.
@@ -37,8 +47,16 @@ int CyclesMinimumSpp(double threshold);
 // the active pixels (at first all). One is converged if its error is < 5 * threshold; the pixels
 // around one that is not are active again (3 x 3 dilation: what makes a test of single pixels
 // safe, as it has 75 % relative spread). The block stops when none is active. The decision's
-// value is the largest error of the pixels tested / 5.
-std::unique_ptr<Criterion> MakeCycles(double threshold);
+// value is the largest error of the pixels tested / 5. It remembers pixels, so that recordings have
+// only where it stopped, at kCyclesThresholds.
+VotingRule CyclesRule(double threshold);
+
+// Returns what it tests: CyclesPixelError() / 5.
+PixelErrors CyclesErrors(const BlockView& view);
+
+// The thresholds at which the rule runs along while blocks are recorded.
+inline constexpr std::array<double, 13> kCyclesThresholds = {
+    0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
 
 // Returns the largest difference, over pixels and components, between the display values of both
 // means, clamp(x, 0, 1)^(1/2.2), as in LuxCore's tile test.
@@ -50,6 +68,6 @@ double LuxTileError(const BlockView& view);
 
 // Stops a block when LuxTileError() < threshold, from 32 spp on. LuxCore tests every second pass,
 // as its halves are the odd and the even passes; ours are balanced after every pass.
-std::unique_ptr<Criterion> MakeLuxTile(double threshold);
+VotingRule LuxTileRule(double threshold);
 
 }  // namespace lull

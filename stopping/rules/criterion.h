@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +12,9 @@
 #include <vector>
 
 #include "stopping/base/block_view.h"
+#include "stopping/rules/signals.h"
+#include "stopping/rules/trend.h"
+#include "stopping/signals/entropy_drop.h"
 
 namespace lull {
 
@@ -24,7 +28,7 @@ struct Decision {
     int votes = 0;         // noiseless votes in a row (rules that vote only)
     // The block's VisibleNoise() (lnoise.h), from rules that compute it anyhow.
     std::optional<double> visibleNoise = {};
-    // The noise that a network was told, where that is all it looks at: see RuleTrend::undecided.
+    // The noise that a network was told, where that is all it looks at.
     std::optional<double> noise = {};
 };
 
@@ -56,6 +60,9 @@ struct BlockInfo {
     double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
 };
 
+// Measures what a rule looks at in a block.
+using Measure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
+
 // Holds what a rule can depend on beside its own text.
 struct RuleContext {
     int passSpp = 20;            // spp of a pass, also of the first; 0: any (see FreeLooks)
@@ -66,27 +73,13 @@ struct RuleContext {
     // Divides the threshold of visible noise: 2 lets half as much of it be. Above 0; others than 1
     // only for rules that have such a threshold.
     double caution = 1;
+    NoiseVisibility visibility = {};  // to the rule `entropy`
+    // By the name of a rule, what the program measures for it that a BlockView does not show. A
+    // rule that needs that is refused where it is missing.
+    std::map<std::string, Measure> measures = {};
 };
 
-// Says how the number that a rule compares goes with the samples.
-struct RuleTrend {
-    enum Kind {
-        Error,        // above 0; falls as a power of the spp
-        Probability,  // in [0, 1]; falls too
-        Samples       // the spp themselves, which rise to the threshold
-    };
-    Kind kind = Error;
-    int votes = 1;  // in a row that stop a block
-    // Of a network that looks at nothing but noise, Decision::noise: where it is undecided.
-    // Forecasts follow that then, as a probability is no power of the spp. 0: not known.
-    double undecided = 0;
-    // The spp of the picture that noise is compared with: it falls as a power of 1/spp -
-    // 1/reference. 0: it is compared with none.
-    int reference = 0;
-    // Whether it falls more slowly where there is much noise, as falls of entropies do, and comes
-    // to the power -1/2 with less.
-    bool saturates = false;
-};
+struct VotingRule;
 
 // Makes the criteria of an image. Models and tables are read once and shared by all of them.
 struct CriterionFactory {
@@ -100,7 +93,11 @@ struct CriterionFactory {
     int smallestSide = 0;
     // Makes a criterion; can be called from any thread. Throws std::invalid_argument for a block
     // that the rule has no answer for.
-    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
+    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make = {};
+    // How it measures and decides; null for rules that only count samples.
+    std::shared_ptr<const VotingRule> voting = nullptr;
+    // Where those stop a block, in spp, before the end of the pass is waited for; throws as make().
+    std::function<int(const BlockInfo&)> stopAt = {};
 };
 
 // The rule where none is asked for.
@@ -109,27 +106,7 @@ inline constexpr const char* defaultRule = "learned";
 // The model of `learned` where none is named.
 inline constexpr const char* defaultModelName = "entropy";
 
-// Returns the file of the model that `learned:ARGUMENT` names: one that ends in .h5 or is there, or
-// NAME.h5 in the folder of installed models. Throws std::runtime_error naming those that there are.
-std::string ModelPath(const std::string& argument, const std::string& models);
-
-// Reads a model as it is used in a context, with its cap and caution. Throws std::runtime_error.
-struct Model;
-Model ReadModelFor(const std::string& path, const RuleContext& context);
-
-// Reads a stopping rule and the files it names:
-//     fixed:N                 stop at N samples per pixel
-//     dammertz[:T[:area]]     stop when the block's mean error is < T (0.02: in the middle greys
-//                             about two steps of an 8-bit display)
-//     cycles:T                stop when no pixel's error is >= T
-//     luxtile:T               stop when the largest display error is < T, e.g. 0.0234 = 6/256
-//     lnoise[:T]              stop when the visible noise in lightness is < T three times in a row
-//                             (0.9: where people stop to see it, see stopping/models/README.md)
-//     entropy[:T]             stop when noise adds so little to the SVD-entropy that < T of it is
-//                             visible, three times in a row (see entropy.h)
-//     thresholds:FILE[:NAME]  stop each block at the spp of a row in a thresholds file
-//     learned[:NAME|MODEL.h5] stop after noiseless votes of a recurrent network in a row, an
-//                             installed one (entropy) or one in a file
+// Reads a stopping rule, NAME[:ARGUMENT] as kRules has them (rule_table.h), and the files it names.
 // Throws std::invalid_argument for a bad rule and std::runtime_error for a bad file; the message
 // says what is wrong and what would be right.
 CriterionFactory MakeCriterionFactory(const std::string& rule, const RuleContext& context = {});

@@ -2,15 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
-#include "stopping/base/state.h"
-#include "stopping/rules/votes.h"
+#include "stopping/rules/argument.h"
 #include "stopping/signals/drop_history.h"
-#include "stopping/signals/svd_entropy.h"
 
 namespace lull {
 
@@ -18,72 +13,49 @@ namespace {
 
 constexpr uint32_t entropyTag = 0x31504445;  // "EDP1"
 
-class EntropyCriterion final : public Criterion {
+class EntropyGauge final : public Gauge {
   public:
-    EntropyCriterion(double threshold, const NoiseVisibility& visibility, int passSpp)
-        : threshold(threshold), visibility(visibility), passSpp(passSpp) {}
+    EntropyGauge(const NoiseVisibility& visibility, int passSpp)
+        : visibility(visibility), passSpp(passSpp) {}
 
-    ViewNeed Need(int spp) const override {
-        return Looks(spp) ? ViewNeed::Mean : ViewNeed::Nothing;
-    }
-
-    Decision Observe(const BlockView& view) override {
-        CheckView(view, Need(view.spp));
-        const bool judged = Looks(view.spp) && Look(view);
-        return {.stop = judged && votes.Stops(),
-                .judged = judged,
-                .value = value,
-                .threshold = threshold,
-                .votes = votes.inRow};
-    }
-
-    std::vector<std::byte> Save() const override {
-        StateWriter writer;
-        writer.Put(entropyTag);
-        writer.Put(int32_t(votes.inRow));
-        writer.Put(value);
-        history.Save(&writer);
-        if (passSpp == 0) writer.Put(int32_t(looks.last));
-        return std::move(writer.bytes);
-    }
-    void Restore(std::span<const std::byte> state) override {
-        StateReader reader(state);
-        reader.Expect(entropyTag);
-        votes.inRow = reader.Get<int32_t>();
-        value = reader.Get<double>();
-        if (votes.inRow < 0 || !(value >= 0) || !std::isfinite(value))
-            throw std::runtime_error("the saved state of the rule entropy is damaged");
-        history.Restore(&reader, kEntropySubBlocks);
-        if (passSpp == 0) looks.Restore(&reader);
-        reader.Finish();
-    }
-
-  private:
-    bool Looks(int spp) const {
+    bool Looks(int spp) const override {
         return passSpp == 0 ? looks.Looks(spp) : EntropyRuleLooks(spp, passSpp);
     }
 
-    // Returns whether there was an earlier state to compare with.
-    bool Look(const BlockView& view) {
-        looks.last = view.spp;
-        std::vector<double> h;
-        for (const SvdEntropy& e : PictureEntropies(view, kEntropySubBlocks)) h.push_back(e.h);
-        const auto visible = AddVisible(view.spp, h, MeasureLightness(view, kEntropySubBlocks),
-                                        visibility, &history);
-        if (!visible) return false;
-        value = MeanVisible(*visible);
-        votes.Cast(value < threshold ? 0 : 1);
-        return true;
+    // There is a number where there is an earlier state to compare with.
+    bool Add(int spp, Signals signals) override {
+        looks.last = spp;
+        const BlockMeasures& measures = std::get<BlockMeasures>(signals);
+        const auto visible =
+            AddVisible(spp, measures.Of(Feature::H), measures.lightness, visibility, &history);
+        if (visible) value = MeanVisible(*visible);
+        return visible.has_value();
     }
 
-    double threshold;
+    void Save(StateWriter* writer) const override {
+        writer->Put(value);
+        history.Save(writer);
+        if (passSpp == 0) writer->Put(int32_t(looks.last));
+    }
+    void Restore(StateReader* reader) override {
+        value = reader->Get<double>();
+        if (!(value >= 0) || !std::isfinite(value))
+            throw std::runtime_error("the saved state of the rule entropy is damaged");
+        history.Restore(reader, size_t(kEntropySubBlocks));
+        if (passSpp == 0) looks.Restore(reader);
+    }
+
+  private:
     NoiseVisibility visibility;
     int passSpp;
     FreeLooks looks;  // where passSpp is 0
     DropHistory history;
-    VoteCounter votes;
-    double value = 0;  // of the last look
 };
+
+// Says what is measured: entropies, and the lightness that makes their falls visible.
+ModelSettings MeasuredSettings() {
+    return {.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}};
+}
 
 }  // namespace
 
@@ -98,9 +70,31 @@ double MeanVisible(std::span<const double> visibleDrops) {
     return sum / double(visibleDrops.size());
 }
 
-std::unique_ptr<Criterion> MakeEntropyRule(double threshold, const NoiseVisibility& visibility,
-                                           int passSpp) {
-    return std::make_unique<EntropyCriterion>(threshold, visibility, passSpp);
+VotingRule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp) {
+    return {
+        .threshold = threshold,
+        .votes = VoteCounter().needed,
+        .tag = entropyTag,
+        .need = ViewNeed::Mean,
+        .measure = [settings = MeasuredSettings()](
+                       const BlockView& view,
+                       const BlockInfo&) { return MeasureBlock(view, settings); },
+        .recall =
+            [settings = MeasuredSettings()](int spp, const RecordedValues& values) {
+                return RecordedMeasures(spp, values, settings);
+            },
+        .makeGauge =
+            [=](const BlockInfo&) { return std::make_unique<EntropyGauge>(visibility, passSpp); }};
+}
+
+CriterionFactory ReadEntropy(const std::string& argument, const RuleContext& context) {
+    const double threshold = ParseThreshold(argument) / context.caution;
+    const NoiseVisibility visibility = VisibilityAt(context.cap, context.visibility);
+    CriterionFactory factory = FactoryOf(EntropyRule(threshold, visibility, context.passSpp));
+    const int votes = factory.trend.votes;
+    factory.trend = TrendOfFalls(visibility);
+    factory.trend.votes = votes;
+    return factory;
 }
 
 }  // namespace lull

@@ -1,9 +1,9 @@
 // Judges blocks by what noise adds to their SVD-entropy: lull's own rule with one number.
 #pragma once
 
-#include <memory>
+#include <span>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/voting.h"
 #include "stopping/signals/entropy_drop.h"
 
 namespace lull {
@@ -16,8 +16,10 @@ inline constexpr int kEntropySubBlocks = 100;
 // then on, or every pass if passes are longer: what recordings have (see recording.h); with a
 // passSpp of 0, at whatever comes 40 spp or more after its last look. The block needs at least
 // 20 x 20 pixels.
-std::unique_ptr<Criterion> MakeEntropyRule(double threshold, const NoiseVisibility& visibility,
-                                           int passSpp);
+VotingRule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp);
+
+// Reads the threshold T, which the context's caution divides.
+CriterionFactory ReadEntropy(const std::string& argument, const RuleContext& context);
 
 // Says at which spp the rule looks; passSpp > 0.
 bool EntropyRuleLooks(int spp, int passSpp);

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "stopping/base/state.h"
 #include "stopping/network/block_memory.h"
-#include "stopping/rules/votes.h"
 
 namespace lull {
 
@@ -24,124 +24,69 @@ VoteSchedule MakeSchedule(const ModelSettings& settings, int passSpp) {
             .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : passSpp};
 }
 
-class LearnedCriterion final : public Criterion {
+class LearnedGauge final : public Gauge {
   public:
-    LearnedCriterion(std::shared_ptr<const Model> model, int passSpp)
+    LearnedGauge(std::shared_ptr<const Model> model, int passSpp)
         : model(std::move(model)),
           schedule(MakeSchedule(this->model->settings, passSpp)),
           isFree(passSpp == 0 && this->model->settings.spacing == Spacing::Geometric),
           looksAtNoiseOnly(LooksAtNoiseOnly(this->model->settings)),
           looks{.spacing = this->model->settings.n},
-          memory(this->model->settings),
-          votes{.needed = this->model->settings.votes} {}
-
-    ViewNeed Need(int spp) const override {
-        return Looks(spp) ? NeedOf(model->settings) : ViewNeed::Nothing;
+          memory(this->model->settings) {
+        value = 1;  // noisy until there is a vote
     }
 
-    Decision Observe(const BlockView& view) override {
-        CheckView(view, Need(view.spp));
-        bool judged = false;
-        if (Looks(view.spp)) {
-            looks.last = view.spp;
-            memory.Add(MeasureBlock(view, model->settings));
-            judged = Vote(view.spp);
-        }
-        return {.stop = judged && votes.Stops(),
-                .judged = judged,
-                .value = probability,
-                .threshold = 0.5,
-                .votes = votes.inRow,
-                .noise = judged ? noise : std::nullopt};
-    }
+    bool Looks(int spp) const override { return isFree ? looks.Looks(spp) : schedule.Records(spp); }
 
-    std::vector<std::byte> Save() const override {
-        StateWriter writer;
-        writer.Put(learnedTag);
-        writer.Put(int32_t(votes.inRow));
-        writer.Put(probability);
-        memory.Save(&writer);
-        if (isFree) writer.Put(int32_t(looks.last));
-        return std::move(writer.bytes);
-    }
-
-    void Restore(std::span<const std::byte> state) override {
-        StateReader reader(state);
-        reader.Expect(learnedTag);
-        votes.inRow = reader.Get<int32_t>();
-        probability = reader.Get<double>();
-        if (votes.inRow < 0 || !(probability >= 0 && probability <= 1))
-            throw std::runtime_error("the saved state of a learned rule is damaged");
-        memory.Restore(&reader);
-        if (isFree) looks.Restore(&reader);
-        reader.Finish();
-    }
-
-  private:
-    bool Looks(int spp) const { return isFree ? looks.Looks(spp) : schedule.Records(spp); }
-
-    // Votes if a vote is due at this spp and the window is full. Returns whether it did.
-    bool Vote(int spp) {
+    // There is a number if a vote is due at this spp and the window is full.
+    bool Add(int spp, Signals signals) override {
+        looks.last = spp;
+        memory.Add(std::get<BlockMeasures>(std::move(signals)));
         if (!isFree && !schedule.Votes(spp)) return false;
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return false;
-        probability = NoisyProbability(model->network, *window);
+        value = NoisyProbability(model->network, *window);
         if (looksAtNoiseOnly)
             noise = NoiseOfInput((*window)(0, window->cols() - 1), model->settings);
-        votes.Cast(probability);
         return true;
     }
+    std::optional<double> Noise() const override { return noise; }
 
+    void Save(StateWriter* writer) const override {
+        writer->Put(value);
+        memory.Save(writer);
+        if (isFree) writer->Put(int32_t(looks.last));
+    }
+    void Restore(StateReader* reader) override {
+        value = reader->Get<double>();
+        if (!(value >= 0 && value <= 1))
+            throw std::runtime_error("the saved state of a learned rule is damaged");
+        memory.Restore(reader);
+        if (isFree) looks.Restore(reader);
+    }
+
+  private:
     std::shared_ptr<const Model> model;
     VoteSchedule schedule;
     bool isFree;  // states come at any spp
     bool looksAtNoiseOnly;
     FreeLooks looks;
     BlockMemory memory;
-    VoteCounter votes;
-    double probability = 1;  // of the last vote; noisy until there is one
     std::optional<double> noise;
 };
 
-}  // namespace
-
-double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
-    const double p = RunNetwork(network, window)[0];
-    return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
-}
-
-double UndecidedNoise(const Model& model) {
+// Throws std::invalid_argument.
+void CheckFits(const Model& model, int passSpp) {
     const ModelSettings& settings = model.settings;
-    if (!LooksAtNoiseOnly(settings)) return 0;
-    // A step before the last had more noise; at fixed spacing, as much but for few spp.
-    const double stepBefore =
-        settings.spacing == Spacing::Geometric ? std::sqrt(settings.ratio) : 1.0;
-    const auto isNoisy = [&](double noise) {
-        Eigen::MatrixXf window(1, settings.k);
-        for (int step = settings.k - 1; step >= 0; --step, noise *= stepBefore)
-            window(0, step) = float(InputOfNoise(noise, settings));
-        return NoisyProbability(model.network, window) >= 0.5;
-    };
-    double clean = 1e-3, noisy = 1e3;
-    if (isNoisy(clean) || !isNoisy(noisy)) return 0;
-    while (noisy / clean > 1.0001) {
-        const double middle = std::sqrt(clean * noisy);
-        (isNoisy(middle) ? noisy : clean) = middle;
-    }
-    return noisy;
-}
-
-std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int passSpp) {
-    const ModelSettings& settings = model->settings;
     CheckSettings(settings);
-    CheckNetwork(model->network);
-    if (!Takes(model->network, InputCount(settings), settings.k))
+    CheckNetwork(model.network);
+    if (!Takes(model.network, InputCount(settings), settings.k))
         throw std::invalid_argument("the network does not take " + std::to_string(settings.k) +
                                     " steps of " + std::to_string(InputCount(settings)) +
                                     " values, as its settings have it");
-    const auto& dense = model->network.dense;
+    const auto& dense = model.network.dense;
     const Eigen::Index outputs =
-        dense.empty() ? model->network.lstm.back().Units() : dense.back().bias.size();
+        dense.empty() ? model.network.lstm.back().Units() : dense.back().bias.size();
     if (outputs != 1)
         throw std::invalid_argument("the network has " + std::to_string(outputs) +
                                     " outputs; one, the probability of noise, is needed");
@@ -152,7 +97,77 @@ std::unique_ptr<Criterion> MakeLearned(std::shared_ptr<const Model> model, int p
                                     std::to_string(settings.voteSpacing) +
                                     "; 0: each pass), which must be multiples of the pass of " +
                                     std::to_string(passSpp) + " spp");
-    return std::make_unique<LearnedCriterion>(std::move(model), passSpp);
+}
+
+}  // namespace
+
+double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
+    const double p = RunNetwork(network, window)[0];
+    return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
+}
+
+VotingRule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
+    CheckFits(*model, passSpp);
+    return {.threshold = 0.5,
+            .votes = model->settings.votes,
+            .tag = learnedTag,
+            .need = NeedOf(model->settings),
+            .measure = [model](const BlockView& view,
+                               const BlockInfo&) { return MeasureBlock(view, model->settings); },
+            .recall =
+                [model](int spp, const RecordedValues& values) {
+                    return RecordedMeasures(spp, values, model->settings);
+                },
+            .makeGauge =
+                [=](const BlockInfo&) { return std::make_unique<LearnedGauge>(model, passSpp); },
+            .spacing = model->settings.n};
+}
+
+std::string ModelPath(const std::string& argument, const std::string& models) {
+    const std::string name = argument.empty() ? defaultModelName : argument;
+    if (name.ends_with(".h5") || std::filesystem::exists(name)) return name;
+    const std::filesystem::path path = std::filesystem::path(models) / (name + ".h5");
+    if (std::filesystem::exists(path)) return path.string();
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(models, none))
+        if (entry.path().extension() == ".h5") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    std::string known;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    throw std::runtime_error("there is no model '" + name + "' in '" + models + "'; " +
+                             (known.empty() ? "there are none" : "there are " + known) +
+                             ". Name a file, learned:MODEL.h5, or choose another rule");
+}
+
+Model ReadModelFor(const std::string& path, const RuleContext& context) {
+    Model model = ReadModel(path);
+    ModelSettings& settings = model.settings;
+    if (context.caution != 1 && !std::ranges::any_of(settings.features, IsNoise))
+        throw std::runtime_error(path +
+                                 ": is not given visible noise that caution could scale, but " +
+                                 FeatureNames(settings.features));
+    settings.caution = context.caution;
+    settings.visibility = VisibilityAt(context.cap, settings.visibility);
+    return model;
+}
+
+CriterionFactory ReadLearned(const std::string& argument, const RuleContext& context) {
+    const std::string path = ModelPath(argument, context.models);
+    const auto model = std::make_shared<const Model>(ReadModelFor(path, context));
+    // A model that does not fit is an error before anything is rendered.
+    CriterionFactory factory;
+    try {
+        factory = FactoryOf(LearnedRule(model, context.passSpp));
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(path + ": " + error.what());
+    }
+    // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
+    factory.logRatios = model->logRatios;
+    for (double& ratio : factory.logRatios) ratio -= 2 * std::log(context.caution);
+    factory.checksum = model->checksum;
+    factory.trend = TrendOf(*model);
+    return factory;
 }
 
 }  // namespace lull

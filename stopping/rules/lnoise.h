@@ -1,10 +1,9 @@
 // Judges blocks by the noise that an observer can see in their lightness.
 #pragma once
 
-#include <memory>
 #include <span>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/voting.h"
 
 namespace lull {
 
@@ -20,6 +19,9 @@ double VisibleNoise(const BlockView& view);
 // Stops a block when VisibleNoise() was below `threshold`, > 0, after three passes in a row. The
 // half-buffer estimate of a block varies by about 1 % where its noise is even, but more where a few
 // pixels hold most of it: hence the votes.
-std::unique_ptr<Criterion> MakeLightnessNoise(double threshold);
+VotingRule LightnessNoiseRule(double threshold);
+
+// Reads the threshold T, which the context's caution divides.
+CriterionFactory ReadLightnessNoise(const std::string& argument, const RuleContext& context);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Decides when a learned rule votes and when its votes are enough.
+// Decides when a rule looks at a block and votes, and when its votes are enough.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,9 @@ struct VoteCounter {
     int needed = 3;
     int inRow = 0;
 
-    // Counts a vote: noiseless if the probability of noise is below 1/2, and noisy otherwise (so
-    // for NaN). A noisy vote starts the count again.
-    void Cast(double noisyProbability) { inRow = noisyProbability < 0.5 ? inRow + 1 : 0; }
+    // Counts a vote: noiseless if the number is below the threshold, and noisy otherwise (so for
+    // NaN). A noisy vote starts the count again.
+    void Cast(double number, double threshold) { inRow = number < threshold ? inRow + 1 : 0; }
     bool Stops() const { return inRow >= needed; }
 };
 

@@ -29,6 +29,11 @@ double Slope(double luminance) { return std::pow(std::max(luminance, 0.008856), 
 
 }  // namespace
 
+NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility) {
+    visibility.reference = std::max(visibility.reference, cap);
+    return visibility;
+}
+
 double RateOfFall(const EntropyState& oldest, const EntropyState& before, const EntropyState& now,
                   std::span<const double> weights) {
     const double early = Fall(oldest, before, weights), late = Fall(before, now, weights);

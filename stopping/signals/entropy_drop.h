@@ -29,6 +29,11 @@ struct NoiseVisibility {
     double nearness = 0.5;
 };
 
+// Returns the visibility where renders end at `cap` spp (0: not known). What people compared with
+// is free of noise; where the cap is larger, that is the picture at the cap, and a smaller cap does
+// not change what they saw.
+NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
+
 // Holds the entropies of the sub-blocks of a picture, row-major, at some spp.
 struct EntropyState {
     int spp = 0;

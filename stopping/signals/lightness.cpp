@@ -11,10 +11,6 @@ namespace lull {
 
 namespace {
 
-double LinearFromSrgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
 // Rounds the sRGB curve without evaluating it: code c begins at the linear value start[c], and
 // cell i of a uniform grid over [0, 1] begins with code first[i]. The curve is nowhere steeper
 // than 12.92, so two codes begin at least 1 / (12.92 * 255) apart, which is more than a cell:
@@ -26,7 +22,7 @@ struct EncodeTable {
 
     EncodeTable() {
         for (int c = 0; c < 256; ++c) {
-            const double exact = c == 0 ? 0 : LinearFromSrgb((c - 0.5) / 255);
+            const double exact = c == 0 ? 0 : DecodeSrgb((c - 0.5) / 255);
             start[c] = float(exact);
             if (start[c] < exact) start[c] = std::nextafter(start[c], 2.f);
         }
@@ -51,12 +47,15 @@ struct LuminanceTable {
 
     LuminanceTable() {
         for (int i = 0; i < 3; ++i)
-            for (int c = 0; c < 256; ++c)
-                share[i][c] = luminanceWeights[i] * LinearFromSrgb(c / 255.0);
+            for (int c = 0; c < 256; ++c) share[i][c] = luminanceWeights[i] * DecodeSrgb(c / 255.0);
     }
 };
 
 }  // namespace
+
+double DecodeSrgb(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
 
 void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb) {
     if (linear.size() != srgb.size())

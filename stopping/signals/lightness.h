@@ -13,6 +13,10 @@ inline constexpr double luminanceWeights[3] = {0.212671, 0.715160, 0.072169};
 // Returns what a display shows of a linear component, in [0, 1]; 0 for NaN.
 inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
 
+// Returns the linear value, in [0, 1], of a component in [0, 1] that follows the sRGB transfer
+// curve.
+double DecodeSrgb(double v);
+
 // Applies the sRGB transfer curve (IEC 61966-2-1) to linear values, clamps to [0, 1] and rounds
 // to 8 bits. NaN becomes 0. Throws std::invalid_argument if the lengths differ.
 void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);

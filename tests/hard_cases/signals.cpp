@@ -84,7 +84,7 @@ void ObserveAll(const BlockImage& block, const std::string& name, Failures* fail
          {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5", "entropy:0.64"})
         criteria.push_back(MakeCriterionFactory(rule).make({}));
     for (const float range : {0.1f, 1.f, 1e4f})
-        criteria.push_back(MakeLearned(RandomModel(range, 1), 20));
+        criteria.push_back(MakeVoting(LearnedRule(RandomModel(range, 1), 20)));
     for (size_t i = 0; i < criteria.size(); ++i)
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision d = criteria[i]->Observe(block.At(spp));

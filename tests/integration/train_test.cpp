@@ -24,7 +24,8 @@ struct TrainingDirectory : TemporaryDirectory {
 };
 
 const std::string kSmall =
-    "train data.h5 --human human.csv --units 8,4 --m 25 --k 4 --epochs 6 --seed 3 --augment ";
+    "train data.h5 --human human.csv --preset paper --units 8,4 --m 25 --k 4 --epochs 6 --seed 3 "
+    "--augment ";
 
 bool SameWeights(const Network& a, const Network& b) {
     return a.lstm[0].kernel == b.lstm[0].kernel && a.lstm[1].recurrent == b.lstm[1].recurrent &&
@@ -49,7 +50,8 @@ TEST(Train, WritesTheSameModelOnAnyNumberOfThreads) {
 
 TEST(Train, GoesOnAfterAnInterruption) {
     const TrainingDirectory directory;
-    const std::string larger = "train data.h5 --human human.csv --units 64,32 --epochs 40 --quiet ";
+    const std::string larger =
+        "train data.h5 --human human.csv --preset paper --units 64,32 --epochs 40 --quiet ";
     EXPECT_EQ(RunLull(directory, larger + "-o whole.h5").exitCode, 0);
     const Outcome part =
         RunAndSignal(directory, "LULL " + larger + "-o part.h5 --checkpoint-interval 0.1", SIGINT,
@@ -69,7 +71,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
 TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const TrainingDirectory directory;
     const std::string options =
-        "train data.h5 --human human.csv --units none --k 1 --pool rms,q90 --quiet "
+        "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,q90 --quiet "
         "--channels masked_noise,logspp --learning-rate 0.02 --epochs 60 ";
     const Outcome outcome =
         RunLull(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
@@ -110,6 +112,41 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
         << outcome.out << single.out;
 }
 
+TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
+    const TrainingDirectory directory;
+    const std::string train = "train data.h5 --human human.csv --quiet --epochs 1 ";
+    EXPECT_EQ(RunLull(directory, train + "-o entropy.h5").exitCode, 0);
+    // What is given by itself counts, before or after the preset.
+    EXPECT_EQ(RunLull(directory, train + "-o paper.h5 --units 8,4 --preset paper --k 4").exitCode,
+              0);
+    const Model entropy = ReadModel(directory.File("entropy.h5")),
+                paper = ReadModel(directory.File("paper.h5"));
+    EXPECT_EQ(FeatureNames(entropy.settings.features), "visible_drop");
+    EXPECT_EQ(PoolNames(entropy.settings.pools), "mean");
+    EXPECT_EQ(entropy.settings.k, 2);
+    EXPECT_EQ(entropy.settings.spacing, Spacing::Geometric);
+    EXPECT_EQ(entropy.network.lstm.size(), 2u);
+    EXPECT_EQ(entropy.network.lstm[0].Units(), 8);
+    EXPECT_EQ(FeatureNames(paper.settings.features), "H");
+    EXPECT_TRUE(paper.settings.pools.empty());
+    EXPECT_EQ(paper.settings.k, 4);
+    EXPECT_EQ(paper.network.lstm[0].Units(), 8);
+
+    // The same by either way, cross-validated.
+    const std::string judge = train + "--cross-validate ";
+    const Outcome brief = RunLull(directory, judge),
+                  full = RunLull(directory, judge +
+                                                "--features visible_drop --pool mean --spacing "
+                                                "geometric --ratio 1.4142 --k 2 --units 8,4 "
+                                                "--dropout 0 --learning-rate 0.003 "
+                                                "--balance-viewpoints --no-class-weights "
+                                                "--noisy-weight 2 --preset paper");
+    EXPECT_EQ(brief.exitCode, 0) << brief.err;
+    EXPECT_EQ(brief.out, full.out);
+    EXPECT_NE(brief.out, RunLull(directory, judge + "--preset paper --units 8,4").out);
+    EXPECT_EQ(RunLull(directory, judge + "--preset rendering").exitCode, 2);
+}
+
 TEST(Train, SplitsBlocks) {
     const TrainingDirectory directory;
     directory.Write("split.csv", "attic-a;0;3;\nbarn-b;1;2;3;\n");
@@ -119,7 +156,8 @@ TEST(Train, SplitsBlocks) {
     EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
 }
 
-const std::string kSearch = "train data.h5 --human human.csv --search grid.txt --csv s.csv ";
+const std::string kSearch =
+    "train data.h5 --human human.csv --preset paper --search grid.txt --csv s.csv ";
 
 TEST(Train, SearchesAGrid) {
     const TrainingDirectory directory;
@@ -143,10 +181,11 @@ TEST(Train, SearchesAGrid) {
     EXPECT_FALSE(std::filesystem::exists(directory.File("s.csv.training.checkpoint")));
 
     // A combination is trained as it would be by itself.
-    const Outcome single = RunLull(
-        directory,
-        "train data.h5 --human human.csv --units 4 --epochs 2 --k 2 --features noise --no-snorm "
-        "--batch 32 --cross-validate --csv one.csv");
+    const Outcome single = RunLull(directory,
+                                   "train data.h5 --human human.csv --preset paper --units 4 "
+                                   "--epochs 2 --k 2 --features noise "
+                                   "--no-snorm "
+                                   "--batch 32 --cross-validate --csv one.csv");
     EXPECT_EQ(single.exitCode, 0) << single.err;
     const std::string one = ReadBytes(directory.File("one.csv"));
     size_t field = one.find("\neach viewpoint left out,all,");

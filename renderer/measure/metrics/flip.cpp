@@ -7,6 +7,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/measure/metrics/convolution.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
@@ -48,13 +49,9 @@ Triple RelativeFromYcxcz(const Triple& c) {
     return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
-double LinearFromSrgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
 Planes OpponentPlanes(std::span<const uint8_t> srgb) {
     std::array<double, 256> linear;
-    for (int i = 0; i < 256; ++i) linear[i] = LinearFromSrgb(i / 255.0);
+    for (int i = 0; i < 256; ++i) linear[i] = DecodeSrgb(i / 255.0);
     Planes planes;
     for (std::vector<float>& plane : planes) plane.reserve(srgb.size() / 3);
     for (size_t i = 0; i < srgb.size(); i += 3) {

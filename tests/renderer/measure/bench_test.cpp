@@ -30,7 +30,8 @@ TEST(MeasurePoints, GivesAPointForEachRule) {
     const std::vector<ObservedRule> rules = {
         {"a", "fixed:20", 0, [](const BlockInfo&) { return MakeFixed(20); }},
         {"b", "fixed:80", 0, [](const BlockInfo&) { return MakeFixed(80); }},
-        {"c", "dammertz:0.01:area", 0, [](const BlockInfo&) { return MakeDammertz(100); }}};
+        {"c", "dammertz:0.01:area", 0,
+         [](const BlockInfo&) { return MakeVoting(DammertzRule(100)); }}};
     RenderOptions options;
     options.schedule.blockSize = 40;
     options.schedule.cap = 160;

@@ -81,10 +81,10 @@ TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
     FadingBlock block;
     BlockHistory history;
     std::vector<std::unique_ptr<Criterion>> rules;
-    rules.push_back(MakeDammertz(0.05));
+    rules.push_back(MakeVoting(DammertzRule(0.05)));
     rules.push_back(MakeFixed(2000));
     BlockObserver observer(std::move(rules), {.goesOn = true}, &history);
-    const std::unique_ptr<Criterion> alone = MakeDammertz(0.05);
+    const std::unique_ptr<Criterion> alone = MakeVoting(DammertzRule(0.05));
     bool stopped = false;
     for (int spp = 20; spp <= 2000; spp += 20) {
         const BlockView view = block.At(spp);
@@ -125,7 +125,7 @@ TEST(BlockObserver, GoesOnAfterAnInterruption) {
     const ObserverOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
     const auto rules = [] {
         auto made = FixedRules({40, 0});
-        made.push_back(MakeCycles(0.05));
+        made.push_back(MakeVoting(CyclesRule(0.05)));
         return made;
     };
     BlockHistory whole, parts;

@@ -22,7 +22,7 @@ ScheduleOptions Schedule() {
 }
 
 std::vector<ObservedRule> Rules() {
-    const auto dammertz = [](const BlockInfo&) { return MakeDammertz(0.5); };
+    const auto dammertz = [](const BlockInfo&) { return MakeVoting(DammertzRule(0.5)); };
     const auto bySpp = [](const BlockInfo& info) { return MakeFixed(20 + 20 * (info.index % 5)); };
     return {{"automatic", "dammertz:0.5", smallestVotingSide, dammertz},
             {"human", "thresholds:h.csv", 0, bySpp}};

@@ -6,6 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "stopping/network/model_file.h"
+#include "stopping/rules/lnoise.h"
 #include "tests/stopping/learning/channel_recordings.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
@@ -100,7 +102,7 @@ TEST(Simulation, VotesOnRecordedPasses) {
     SetChannel(&recording, "masked_noise",
                [](int spp) { return spp < 380 || spp == 420 ? 0.6 : 0.4; });
     const JudgedBlock block = MakeBlock(recording, 460);
-    const ErrorSeries series = MakeErrorSeries(recording, ErrorRule::LNoise);
+    const ErrorSeries series = MakeErrorSeries(block, LightnessNoiseRule(0.5));
     EXPECT_EQ(series.needed, 3);
     EXPECT_EQ(FirstBelow(series, 0.7), 2);
     EXPECT_EQ(FirstBelow(series, 0.3), -1);
@@ -122,9 +124,10 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
     BlockRecording recording = EmptyRecording(700);
     SetChannel(&recording, "dammertz", [](int) { return 0.1; });
     const JudgedBlock block = MakeBlock(recording);
-    const ErrorSeries series = MakeErrorSeries(recording, ErrorRule::Dammertz);
+    const ErrorSeries series = MakeErrorSeries(block, DammertzRule(0.05));
     for (const RuleOutcome& outcome :
-         {SimulateErrorRule(block, series, 0.05), SimulateCycles(block, 0.02)}) {
+         {SimulateVoting(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
+          SimulateCycles(block, 0.02)}) {
         EXPECT_EQ(outcome.stop, 700);
         EXPECT_TRUE(outcome.open);
         EXPECT_TRUE(outcome.verdicts.back().noisy);
@@ -136,8 +139,7 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
 
     BlockRecording whole = EmptyRecording(10000);
     SetChannel(&whole, "dammertz", [](int) { return 0.1; });
-    const RuleOutcome never =
-        SimulateErrorRule(MakeBlock(whole), MakeErrorSeries(whole, ErrorRule::Dammertz), 0.05);
+    const RuleOutcome never = SimulateVoting(MakeBlock(whole), DammertzRule(0.05));
     EXPECT_EQ(never.stop, 10000);
     EXPECT_FALSE(never.open);
 }

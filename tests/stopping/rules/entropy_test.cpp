@@ -28,7 +28,7 @@ std::vector<Decision> Decide(Criterion* rule, int begin, int end) {
 }
 
 TEST(EntropyRule, StopsAfterThreeLooksInARow) {
-    const auto rule = MakeEntropyRule(1.5, {}, 20);
+    const auto rule = MakeVoting(EntropyRule(1.5, {}, 20));
     const std::vector<Decision> decisions = Decide(rule.get(), 0, 4000);
     const int stop = 20 * int(decisions.size());
     ASSERT_TRUE(decisions.back().stop);
@@ -52,7 +52,8 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
     const NoiseVisibility visibility{.reference = 1 << 30};
     const auto spp = [&](double threshold) {
         return 20.0 *
-               double(Decide(MakeEntropyRule(threshold, visibility, 20).get(), 0, 9000).size());
+               double(Decide(MakeVoting(EntropyRule(threshold, visibility, 20)).get(), 0, 9000)
+                          .size());
     };
     const double once = spp(0.8), half = spp(0.4);
     EXPECT_NEAR(half / once, 4, 0.8);
@@ -68,9 +69,11 @@ TEST(EntropyRule, LooksWhereRecordingsHavePasses) {
 }
 
 TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
-    const std::vector<Decision> expected = Decide(MakeEntropyRule(1.5, {}, 20).get(), 0, 4000);
+    const std::vector<Decision> expected =
+        Decide(MakeVoting(EntropyRule(1.5, {}, 20)).get(), 0, 4000);
     for (const int split : {20, 60, 120, 200}) {
-        const auto before = MakeEntropyRule(1.5, {}, 20), after = MakeEntropyRule(1.5, {}, 20);
+        const auto before = MakeVoting(EntropyRule(1.5, {}, 20)),
+                   after = MakeVoting(EntropyRule(1.5, {}, 20));
         Decide(before.get(), 0, split);
         after->Restore(before->Save());
         EXPECT_EQ(after->Save(), before->Save());
@@ -82,15 +85,15 @@ TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
 }
 
 TEST(EntropyRule, RefusesOtherState) {
-    const auto rule = MakeEntropyRule(1.5, {}, 20);
+    const auto rule = MakeVoting(EntropyRule(1.5, {}, 20));
     Decide(rule.get(), 0, 300);
     const std::vector<std::byte> state = rule->Save();
     for (size_t size = 0; size < state.size(); size += 97)
-        EXPECT_THROW(MakeEntropyRule(1.5, {}, 20)->Restore(std::span(state).first(size)),
+        EXPECT_THROW(MakeVoting(EntropyRule(1.5, {}, 20))->Restore(std::span(state).first(size)),
                      std::runtime_error);
     std::vector<std::byte> longer = state;
     longer.push_back({});
-    EXPECT_THROW(MakeEntropyRule(1.5, {}, 20)->Restore(longer), std::runtime_error);
+    EXPECT_THROW(MakeVoting(EntropyRule(1.5, {}, 20))->Restore(longer), std::runtime_error);
     EXPECT_THROW(MakeCriterionFactory("lnoise:1").make({})->Restore(state), std::runtime_error);
 }
 
@@ -122,7 +125,7 @@ TEST(EntropyRule, SurvivesAnyBlock) {
     const float infinity = std::numeric_limits<float>::infinity();
     for (const float value :
          {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto rule = MakeEntropyRule(0.6, {}, 20);
+        const auto rule = MakeVoting(EntropyRule(0.6, {}, 20));
         const BlockImage block(41, 57, value);
         int stop = 0;
         for (int spp = 20; spp <= 200 && stop == 0; spp += 20) {

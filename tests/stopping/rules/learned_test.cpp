@@ -42,7 +42,7 @@ std::vector<Decision> RunPasses(Criterion* criterion, int first, int end, int pa
 
 TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
     const auto model = MakeModel(ConstantNetwork(100, 0.1f), {.voteSpacing = 40});
-    const auto criterion = MakeLearned(model, 20);
+    const auto criterion = MakeVoting(LearnedRule(model, 20));
     EXPECT_EQ(criterion->Need(20), ViewNeed::Mean);
     EXPECT_EQ(criterion->Need(40), ViewNeed::Nothing);
     const std::vector<Decision> decisions = RunPasses(criterion.get(), 20, 10000);
@@ -59,12 +59,12 @@ TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
 
 TEST(Learned, StopsFirstAt340SppWithAVoteEachPass) {
     const auto model = MakeModel(ConstantNetwork(100, 0.1f), {});
-    EXPECT_EQ(RunPasses(MakeLearned(model, 20).get(), 20, 10000).size(), 17u);
+    EXPECT_EQ(RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 10000).size(), 17u);
 }
 
 TEST(Learned, NeverStopsOnNoise) {
     const auto model = MakeModel(ConstantNetwork(25, 0.9f), {.m = 25});
-    const auto decisions = RunPasses(MakeLearned(model, 20).get(), 20, 1000);
+    const auto decisions = RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 1000);
     EXPECT_EQ(decisions.size(), 50u);
     EXPECT_EQ(decisions.back().votes, 0);
 }
@@ -72,7 +72,8 @@ TEST(Learned, NeverStopsOnNoise) {
 TEST(Learned, VotesOnTheWindowOfItsFeatures) {
     const ModelSettings settings = {.k = 3, .n = 40, .m = 25, .votes = 1000};
     const Network network = RandomNetwork(25, {8, 4}, 2);
-    const auto decisions = RunPasses(MakeLearned(MakeModel(network, settings), 20).get(), 20, 200);
+    const auto decisions =
+        RunPasses(MakeVoting(LearnedRule(MakeModel(network, settings), 20)).get(), 20, 200);
     FeatureHistory history(settings);
     for (int spp = 20; spp <= 200; spp += 20) {
         const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
@@ -89,9 +90,11 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
     for (int voteSpacing : {0, 40, 80}) {
         const ModelSettings settings = {.k = 4, .m = 25, .votes = 1000, .voteSpacing = voteSpacing};
         const auto model = MakeModel(RandomNetwork(25, {8, 4}, 3), settings);
-        const std::vector<Decision> expected = RunPasses(MakeLearned(model, 20).get(), 20, 600);
+        const std::vector<Decision> expected =
+            RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 600);
         for (int split : {20, 100, 140, 260, 420}) {
-            const auto before = MakeLearned(model, 20), after = MakeLearned(model, 20);
+            const auto before = MakeVoting(LearnedRule(model, 20)),
+                       after = MakeVoting(LearnedRule(model, 20));
             RunPasses(before.get(), 20, split);
             after->Restore(before->Save());
             EXPECT_EQ(after->Save(), before->Save());
@@ -120,12 +123,13 @@ ModelSettings DropSettings(int k) {
 TEST(Learned, GoesOnWithFallsOfEntropies) {
     const ModelSettings settings = DropSettings(3);
     const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
-    const auto whole = MakeLearned(model, 20);
+    const auto whole = MakeVoting(LearnedRule(model, 20));
     EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
     const std::vector<Decision> expected = RunPasses(whole.get(), 20, 1000);
     EXPECT_TRUE(expected.back().value != 1);
     for (const int split : {20, 140, 500}) {
-        const auto before = MakeLearned(model, 20), after = MakeLearned(model, 20);
+        const auto before = MakeVoting(LearnedRule(model, 20)),
+                   after = MakeVoting(LearnedRule(model, 20));
         RunPasses(before.get(), 20, split);
         after->Restore(before->Save());
         EXPECT_EQ(after->Save(), before->Save());
@@ -171,7 +175,7 @@ TEST(Learned, SaysWhatNoiseItWasTold) {
     settings.caution = 1.3;
     const Model model{LastStepNetwork(2, std::log(2 + 0.1)), settings, ""};
     const double limit = UndecidedNoise(model);
-    const auto criterion = MakeLearned(std::make_shared<const Model>(model), 20);
+    const auto criterion = MakeVoting(LearnedRule(std::make_shared<const Model>(model), 20));
     int noisy = 0, clean = 0;
     for (const Decision& decision : RunPasses(criterion.get(), 20, 4000)) {
         ASSERT_EQ(decision.noise.has_value(), decision.judged);
@@ -202,17 +206,17 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
 
 TEST(Learned, RefusesOtherState) {
     const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
-    const auto criterion = MakeLearned(model, 20);
+    const auto criterion = MakeVoting(LearnedRule(model, 20));
     RunPasses(criterion.get(), 20, 100);
     const std::vector<std::byte> state = criterion->Save();
     for (size_t size = 0; size < state.size(); size += 7)
-        EXPECT_THROW(MakeLearned(model, 20)->Restore(std::span(state).first(size)),
+        EXPECT_THROW(MakeVoting(LearnedRule(model, 20))->Restore(std::span(state).first(size)),
                      std::runtime_error);
     std::vector<std::byte> longer = state;
     longer.push_back({});
-    EXPECT_THROW(MakeLearned(model, 20)->Restore(longer), std::runtime_error);
+    EXPECT_THROW(MakeVoting(LearnedRule(model, 20))->Restore(longer), std::runtime_error);
     const auto other = MakeModel(RandomNetwork(100, {8, 4}, 1), {});
-    EXPECT_THROW(MakeLearned(other, 20)->Restore(state), std::runtime_error);
+    EXPECT_THROW(MakeVoting(LearnedRule(other, 20))->Restore(state), std::runtime_error);
 }
 
 TEST(Learned, SurvivesAnyBlock) {
@@ -220,7 +224,7 @@ TEST(Learned, SurvivesAnyBlock) {
     const float infinity = std::numeric_limits<float>::infinity();
     for (float value :
          {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto criterion = MakeLearned(model, 20);
+        const auto criterion = MakeVoting(LearnedRule(model, 20));
         const BlockImage block(41, 57, value);
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision decision = criterion->Observe(block.At(spp));
@@ -239,20 +243,20 @@ TEST(Learned, TakesNonsenseForNoise) {
 
 TEST(Learned, RefusesModelsThatDoNotFit) {
     const Network good = RandomNetwork(25, {4}, 1);
-    EXPECT_NO_THROW(MakeLearned(MakeModel(good, {.m = 25}), 20));
-    EXPECT_NO_THROW(MakeLearned(MakeModel(good, {.m = 25}), 10));
-    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 100}), 20), std::invalid_argument);
-    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 25}), 16), std::invalid_argument);
-    EXPECT_THROW(MakeLearned(MakeModel(good, {.m = 25, .voteSpacing = 30}), 20),
+    EXPECT_NO_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 20)));
+    EXPECT_NO_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 10)));
+    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 100}), 20)), std::invalid_argument);
+    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 16)), std::invalid_argument);
+    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25, .voteSpacing = 30}), 20)),
                  std::invalid_argument);
     Network outputs = good;
     outputs.dense.clear();
-    EXPECT_THROW(MakeLearned(MakeModel(outputs, {.m = 25}), 20), std::invalid_argument);
+    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(outputs, {.m = 25}), 20)), std::invalid_argument);
 }
 
 TEST(Learned, WantsTheSppToIncrease) {
     const auto model = MakeModel(RandomNetwork(25, {4}, 1), {.m = 25});
-    const auto criterion = MakeLearned(model, 20);
+    const auto criterion = MakeVoting(LearnedRule(model, 20));
     const BlockImage block(40, 40, 0.5f);
     criterion->Observe(block.At(40));
     EXPECT_THROW(criterion->Observe(block.At(40)), std::invalid_argument);

@@ -54,7 +54,7 @@ TEST(LNoise, FallsWithTheRootOfTheSamples) {
 }
 
 TEST(LNoise, StopsAfterThreeVotesInARow) {
-    const auto criterion = MakeLightnessNoise(0.5);
+    const auto criterion = MakeVoting(LightnessNoiseRule(0.5));
     EXPECT_EQ(criterion->Need(20), ViewNeed::MeanAndHalf);
     const double noise[] = {0.9, 0.4, 0.4, 0.6, 0.4, 0.4, 0.4};
     const int votes[] = {0, 1, 2, 0, 1, 2, 3};
@@ -69,7 +69,8 @@ TEST(LNoise, StopsAfterThreeVotesInARow) {
 }
 
 TEST(LNoise, GoesOnCountingAfterARestart) {
-    const auto first = MakeLightnessNoise(0.5), second = MakeLightnessNoise(0.5);
+    const auto first = MakeVoting(LightnessNoiseRule(0.5)),
+               second = MakeVoting(LightnessNoiseRule(0.5));
     for (int i = 1; i <= 2; ++i) first->Observe(EvenNoise(0.4).At(20 * i));
     second->Restore(first->Save());
     EXPECT_EQ(second->Save(), first->Save());
@@ -94,7 +95,7 @@ TEST(LNoise, RefusesWhatItCannotJudge) {
     BlockImage image = EvenNoise(0.4);
     BlockView view = image.At(20);
     view.halfMean = {};
-    EXPECT_THROW(MakeLightnessNoise(1)->Observe(view), std::invalid_argument);
+    EXPECT_THROW(MakeVoting(LightnessNoiseRule(1))->Observe(view), std::invalid_argument);
     EXPECT_THROW(VisibleNoise(EvenNoise(0.4, 9, 40).At(20)), std::invalid_argument);
 
     image.mean.assign(image.mean.size(), std::numeric_limits<float>::quiet_NaN());

@@ -39,14 +39,14 @@ TEST(VoteCounter, NeedsVotesInARow) {
     VoteCounter votes{.needed = 3};
     for (double p : {0.1, 0.4999, 0.5}) {
         EXPECT_FALSE(votes.Stops());
-        votes.Cast(p);
+        votes.Cast(p, 0.5);
     }
     EXPECT_EQ(votes.inRow, 0);  // 0.5 is noisy
-    for (double p : {0.0, 0.2}) votes.Cast(p);
+    for (double p : {0.0, 0.2}) votes.Cast(p, 0.5);
     EXPECT_FALSE(votes.Stops());
-    votes.Cast(0.3);
+    votes.Cast(0.3, 0.5);
     EXPECT_TRUE(votes.Stops());
-    votes.Cast(std::numeric_limits<double>::quiet_NaN());
+    votes.Cast(std::numeric_limits<double>::quiet_NaN(), 0.5);
     EXPECT_EQ(votes.inRow, 0);
 }
 

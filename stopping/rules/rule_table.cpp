@@ -1,0 +1,194 @@
+#include "stopping/rules/rule_table.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "stopping/rules/baselines.h"
+#include "stopping/rules/entropy.h"
+#include "stopping/rules/learned.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/rules/thresholds_rule.h"
+
+namespace lull {
+
+namespace {
+
+constexpr double kNoiseLevels[] = {8, 4, 2, 1, 0.7, 0.5, 0.35, 0.25};
+constexpr double kDammertzErrors[] = {0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005, 0.0025};
+constexpr double kCyclesErrors[] = {0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005};
+constexpr double kLuxErrors[] = {0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.04, 0.02};
+
+constexpr Rule kRules[] = {
+    {.name = "learned",
+     .argument = "[:NAME|:MODEL.h5]",
+     .standard = nullptr,
+     .stops = "when a network has said \"no noise\" three times in a row",
+     .need = ViewNeed::MeanAndHalf,
+     .compares = RuleTrend::Probability,
+     .votes = 3,
+     .takesCaution = true,
+     .replay = Replay::Decides,
+     .sweep = {},
+     .make = ReadLearned},
+    {.name = "entropy",
+     .argument = "[:T]",
+     .standard = "0.64",
+     .stops = "when the visible noise, measured by how far SVD-entropy has fallen since half as "
+              "many samples, was below T@ in lightness three times in a row",
+     .need = ViewNeed::Mean,
+     .compares = RuleTrend::Error,
+     .votes = 3,
+     .takesCaution = true,
+     .replay = Replay::Decides,
+     .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01, .choosesMask = true},
+     .make = ReadEntropy},
+    {.name = "dammertz",
+     .argument = "[:T[:area]]",
+     .standard = "0.02",
+     .stops = "when its mean error in square-root brightness is below T@",
+     .need = ViewNeed::MeanAndHalf,
+     .compares = RuleTrend::Error,
+     .votes = 0,
+     .takesCaution = false,
+     .replay = Replay::Decides,
+     .sweep = {.bench = kDammertzErrors, .largest = 1, .least = 1e-4},
+     .make = ReadDammertz},
+    {.name = "cycles",
+     .argument = ":T",
+     .standard = nullptr,
+     .stops = "when no pixel has an error of T or more, as in Blender's Cycles",
+     .need = ViewNeed::MeanAndHalf,
+     .compares = RuleTrend::Error,
+     .votes = 0,
+     .takesCaution = false,
+     .replay = Replay::RanAlong,
+     .sweep = {.bench = kCyclesErrors,
+               .largest = kCyclesThresholds.front(),
+               .least = kCyclesThresholds.back()},
+     .make = ReadCycles},
+    {.name = "luxtile",
+     .argument = ":T",
+     .standard = nullptr,
+     .stops = "when its largest display error is below T, as in LuxCore",
+     .need = ViewNeed::MeanAndHalf,
+     .compares = RuleTrend::Error,
+     .votes = 0,
+     .takesCaution = false,
+     .replay = Replay::Decides,
+     .sweep = {.bench = kLuxErrors, .largest = 1, .least = 1e-4},
+     .make = ReadLuxTile},
+    {.name = "lnoise",
+     .argument = "[:T]",
+     .standard = "0.65",
+     .stops = "when its noise in lightness (0 to 100), reduced where there is texture, was below "
+              "T@ three times in a row",
+     .need = ViewNeed::MeanAndHalf,
+     .compares = RuleTrend::Error,
+     .votes = 3,
+     .takesCaution = true,
+     .replay = Replay::Decides,
+     .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01},
+     .make = ReadLightnessNoise},
+    {.name = "thresholds",
+     .argument = ":FILE[:NAME]",
+     .standard = nullptr,
+     .stops = "at the spp that a row of a thresholds file has for it",
+     .need = ViewNeed::Nothing,
+     .compares = RuleTrend::Samples,
+     .votes = 0,
+     .takesCaution = false,
+     .replay = Replay::Counts,
+     .sweep = {},
+     .make = ReadThresholdsRule},
+    {.name = "fixed",
+     .argument = ":N",
+     .standard = nullptr,
+     .stops = "at N spp",
+     .need = ViewNeed::Nothing,
+     .compares = RuleTrend::Samples,
+     .votes = 0,
+     .takesCaution = false,
+     .replay = Replay::Counts,
+     .sweep = {},
+     .make = ReadFixed}};
+
+// Joins texts as "a, b and c".
+std::string Joined(const std::vector<std::string>& texts) {
+    std::string joined;
+    for (size_t i = 0; i < texts.size(); ++i)
+        joined.append(i == 0 ? "" : i + 1 == texts.size() ? " and " : ", ").append(texts[i]);
+    return joined;
+}
+
+std::string FormOf(const Rule& rule) { return std::string(rule.name).append(rule.argument); }
+
+// Appends the words of a text, in lines of at most `width` that begin with `indent` spaces. The
+// first of them goes on where `to` ends.
+void AppendWrapped(const std::string& text, size_t indent, size_t width, std::string* to) {
+    size_t column = indent;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find(' ', begin), text.size());
+        if (column > indent && column + 1 + (end - begin) > width) {
+            to->append("\n").append(indent, ' ');
+            column = indent;
+        } else if (column > indent) {
+            to->append(" ");
+            ++column;
+        }
+        to->append(text, begin, end - begin);
+        column += end - begin;
+        begin = end + 1;
+    }
+}
+
+}  // namespace
+
+std::span<const Rule> AllRules() { return kRules; }
+
+const Rule* FindRule(std::string_view text) {
+    const auto rule = std::ranges::find(
+        kRules, text.substr(0, std::min(text.find(':'), text.size())), &Rule::name);
+    return rule == std::end(kRules) ? nullptr : rule;
+}
+
+std::string ArgumentOf(std::string_view text) {
+    const size_t colon = text.find(':');
+    if (colon != std::string_view::npos) return std::string(text.substr(colon + 1));
+    const Rule* rule = FindRule(text);
+    return rule && rule->standard ? rule->standard : "";
+}
+
+std::string WhenItStops(const Rule& rule) {
+    std::string text(rule.stops);
+    const size_t at = text.find('@');
+    if (at != std::string::npos) text.replace(at, 1, std::string(" (") + rule.standard + ")");
+    return text;
+}
+
+std::string RuleForms() {
+    std::vector<std::string> forms;
+    for (const Rule& rule : kRules) forms.push_back(FormOf(rule));
+    return Joined(forms);
+}
+
+std::string RuleNames(bool (*which)(const Rule&)) {
+    std::vector<std::string> names;
+    for (const Rule& rule : kRules)
+        if (which(rule)) names.emplace_back(rule.name);
+    return Joined(names);
+}
+
+std::string RuleHelp(size_t width) {
+    size_t indent = 0;
+    for (const Rule& rule : kRules) indent = std::max(indent, FormOf(rule).size() + 4);
+    std::string help;
+    for (const Rule& rule : kRules) {
+        const std::string form = "  " + FormOf(rule);
+        help.append(form).append(indent - form.size(), ' ');
+        AppendWrapped(WhenItStops(rule), indent, width, &help);
+        help += "\n";
+    }
+    return help;
+}
+
+}  // namespace lull

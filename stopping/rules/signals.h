@@ -1,0 +1,21 @@
+// Says what rules are told of a block after a pass, whether it was measured in a render or
+// recorded.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "stopping/network/model_inputs.h"
+
+namespace lull {
+
+// Holds a number for each pixel, row by row.
+struct PixelErrors {
+    int width = 0;
+    std::vector<double> errors = {};
+};
+
+// Nothing but the spp; one number of the block; one of each pixel; what networks are given.
+using Signals = std::variant<std::monostate, double, PixelErrors, BlockMeasures>;
+
+}  // namespace lull
