@@ -61,7 +61,7 @@ struct BlockInfo {
 };
 
 // Measures what a rule looks at in a block.
-using Measure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
+using SignalMeasure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
 
 // Holds what a rule can depend on beside its own text.
 struct RuleContext {
@@ -76,7 +76,7 @@ struct RuleContext {
     NoiseVisibility visibility = {};  // to the rule `entropy`
     // By the name of a rule, what the program measures for it that a BlockView does not show. A
     // rule that needs that is refused where it is missing.
-    std::map<std::string, Measure> measures = {};
+    std::map<std::string, SignalMeasure> measures = {};
 };
 
 struct VotingRule;

@@ -121,7 +121,7 @@ CriterionFactory FactoryOf(VotingRule rule) {
             .voting = shared};
 }
 
-const Measure& SuppliedMeasure(const RuleContext& context, const std::string& rule) {
+const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule) {
     const auto measure = context.measures.find(rule);
     if (measure == context.measures.end())
         throw std::invalid_argument("it looks at more of a block than this program shows it");

@@ -55,7 +55,7 @@ struct VotingRule {
     int votes = 0;     // in a row that stop a block; 0: the first number below the threshold does
     uint32_t tag = 0;  // tells its saved states from those of others; 0: it has nothing to save
     ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
-    Measure measure = {};
+    SignalMeasure measure = {};
     // Returns from a recording what `measure` would have; empty: that is not recorded.
     std::function<Signals(int spp, const RecordedValues& values)> recall = {};
     std::function<std::unique_ptr<Gauge>(const BlockInfo&)> makeGauge = {};
@@ -88,7 +88,7 @@ class Decider {
 CriterionFactory FactoryOf(VotingRule rule);
 
 // Returns what the program measures for a rule. Throws std::invalid_argument if it does not.
-const Measure& SuppliedMeasure(const RuleContext& context, const std::string& rule);
+const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule);
 
 // Makes the criterion of one block.
 std::unique_ptr<Criterion> MakeVoting(std::shared_ptr<const VotingRule> rule,
