@@ -43,6 +43,7 @@ ExitCode Main(Job* job, int argc, char** argv) {
 
     Command command;
     AddRenderCommand(app, &command, job);
+    AddDenoiseCommand(app, &command);
     AddInfoCommand(app, &command);
     AddDatasetCommand(app, &command, job);
     AddTrainCommand(app, &command);

@@ -24,5 +24,6 @@ void AddTrainCommand(CLI::App& app, Command* command);
 void AddEvaluateCommand(CLI::App& app, Command* command);
 void AddSelftestCommand(CLI::App& app, Command* command);
 void AddJudgeCommand(CLI::App& app, Command* command);
+void AddDenoiseCommand(CLI::App& app, Command* command);
 
 }  // namespace lull

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <map>
 
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/scene_options.h"
 #include "renderer/measure/report.h"
@@ -112,8 +113,7 @@ ExitCode RunInfo(const SceneOptions& options) {
     Warnings warnings = MakePrintedWarnings();
     const auto start = std::chrono::steady_clock::now();
     const Description description = LoadDescription(options, warnings);
-    const double parseSeconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double parseSeconds = SecondsSince(start);
     const std::unique_ptr<const Scene> scene = Compile(description, options.compile, warnings);
 
     Line("scene", options.file);

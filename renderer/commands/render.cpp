@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/clock_options.h"
@@ -14,11 +15,14 @@
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/session_options.h"
+#include "renderer/denoise/film_picture.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"
 #include "renderer/ranks/job.h"
+#include "renderer/render/block_denoiser.h"
 #include "renderer/render/half_buffer.h"
+#include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -31,9 +35,10 @@ struct Options {
     GuideOptions guide;
     HalfBuffer halfBuffer = HalfBuffer::Auto;
     std::string output, report;  // empty: as the scene says; none
-    std::string rule = defaultRule;
-    int spp = 0;  // 0: as the rule says
+    std::string rule;            // empty: the default
+    int spp = 0;                 // 0: as the rule says
     AovSet aovs;
+    bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
 };
 
@@ -70,9 +75,9 @@ void AddOptions(CLI::App& app, Options* o) {
             return HasImageExtension(file) ? "" : file + " ends neither in .exr nor in .png";
         })
         ->type_name("OUT.exr");
-    auto* stop = app.add_option("--stop", o->rule, "When blocks stop; see below")
-                     ->type_name("RULE")
-                     ->capture_default_str();
+    auto* stop = app.add_option("--stop", o->rule,
+                                "When blocks stop; see below [learned; with --denoise: denoised]")
+                     ->type_name("RULE");
     AddCautionOption(app, &o->render.caution);
     app.add_option("--spp", o->spp, "Samples per pixel, the same for all: --stop fixed:N")
         ->check(CLI::Range(1, 1 << 24))
@@ -81,6 +86,12 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--report", o->report,
                    "Write what happened to each block: .html to look at, else JSON")
         ->type_name("R.html|R.json");
+    app.add_flag("--denoise", o->denoise,
+                 "Take the noise out of the image, with blocks that stop when it is clean then;\n"
+                 "the EXR has the means of the samples as noisy.R, .G, .B, and the estimated\n"
+                 "standard error of each pixel in lightness as error");
+    app.add_flag("--denoise-layers", o->denoiseLayers,
+                 "Keep in the EXR what `lull denoise` needs to do so later");
     AddGuideOptions(app, &o->guide);
     AddAovOptions(app, &o->aovs);
     AddPictureOptions(app, &o->pictures);
@@ -97,12 +108,18 @@ void AddOptions(CLI::App& app, Options* o) {
 
 // Reads the rule and lets the schedule suit it.
 CriterionFactory ReadRule(const Options& options, const PixelRect& region,
-                          RenderSettings* settings) {
+                          std::shared_ptr<BlockDenoiser>* denoiser, RenderSettings* settings) {
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
     if (settings->cap) settings->schedule.cap = *settings->cap;
     if (const int spp = FixedSpp(options.rule))
         settings->schedule.cap = settings->cap ? std::min(*settings->cap, spp) : spp;
-    const CriterionFactory factory = ReadRule("--stop", options.rule, *settings, region);
+    std::map<std::string, SignalMeasure> measures;
+    if (options.denoise) {
+        *denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(region, settings->schedule));
+        measures[denoisedRuleName] = MeasureOf(*denoiser);
+    }
+    const CriterionFactory factory =
+        ReadRule("--stop", options.rule, *settings, region, std::move(measures));
     settings->schedule.smallestSide = factory.smallestSide;
     return factory;
 }
@@ -170,6 +187,9 @@ void PrintFiles(const RenderFiles& files, const RenderResult& result) {
     if (!files.report.empty()) fmt::print("{}\n", files.report);
 }
 
+// Says whether it collects what a denoiser is shown.
+bool CollectsFeatures(const Options& options) { return options.denoise || options.denoiseLayers; }
+
 bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
 
 // Makes the criteria; for a page, they also keep the curves of each block.
@@ -192,6 +212,7 @@ FilmOptions CheckedFilm(const Options& options, const CriterionFactory& factory,
     const HalfUse use{.rule = LooksAtHalf(factory, settings.schedule) ? factory.rule : "",
                       .clock = !options.clock.Text().empty(),
                       .page = IsHtml(options.report),
+                      .denoiser = CollectsFeatures(options),
                       .checkpoint = !settings.checkpoint.file.empty()};
     const FilmOptions film{.grid = GridOf(settings.schedule),
                            .withHalf = KeepsHalf(options.halfBuffer, use)};
@@ -230,8 +251,22 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (result.timeUp) PrintShortfall(provenance, result);
 }
 
+// Denoises the image, and says how clean it is.
+DenoisedImage MakeDenoised(const NoisyPicture& picture, const PixelRect& region,
+                           const RenderResult& result, bool quiet) {
+    std::vector<Block> blocks;
+    for (const BlockResult& block : result.blocks) blocks.push_back(block.block);
+    const auto start = std::chrono::steady_clock::now();
+    DenoisedImage image = DenoiseImage(picture, region, blocks);
+    if (!quiet)
+        fmt::print(stderr, "denoised in {}; {}\n", FormatDuration(SecondsSince(start)),
+                   TextOf(image.blocks));
+    return image;
+}
+
 ExitCode RunRender(Options options, Job* job) {
     if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
+    if (options.rule.empty()) options.rule = options.denoise ? denoisedRuleName : defaultRule;
     RenderSettings& settings = options.render;
     const bool leads = job->Rank() == 0;  // prints, and has to do with files
     const std::function<double()> clock = StartClock(options.clock);
@@ -239,7 +274,12 @@ ExitCode RunRender(Options options, Job* job) {
     // Check all that can be wrong before the work begins.
     SceneInput input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = false});
     const PixelRect& region = input.region;
-    const CriterionFactory factory = ReadRule(options, region, &settings);
+    std::shared_ptr<BlockDenoiser> denoiser;
+    const CriterionFactory factory = ReadRule(options, region, &denoiser, &settings);
+    if (job->Count() > 1 && options.rule.starts_with(denoisedRuleName))
+        throw Error(
+            "--stop denoised: blocks are denoised by one process; with several ranks give "
+            "another rule, or --spp");
     CheckBlocks(region, settings.schedule, input.warnings);
     const FilmOptions film = CheckedFilm(options, factory, region);
     const RenderFiles files =
@@ -247,7 +287,7 @@ ExitCode RunRender(Options options, Job* job) {
                   !factory.logRatios.empty());
     if (leads) CheckWritable(files, settings.scene.file);
     if (leads) CheckCheckpoint(settings.checkpoint);
-    CheckLayersFit(options.aovs, region);
+    CheckLayersFit(options.aovs, CollectsFeatures(options), region);
     const std::unique_ptr<Display> display = MakeDisplay(
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
     const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
@@ -261,11 +301,13 @@ ExitCode RunRender(Options options, Job* job) {
     how.render.display = display.get();
     how.film = film;
     how.aovs = options.aovs;
+    how.features = CollectsFeatures(options);
     how.guide = options.guide;
     how.checkpoint = settings.checkpoint;
     how.identity = IdentityFor(options, provenance, input.description, *job);
     how.clock = clock;
     Session session(*scene, region, how);
+    if (denoiser) denoiser->Show(&session.TheFilm(), session.Features());
     session.Resume();
     CatchInterrupts();
     if (!session.Learn()) {
@@ -277,9 +319,16 @@ ExitCode RunRender(Options options, Job* job) {
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    session.TheFilm().DropHalf();  // what follows needs the memory
     PrintResult(settings, provenance, result, session.TheFilm());
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
+    std::optional<DenoisedImage> denoised;
+    std::vector<ExrChannel> halves;
+    if (session.Features()) {
+        const NoisyPicture picture = PictureOf(session.TheFilm(), *session.Features(), region);
+        if (options.denoise) denoised = MakeDenoised(picture, region, result, settings.quiet);
+        if (options.denoiseLayers) halves = MakeHalfChannels(picture);
+    }
+    session.TheFilm().DropHalf();  // what follows needs the memory
 
     WriteFiles(files, {{*scene, provenance},
                        session.TheFilm(),
@@ -287,6 +336,8 @@ ExitCode RunRender(Options options, Job* job) {
                        histories,
                        input.warnings,
                        session.Aovs(),
+                       denoised ? &*denoised : nullptr,
+                       halves,
                        input.description,
                        options.pictures.format});
     PrintFiles(files, result);

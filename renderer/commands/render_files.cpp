@@ -45,11 +45,13 @@ void CheckWritable(const RenderFiles& files, const std::string& scene) {
 }
 
 void WriteFiles(const RenderFiles& files, const FinishedRender& render) {
-    const auto& [origin, film, result, histories, warnings, aovs, description, pictures] = render;
+    const auto& [origin, film, result, histories, warnings, aovs, denoised, halves, description,
+                 pictures] = render;
     const Provenance& provenance = origin.provenance;
-    WriteImage({files.exr, files.png}, origin, film, result,
-               aovs ? MakeExtraLayers(*aovs, film, description, origin.scene) : ExtraLayers(),
-               pictures);
+    ExtraLayers extra =
+        aovs ? MakeExtraLayers(*aovs, film, description, origin.scene) : ExtraLayers();
+    extra.channels.insert(extra.channels.end(), halves.begin(), halves.end());
+    WriteImage({files.exr, files.png}, origin, film, denoised, result, std::move(extra), pictures);
     WriteSppMap(files.sppMap, provenance, result);
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
     if (!result.cancelled)

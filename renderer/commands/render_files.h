@@ -28,7 +28,9 @@ struct FinishedRender {
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;
     const Warnings& warnings;
-    const AovFilm* aovs;  // null: no layers
+    const AovFilm* aovs;                    // null: no layers
+    const DenoisedImage* denoised;          // null: the image is the means of the film
+    const std::vector<ExrChannel>& halves;  // what can be denoised later
     const Description& description;
     const PictureFormat& pictures;
 };

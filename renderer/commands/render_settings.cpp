@@ -82,14 +82,16 @@ std::string ModelFolder() {
 }
 
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,
-                          const RenderSettings& settings, const PixelRect& region) try {
+                          const RenderSettings& settings, const PixelRect& region,
+                          std::map<std::string, SignalMeasure> measures) try {
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),
                               .cap = schedule.cap,
                               .sceneName = SceneName(settings.scene.file),
                               .models = ModelFolder(),
-                              .caution = settings.caution};
+                              .caution = settings.caution,
+                              .measures = std::move(measures)};
     return MakeCriterionFactory(rule, context);
 } catch (const std::logic_error& e) {
     throw Error(option + ": " + e.what());

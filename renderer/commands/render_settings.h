@@ -40,9 +40,10 @@ int FixedSpp(const std::string& rule);
 std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
-// Error that a bad rule is.
+// Error that a bad rule is; `measures` are those of RuleContext.
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,
-                          const RenderSettings& settings, const PixelRect& region);
+                          const RenderSettings& settings, const PixelRect& region,
+                          std::map<std::string, SignalMeasure> measures = {});
 
 // Says from what an image is made; the rule is left to be filled in.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);

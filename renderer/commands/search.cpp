@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
@@ -15,10 +16,6 @@ namespace lull {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Shows how far the search is, and how long it will take.
 class SearchPrinter {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "renderer/base/error.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/output/progress.h"
@@ -22,10 +23,6 @@ struct SelftestOptions {
     std::string model = ModelFolder() + "/" + defaultModelName + ".h5";
     bool markdown = false;
 };
-
-double SecondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Shows which case is running, on terminals.
 void ShowProgress(size_t done, size_t all, const std::string& name, double seconds) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/seconds_since.h"
+
 namespace lull {
 
 void TrainingPrinter::Begin(const std::string& about, const TrainingProgress& progress) {
@@ -11,9 +13,7 @@ void TrainingPrinter::Begin(const std::string& about, const TrainingProgress& pr
     nextReport = 0;
 }
 
-double TrainingPrinter::Seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+double TrainingPrinter::Seconds() const { return SecondsSince(start); }
 
 bool TrainingPrinter::IsDue() const {
     return style != ProgressStyle::Silent && Seconds() >= nextReport;

@@ -6,14 +6,14 @@ namespace lull {
 
 namespace {
 
-constexpr PatchOptions kPatches{.radius = 5, .patchRadius = 3};
-constexpr float kLeastVariance = 1e-6f;  // below it noise is of no importance
+constexpr PatchOptions kFeaturePatches{.radius = 5, .patchRadius = 3};
+constexpr float kLeastFeatureVariance = 1e-6f;  // below it noise is of no importance
 
 // Adds half of what the weights of `guide` make of `image`.
-void AddFiltered(const Planes& image, const Guide& guide, Planes* result) {
-    ForEachTile(image.width, image.height, [&](const Tile& tile) {
-        const PatchWeights weights(guide, tile, 0, kPatches);
-        const Cutout values(tile.Grown(kPatches.radius), image);
+void AddFiltered(const Planes& image, const PatchGuide& guide, Planes* result) {
+    ForEachTile(image.width, image.height, [&](const ImageTile& tile) {
+        const PatchWeights weights(guide, tile, 0, kFeaturePatches);
+        const Cutout values(tile.Grown(kFeaturePatches.radius), image);
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; x += kLanes) {
                 Lanes norm = Lanes::Zero();
@@ -43,7 +43,7 @@ Planes FilterFeatures(const Planes& a, const Planes& b) {
         variance.values[i] = difference * difference / 2;
     }
     variance = BoxMean(std::move(variance), 1);
-    for (float& v : variance.values) v += kLeastVariance;
+    for (float& v : variance.values) v += kLeastFeatureVariance;
     Planes result(a.width, a.height, a.count);
     AddFiltered(a, {b, variance}, &result);
     AddFiltered(b, {a, variance}, &result);

@@ -6,14 +6,9 @@ namespace lull {
 
 namespace {
 
-constexpr int kColours = 3;
 constexpr int kScaleRadius = 4;    // pixels, over which differences are measured
 constexpr int kSpreadRadius = 20;  // of each of two box filters, one after the other
 constexpr int kRounds = 2;         // as fireflies hide each other
-
-float LuminanceOf(const Planes& p, size_t i) {
-    return 0.212671f * p.Plane(0)[i] + 0.715160f * p.Plane(1)[i] + 0.072169f * p.Plane(2)[i];
-}
 
 // Returns the largest luminance of each pixel and its eight neighbours.
 Planes MostAround(const Planes& image) {

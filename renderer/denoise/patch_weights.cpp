@@ -13,26 +13,26 @@ std::vector<PatchWeights::Offset> WindowOffsets(int radius) {
 
 }  // namespace
 
-PatchWeights::PatchWeights(const Guide& guide, const Tile& tile, int margin,
+PatchWeights::PatchWeights(const PatchGuide& guide, const ImageTile& tile, int margin,
                            const PatchOptions& options)
     : offsets(WindowOffsets(options.radius)),
       halfCount(int(offsets.size()) / 2),
       distances(tile.Grown(margin + options.radius), halfCount),
       inside(distances.Area(), 1) {
-    const Tile& area = inside.Area();
+    const ImageTile& area = inside.Area();
     for (int y = area.y0; y < area.y1; ++y)
         for (int x = area.x0; x < area.x1; ++x)
             *inside.At(0, x, y) =
                 x >= 0 && x < guide.image.width && y >= 0 && y < guide.image.height ? 1.f : 0.f;
 
-    const Tile around = area.Grown(options.radius + options.patchRadius);
+    const ImageTile around = area.Grown(options.radius + options.patchRadius);
     const Cutout image(around, guide.image), variance(around, guide.variance);
     for (int o = 0; o < halfCount; ++o) Measure(image, variance, options.patchRadius, o);
 }
 
 void PatchWeights::Measure(const Cutout& guide, const Cutout& variance, int patchRadius, int o) {
     const auto [dx, dy] = offsets[size_t(o)];
-    const Tile& area = distances.Area();
+    const ImageTile& area = distances.Area();
     const int side = 2 * patchRadius + 1;
     const int length = area.x1 - area.x0 + kLanes;  // of the rows that are wanted
     const int longer = length + 2 * patchRadius;

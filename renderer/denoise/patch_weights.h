@@ -9,7 +9,7 @@
 namespace lull {
 
 // Holds an image that pixels are compared by, and the variance of each of its values.
-struct Guide {
+struct PatchGuide {
     const Planes& image;
     const Planes& variance;
 };
@@ -29,7 +29,7 @@ class PatchWeights {
     };
 
     // Pixels up to `margin` outside of the tile can be asked for.
-    PatchWeights(const Guide&, const Tile&, int margin, const PatchOptions&);
+    PatchWeights(const PatchGuide&, const ImageTile&, int margin, const PatchOptions&);
 
     // The offsets of a window, row by row.
     const std::vector<Offset>& Offsets() const { return offsets; }

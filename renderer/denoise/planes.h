@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "renderer/base/color.h"
+
 namespace lull {
 
 // Holds `count` channels of width x height values, channel by channel, row by row from the top.
@@ -22,6 +24,13 @@ struct Planes {
     float* Row(int c, int y) { return Plane(c) + size_t(y) * size_t(width); }
     const float* Row(int c, int y) const { return Plane(c) + size_t(y) * size_t(width); }
 };
+
+inline constexpr int kColours = 3;  // R, G, B
+
+// Returns the luminance of pixel i of an image with channels R, G, B.
+inline float LuminanceOf(const Planes& image, size_t i) {
+    return Luminance(Rgb(image.Plane(0)[i], image.Plane(1)[i], image.Plane(2)[i]));
+}
 
 // Return the mean or the sum of each channel over the (2 radius + 1)^2 pixels around, those within
 // the image.

@@ -48,13 +48,13 @@ void Solve(Moments* moments, Products* products) {
 class TileFits {
   public:
     TileFits(const Cutout& colour, const Cutout& features, const PatchWeights& weights,
-             const Tile& tile, int radius, float bandwidth)
+             const ImageTile& tile, int radius, float bandwidth)
         : features(features),
           weights(weights),
           bandwidth(bandwidth),
           scale(1 / float(radius)),
           fits(tile.Grown(radius), kUnknowns * kColours) {
-        const Tile& area = fits.Area();
+        const ImageTile& area = fits.Area();
         for (int y = area.y0; y < area.y1; ++y)
             for (int x = area.x0; x < area.x1; x += kLanes) Fit(colour, x, y);
     }
@@ -127,11 +127,11 @@ class TileFits {
 
 }  // namespace
 
-std::vector<Planes> Regress(const Planes& colour, const Planes& features, const Guide& guide,
+std::vector<Planes> Regress(const Planes& colour, const Planes& features, const PatchGuide& guide,
                             const PatchOptions& options, std::span<const float> bandwidths) {
     std::vector<Planes> pictures(bandwidths.size(), Planes(colour.width, colour.height, kColours));
-    ForEachTile(colour.width, colour.height, [&](const Tile& tile) {
-        const Tile around = tile.Grown(2 * options.radius);
+    ForEachTile(colour.width, colour.height, [&](const ImageTile& tile) {
+        const ImageTile around = tile.Grown(2 * options.radius);
         const Cutout colours(around, colour), values(around, features);
         const PatchWeights weights(guide, tile, options.radius, options);
         for (size_t b = 0; b < bandwidths.size(); ++b) {

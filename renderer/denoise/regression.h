@@ -10,14 +10,13 @@
 
 namespace lull {
 
-inline constexpr int kColours = 3;   // R, G, B
 inline constexpr int kFeatures = 7;  // albedo R, G, B, normal X, Y, Z, 1 / depth
 
 // Returns for each bandwidth what the features make of `colour`. Weights are those of the guide
 // (PatchWeights::Of), which is the other half of the samples, so that they do not depend on the
 // noise of what is fitted. All images are of one size, and finite. The same bits for any number of
 // threads.
-std::vector<Planes> Regress(const Planes& colour, const Planes& features, const Guide&,
+std::vector<Planes> Regress(const Planes& colour, const Planes& features, const PatchGuide&,
                             const PatchOptions&, std::span<const float> bandwidths);
 
 }  // namespace lull

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Core>
 
@@ -15,10 +16,12 @@ using LanesIn = Eigen::Map<const Lanes>;
 inline void Store(const Lanes& values, float* to) { Eigen::Map<Lanes>{to} = values; }
 
 // Holds the pixels [x0, x1) x [y0, y1).
-struct Tile {
+struct ImageTile {
     int x0, y0, x1, y1;
 
-    Tile Grown(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
+    ImageTile Grown(int margin) const {
+        return {x0 - margin, y0 - margin, x1 + margin, y1 + margin};
+    }
 };
 
 // Calls use(tile) for the tiles of an image, in any order, on all threads. How an image is cut
@@ -27,9 +30,12 @@ template <typename Use>
 void ForEachTile(int width, int height, const Use& use) {
     constexpr int side = 128;
     const int columns = (width + side - 1) / side, rows = (height + side - 1) / side;
-    tbb::parallel_for(0, columns * rows, [&](int i) {
-        const int x = i % columns * side, y = i / columns * side;
-        use(Tile{x, y, std::min(x + side, width), std::min(y + side, height)});
+    // Isolated, so that a thread that waits here takes up no other task of a render.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(0, columns * rows, [&](int i) {
+            const int x = i % columns * side, y = i / columns * side;
+            use(ImageTile{x, y, std::min(x + side, width), std::min(y + side, height)});
+        });
     });
 }
 
@@ -37,9 +43,9 @@ void ForEachTile(int width, int height, const Use& use) {
 // past their end; where the tile lies beyond the image, the border is repeated.
 class Cutout {
   public:
-    Cutout(const Tile& tile, int count)
+    Cutout(const ImageTile& tile, int count)
         : tile(tile), planes(tile.x1 - tile.x0 + 4 * kLanes, tile.y1 - tile.y0, count) {}
-    Cutout(const Tile& tile, const Planes& image) : Cutout(tile, image.count) {
+    Cutout(const ImageTile& tile, const Planes& image) : Cutout(tile, image.count) {
         for (int c = 0; c < image.count; ++c)
             for (int y = 0; y < planes.height; ++y) {
                 const float* from = image.Row(c, std::clamp(tile.y0 + y, 0, image.height - 1));
@@ -54,11 +60,11 @@ class Cutout {
     const float* At(int c, int x, int y) const {
         return planes.Row(c, y - tile.y0) + (x - tile.x0);
     }
-    const Tile& Area() const { return tile; }
+    const ImageTile& Area() const { return tile; }
     int Count() const { return planes.count; }
 
   private:
-    Tile tile;
+    ImageTile tile;
     Planes planes;
 };
 

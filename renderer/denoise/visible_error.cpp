@@ -13,10 +13,6 @@ constexpr int kSide = 10;         // sub-blocks a side
 constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = 5;  // pixels
 
-float LuminanceOf(const Planes& p, size_t i) {
-    return 0.212671f * p.Plane(0)[i] + 0.715160f * p.Plane(1)[i] + 0.072169f * p.Plane(2)[i];
-}
-
 // Returns L, in [0, 100], and the slope by which luminance changes it: 0 above white.
 struct LightnessAt {
     float lightness, slope;
@@ -32,7 +28,7 @@ LightnessAt LightnessOf(float y) {
 struct Sums {
     double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
 
-    void Add(const LightnessError& error, size_t i) {
+    void Add(const EstimatedError& error, size_t i) {
         const double l = error.lightness.values[i], d = error.deviation.values[i];
         ++count;
         lightness += l;
@@ -53,9 +49,9 @@ struct Sums {
 
 }  // namespace
 
-LightnessError MeasureError(const DenoisedPicture& denoised) {
+EstimatedError MeasureError(const DenoisedPicture& denoised) {
     const auto square = [](float x) { return x * x; };
-    LightnessError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
+    EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
     error.squared = error.deviation = error.least = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
         const LightnessAt at = LightnessOf(LuminanceOf(denoised.picture, i));
@@ -76,7 +72,7 @@ LightnessError MeasureError(const DenoisedPicture& denoised) {
     return error;
 }
 
-VisibleError MeasureVisibleError(const LightnessError& error, int x0, int y0, int x1, int y1) {
+VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, int x1, int y1) {
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
     double squared = 0, variance = 0, least = 0;
     for (size_t v = 0; v < kSide; ++v)
@@ -99,7 +95,7 @@ VisibleError MeasureVisibleError(const LightnessError& error, int x0, int y0, in
     return result;
 }
 
-Planes StandardError(const LightnessError& error) {
+Planes StandardError(const EstimatedError& error) {
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)

@@ -7,13 +7,13 @@ namespace lull {
 
 // Holds what is known, pixel by pixel, of the squared error in lightness L (0 to 100) of a denoised
 // picture as a display shows it.
-struct LightnessError {
+struct EstimatedError {
     Planes lightness;  // of the picture
     Planes squared;    // an estimate of it without bias (see candidates.h), and very noisy
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // what the halves of the denoised picture differ by: what still changes
 };
-LightnessError MeasureError(const DenoisedPicture&);
+EstimatedError MeasureError(const DenoisedPicture&);
 
 // Holds the visible error of a block: the root mean square, over its 10 x 10 sub-blocks, of the
 // error in lightness, times what an observer sees of a difference there (NoiseVisibility: flare and
@@ -25,9 +25,9 @@ struct VisibleError {
 };
 
 // Measures the pixels [x0, x1) x [y0, y1), at least 10 a side.
-VisibleError MeasureVisibleError(const LightnessError&, int x0, int y0, int x1, int y1);
+VisibleError MeasureVisibleError(const EstimatedError&, int x0, int y0, int x1, int y1);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around.
-Planes StandardError(const LightnessError&);
+Planes StandardError(const EstimatedError&);
 
 }  // namespace lull

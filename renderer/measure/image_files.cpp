@@ -14,7 +14,7 @@ constexpr const char* kFilmic = "filmic (Hable 2010)";
 // Says whether a channel is a colour or a direction, to which 11 bits do no harm.
 bool MayBeHalf(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
-           name.starts_with("N.");
+           name.starts_with("N.") || name.starts_with("noisy.");
 }
 
 // Makes the header of an image of a region of the film, with channels R, G, B and spp.
@@ -137,13 +137,20 @@ RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
 }  // namespace
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
-                const RenderResult& result, ExtraLayers extra, const PictureFormat& format) {
+                const DenoisedImage* denoised, const RenderResult& result, ExtraLayers extra,
+                const PictureFormat& format) {
     ExrImage exr = MakeExr(origin, film, result);
+    if (denoised) {
+        std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
+                          std::back_inserter(exr.channels));
+        exr.attributes["denoised"] = kDenoisedNote;
+    }
     std::ranges::move(extra.channels, std::back_inserter(exr.channels));
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, format);
-    WriteExr(files.exr, exr, MeansOf(film), SppOf(film));
-    WritePng(files.png, MeansOf(film), film.Region().Width(), film.Region().Height(),
+    const RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
+    WriteExr(files.exr, exr, colours, SppOf(film));
+    WritePng(files.png, colours, film.Region().Width(), film.Region().Height(),
              MakePngFormat(format, origin.scene.film.exposure));
 }
 

@@ -1,6 +1,7 @@
 // Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
 #pragma once
 
+#include "renderer/measure/denoised_image.h"
 #include "renderer/measure/extra_layers.h"
 #include "renderer/measure/image_error.h"
 #include "renderer/output/png_format.h"
@@ -28,10 +29,11 @@ struct PictureOrigin {
     const Provenance& provenance;
 };
 
-// Writes the image of a render, each file whole or not at all; the EXR has `extra` as well. Throws
-// Error.
-void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const RenderResult&,
-                ExtraLayers extra, const PictureFormat&);
+// Writes the image of a render, each file whole or not at all: the means of the film or, where
+// there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
+// Throws Error.
+void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
+                const RenderResult&, ExtraLayers extra, const PictureFormat&);
 
 // Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
 struct ImageOfBlocks {

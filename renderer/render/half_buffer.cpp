@@ -17,6 +17,7 @@ bool KeepsHalf(HalfBuffer choice, const HalfUse& use) {
     const std::string user = !use.rule.empty() ? "the rule " + use.rule
                              : use.clock       ? "a clock"
                              : use.page        ? "a page with curves"
+                             : use.denoiser    ? "a denoiser"
                                                : "";
     if (choice == HalfBuffer::Off && !user.empty())
         throw Error("--half-buffer off: " + user + " needs the mean of half of the samples");

@@ -12,7 +12,7 @@ enum class HalfBuffer { Auto, On, Off };
 // Says who looks at the half.
 struct HalfUse {
     std::string rule;  // empty: the rule does not
-    bool clock = false, page = false;
+    bool clock = false, page = false, denoiser = false;
     bool checkpoint = false;  // nobody does, but whoever goes on from it may
 };
 

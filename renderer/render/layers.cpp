@@ -1,5 +1,7 @@
 #include "renderer/render/layers.h"
 
+#include <cstring>
+
 #include "renderer/base/error.h"
 
 namespace lull {
@@ -7,6 +9,8 @@ namespace lull {
 namespace {
 
 constexpr int kAovSums = 11;  // of a pixel
+constexpr size_t kFeatureSums = sizeof(FeaturePixel) / sizeof(float);
+static_assert(kFeatureSums * sizeof(float) == sizeof(FeaturePixel));
 
 // Calls visit(place) for the pixels of a rectangle, row by row.
 template <typename Visit>
@@ -60,35 +64,79 @@ void ReadAovs(const Hdf5Group& group, const PixelRect& rect, AovFilm* aovs) {
     });
 }
 
+// Returns the pixels of a rectangle, row by row.
+std::vector<FeaturePixel> CopyOf(const FeatureFilm& features, const PixelRect& rect) {
+    std::vector<FeaturePixel> pixels;
+    pixels.reserve(size_t(rect.Area()));
+    ForEachPlace(rect, [&](const Vec2i& p) { pixels.push_back(features.At(p)); });
+    return pixels;
+}
+
+void SetPixels(const std::vector<FeaturePixel>& pixels, const PixelRect& rect,
+               FeatureFilm* features) {
+    size_t i = 0;
+    ForEachPlace(rect, [&](const Vec2i& p) { features->At(p) = pixels[i++]; });
+}
+
+std::array<int64_t, 3> FeatureShape(const PixelRect& rect) {
+    return {rect.Height(), rect.Width(), int64_t(kFeatureSums)};
+}
+
+void WriteFeatures(Hdf5Group& group, const PixelRect& rect, const FeatureFilm& features) {
+    const std::vector<FeaturePixel> pixels = CopyOf(features, rect);
+    std::vector<float> sums(pixels.size() * kFeatureSums);
+    std::memcpy(sums.data(), pixels.data(), sums.size() * sizeof(float));
+    group.AddArray<float>("feature_sums", FeatureShape(rect), sums);
+}
+
+void ReadFeatures(const Hdf5Group& group, const PixelRect& rect, FeatureFilm* features) {
+    const std::vector<float> sums = group.Array<float>("feature_sums", FeatureShape(rect));
+    std::vector<FeaturePixel> pixels(size_t(rect.Area()));
+    std::memcpy(static_cast<void*>(pixels.data()), sums.data(), sums.size() * sizeof(float));
+    SetPixels(pixels, rect, features);
+}
+
 }  // namespace
 
 PathSample Layers::Take(Sampler& sampler, const Vec2i& pixel, uint32_t index) const {
     FirstHit firstHit;
     const PathSample sample = source(sampler, pixel, index, &firstHit);
-    aovs->At(pixel).Add(firstHit, sample.radiance);
+    if (aovs) aovs->At(pixel).Add(firstHit, sample.radiance);
+    if (features) features->At(pixel).Add(firstHit, sample.radiance, InHalf(index));
     return sample;
 }
 
 void PutLayers(const Layers& layers, const PixelRect& rect, StateWriter* writer) {
-    if (!layers) return;
-    std::vector<AovPixel> pixels;
-    layers.aovs->Copy(rect, &pixels);
-    writer->PutAll(std::span<const AovPixel>(pixels));
+    if (layers.aovs) {
+        std::vector<AovPixel> pixels;
+        layers.aovs->Copy(rect, &pixels);
+        writer->PutAll(std::span<const AovPixel>(pixels));
+    }
+    if (layers.features)
+        writer->PutAll(std::span<const FeaturePixel>(CopyOf(*layers.features, rect)));
 }
 
 void GetLayers(StateReader* reader, const PixelRect& rect, const Layers& layers) {
-    if (!layers) return;
-    std::vector<AovPixel> pixels(size_t(rect.Area()));
-    reader->GetAll(std::span(pixels));
-    layers.aovs->Set(pixels.data(), rect);
+    if (layers.aovs) {
+        std::vector<AovPixel> pixels(size_t(rect.Area()));
+        reader->GetAll(std::span(pixels));
+        layers.aovs->Set(pixels.data(), rect);
+    }
+    if (layers.features) {
+        std::vector<FeaturePixel> pixels(size_t(rect.Area()));
+        reader->GetAll(std::span(pixels));
+        SetPixels(pixels, rect, layers.features);
+    }
 }
 
 void WriteLayers(const Layers& layers, const PixelRect& rect, Hdf5Group* group) {
-    if (layers) WriteAovs(*group, rect, *layers.aovs);
+    if (layers.aovs) WriteAovs(*group, rect, *layers.aovs);
+    if (layers.features) WriteFeatures(*group, rect, *layers.features);
 }
 
 void ReadLayers(const Hdf5Group& group, const PixelRect& rect, const Layers& layers) {
-    if (layers) ReadAovs(group, rect, layers.aovs);
+    if (layers.aovs) ReadAovs(group, rect, layers.aovs);
+    if (layers.features) ReadFeatures(group, rect, layers.features);
 }
 
 }  // namespace lull

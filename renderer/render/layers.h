@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "renderer/output/aov_film.h"
+#include "renderer/output/feature_film.h"
 #include "renderer/transport/path_tracer.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
@@ -24,10 +24,16 @@ AovSource AovSamplesOf(const Scene&, Estimator, const AovSet& wanted);
 AovSource AovSamplesOf(const Scene&, const Guide&, const AovSet& wanted);
 
 struct Layers {
-    AovFilm* aovs = nullptr;  // of the film's region; null: nothing is collected
-    AovSource source = {};    // where the samples of film and layers come from then
+    // Of the film's region; null: not collected.
+    AovFilm* aovs = nullptr;
+    FeatureFilm* features = nullptr;  // what a denoiser is shown
+    AovSource source = {};            // where the samples of film and layers come from then
 
-    explicit operator bool() const { return aovs; }
+    explicit operator bool() const { return aovs || features; }
+    // Says whether they are of this region.
+    bool AreOf(const PixelRect& region) const {
+        return (!aovs || aovs->Region() == region) && (!features || features->Region() == region);
+    }
     // Takes the next sample of a pixel and adds it to the layers, of which there are some.
     PathSample Take(Sampler&, const Vec2i& pixel, uint32_t index) const;
 };

@@ -34,7 +34,7 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
     if (interrupted && !Executor::Fits(*interrupted, film->Region(), options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-    if (options.layers && !(options.layers.aovs->Region() == film->Region()))
+    if (!options.layers.AreOf(film->Region()))
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");

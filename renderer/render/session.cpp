@@ -15,6 +15,8 @@ namespace lull {
 
 namespace {
 
+constexpr int64_t kDenoiserBytes = 320;  // a pixel, while it works
+
 template <typename... Arguments>
 void Tell(const std::function<void(const std::string&)>& listener,
           fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -35,20 +37,27 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
     return {.file = file, .interval = interval, .resume = std::filesystem::exists(file)};
 }
 
-void CheckLayersFit(const AovSet& wanted, const PixelRect& region) {
-    if (!wanted.Any()) return;
-    constexpr int64_t kBytes = sizeof(AovPixel) + 2 * 13 * sizeof(float);
-    CheckMemory(region.Area() * kBytes,
+void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
+    // With what is made of them in the end.
+    const int64_t bytes = (wanted.Any() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) +
+                          (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0);
+    CheckMemory(region.Area() * bytes,
                 fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
                 "render it in parts with --crop, or smaller with --resolution");
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
     : scene(scene), region(region), options(std::move(given)), film(region, options.film) {
-    if (!options.aovs.Any()) return;
-    aovs.emplace(region, options.aovs);
-    options.render.layers.aovs = &*aovs;
-    options.identity["aov"] = TextOf(options.aovs);
+    if (options.aovs.Any()) {
+        aovs.emplace(region, options.aovs);
+        options.render.layers.aovs = &*aovs;
+        options.identity["aov"] = TextOf(options.aovs);
+    }
+    if (options.features) {
+        features.emplace(region);
+        options.render.layers.features = &*features;
+        options.identity["features"] = "yes";
+    }
 }
 
 bool Session::Leads() const { return !options.render.peers || options.render.peers->Rank() == 0; }
@@ -130,12 +139,19 @@ RenderResult Session::Run(const RenderFunction& render) {
 
 void Session::SetSources() {
     Layers& layers = options.render.layers;
+    AovSet wanted = options.aovs;
+    if (options.features) {
+        // A denoiser does best with what is seen in mirrors and through glass; layers, which are of
+        // the same hits, come first.
+        if (!options.aovs.Any()) wanted.throughSpecular = true;
+        wanted.albedo = wanted.normal = wanted.depth = true;
+    }
     if (learning.figures.isUsed) {
         source = SamplesOf(scene, learning.guide);
-        if (layers) layers.source = AovSamplesOf(scene, learning.guide, options.aovs);
+        if (layers) layers.source = AovSamplesOf(scene, learning.guide, wanted);
     } else {
         source = SamplesOf(scene, options.estimator);
-        if (layers) layers.source = AovSamplesOf(scene, options.estimator, options.aovs);
+        if (layers) layers.source = AovSamplesOf(scene, options.estimator, wanted);
     }
 }
 

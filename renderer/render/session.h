@@ -26,15 +26,16 @@ void CheckCheckpoint(const CheckpointOptions&);
 // Returns the options of a render that goes on from the file without being told to.
 CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 
-// Throws Error where the memory cannot hold such layers.
-void CheckLayersFit(const AovSet& wanted, const PixelRect& region);
+// Throws Error where the memory cannot hold such layers, or features.
+void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
 
 struct SessionOptions {
     // The session itself sets `layers`, `secondsLeft`, `onCheckpoint` and `checkpointInterval`.
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
-    AovSet aovs;  // layers beside the film
+    AovSet aovs;            // layers beside the film
+    bool features = false;  // what a denoiser is shown; the film has to keep its half
     GuideOptions guide;
     CheckpointOptions checkpoint;
     // What decides the pixels, for checkpoints and for ranks, which have to agree on it; the
@@ -73,7 +74,8 @@ class Session {
     // Says whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& TheFilm() { return film; }
-    const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }  // null: none
+    const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
+    const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
     const GuideFigures& Guidance() const { return learning.figures; }
     // Return what was rendered, and how.
     const SampleSource& Source() const { return source; }
@@ -92,6 +94,7 @@ class Session {
     SessionOptions options;
     Film film;
     std::optional<AovFilm> aovs;
+    std::optional<FeatureFilm> features;
     std::optional<RenderState> interrupted;
     Learning learning;
     std::vector<std::byte> guide;  // what was learned, for checkpoints

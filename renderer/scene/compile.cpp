@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "renderer/base/seconds_since.h"
+
 namespace lull {
 namespace {
 
@@ -12,7 +14,7 @@ template <typename Work>
 double Timed(const Work& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return SecondsSince(start);
 }
 
 void ReadSampler(const Entity& entity, Scene* scene, Warnings& warnings) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "stopping/rules/baselines.h"
+#include "stopping/rules/denoised.h"
 #include "stopping/rules/entropy.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/lnoise.h"
@@ -89,6 +90,19 @@ constexpr Rule kRules[] = {
      .replay = Replay::Decides,
      .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01},
      .make = ReadLightnessNoise},
+    {.name = denoisedRuleName,
+     .argument = "[:T]",
+     .standard = "0.64",
+     .stops = "when the error that is visible once it is denoised was probably below T@ in "
+              "lightness at two looks in a row, each at 1.4 times the samples of the one before; "
+              "the default with --denoise",
+     .need = ViewNeed::Nothing,
+     .compares = RuleTrend::Error,
+     .votes = 2,
+     .takesCaution = true,
+     .replay = Replay::Unknown,
+     .sweep = {},
+     .make = ReadDenoised},
     {.name = "thresholds",
      .argument = ":FILE[:NAME]",
      .standard = nullptr,

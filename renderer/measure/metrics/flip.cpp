@@ -19,7 +19,7 @@ using Triple = std::array<double, 3>;
 constexpr double qc = 0.7, pc = 0.4, pt = 0.95, w = 0.082, qf = 0.5;
 
 // Holds one colour at each pixel, a plane a component.
-using Planes = std::array<std::vector<float>, 3>;
+using ColourPlanes = std::array<std::vector<float>, 3>;
 
 constexpr double kXyzFromRgb[3][3] = {{0.4123866, 0.3575915, 0.1804505},
                                       {0.2126369, 0.7151830, 0.0721801},
@@ -49,10 +49,10 @@ Triple RelativeFromYcxcz(const Triple& c) {
     return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
-Planes OpponentPlanes(std::span<const uint8_t> srgb) {
+ColourPlanes OpponentPlanes(std::span<const uint8_t> srgb) {
     std::array<double, 256> linear;
     for (int i = 0; i < 256; ++i) linear[i] = DecodeSrgb(i / 255.0);
-    Planes planes;
+    ColourPlanes planes;
     for (std::vector<float>& plane : planes) plane.reserve(srgb.size() / 3);
     for (size_t i = 0; i < srgb.size(); i += 3) {
         Triple xyz =
@@ -122,7 +122,7 @@ double RemapColour(double distance) {
 }
 
 // Filters for contrast and returns the colours that are seen, in HuntLab.
-std::vector<Triple> SeenColours(const Planes& planes, int width, int height, double ppd) {
+std::vector<Triple> SeenColours(const ColourPlanes& planes, int width, int height, double ppd) {
     const std::array<std::vector<float>, 3> seen = {
         FilterByContrast(planes[0], width, height, {1, 0}, {0.0047, 1e-5}, ppd),
         FilterByContrast(planes[1], width, height, {1, 0}, {0.0053, 1e-5}, ppd),
@@ -182,7 +182,7 @@ double DefaultPixelsPerDegree() { return 0.7 * 3840 / 0.7 * std::numbers::pi / 1
 
 std::vector<float> FlipMap(std::span<const uint8_t> image, std::span<const uint8_t> reference,
                            int width, int height, double ppd) {
-    const Planes planes[2] = {OpponentPlanes(image), OpponentPlanes(reference)};
+    const ColourPlanes planes[2] = {OpponentPlanes(image), OpponentPlanes(reference)};
     const std::vector<Triple> colours[2] = {SeenColours(planes[0], width, height, ppd),
                                             SeenColours(planes[1], width, height, ppd)};
     const Features features[2] = {FindFeatures(planes[0][0], width, height, ppd),

@@ -51,7 +51,7 @@ TEST(VisibleError, IsKnownWithoutAReference) {
 TEST(VisibleError, IsNothingWhereNothingIsWrong) {
     const Planes truth(50, 50, 3, 0.3f);
     const DenoisedPicture denoised = Denoise(AddNoise(truth, FlatFeatures(50, 50), 0, 1));
-    const LightnessError error = MeasureError(denoised);
+    const EstimatedError error = MeasureError(denoised);
     EXPECT_LT(MeasureVisibleError(error, 0, 0, 50, 50).upper, 0.02);
     for (const float e : StandardError(error).values) EXPECT_LT(e, 0.02f);
 }
@@ -72,7 +72,7 @@ TEST(VisibleError, IsThatOfTheBlock) {
                 noisy.colour.a.Row(c, y)[x] = more.colour.a.Row(c, y)[x];
                 noisy.colour.b.Row(c, y)[x] = more.colour.b.Row(c, y)[x];
             }
-    const LightnessError error = MeasureError(Denoise(noisy));
+    const EstimatedError error = MeasureError(Denoise(noisy));
     EXPECT_LT(MeasureVisibleError(error, 0, 0, 100, 100).upper, 0.05);
     EXPECT_GT(MeasureVisibleError(error, 120, 0, 200, 100).upper, 0.1);
 }

@@ -1,0 +1,136 @@
+// `lull denoise`: takes the noise out of pictures that are rendered already.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "renderer/base/error.h"
+#include "renderer/base/seconds_since.h"
+#include "renderer/commands/command.h"
+#include "renderer/denoise/film_picture.h"
+#include "renderer/measure/denoised_image.h"
+#include "renderer/output/file_io.h"
+#include "renderer/output/progress.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    std::string input, half, output;
+    int blockSize = 200;
+    bool quiet = false;
+};
+
+constexpr const char* kFooter =
+    R"(IN.exr holds what `lull render --denoise-layers` has kept: both halves of the samples with their
+features. Pictures of other renderers can be denoised too: two renders of the same with different
+seeds, each of half of the samples, with R, G, B and, for sharp results, albedo.R .G .B, N.X .Y .Z
+and Z.
+
+OUT.exr has R, G, B denoised, the mean of the samples as noisy.R .G .B, the estimated standard error
+of each pixel in lightness (0 to 100) as error, and the other channels of IN.exr; OUT.png is written
+beside it.
+
+Examples:
+  lull render scene.pbrt --spp 128 --denoise-layers -o image.exr
+  lull denoise image.exr                                  # writes image.denoised.exr and .png
+  lull denoise a.exr --half b.exr -o clean.exr
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+
+// Says whether a channel is one that the denoised picture does without or has anew.
+bool IsReplaced(const std::string& name) {
+    return name == "R" || name == "G" || name == "B" || name == "error" ||
+           name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");
+}
+
+// Returns R, G, B of the mean of both halves, or of all samples where the file has it.
+std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool isWhole) {
+    std::vector<float> mean(picture.colour.a.values.size());
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string name(1, "RGB"[c]);
+        const ExrChannel* channel = exr.Find("noisy." + name);
+        if (!channel) channel = exr.Find(name);
+        for (size_t i = 0; i < picture.colour.a.Area(); ++i)
+            mean[3 * i + c] =
+                isWhole && channel
+                    ? channel->values[i]
+                    : (picture.colour.a.Plane(int(c))[i] + picture.colour.b.Plane(int(c))[i]) / 2;
+    }
+    return mean;
+}
+
+ExitCode RunDenoise(Options options) {
+    using std::filesystem::path;
+    if (options.output.empty())
+        options.output = path(options.input).replace_extension(".denoised.exr").string();
+    const std::string png = path(options.output).replace_extension(".png").string();
+    CheckWritable(options.output);
+    CheckWritable(png);
+    ExrImage exr = ReadExr(options.input);
+    const NoisyPicture picture =
+        options.half.empty() ? ReadPicture(exr, options.input)
+                             : ReadPicture(exr, options.input, ReadExr(options.half), options.half);
+
+    const PixelRect region{{0, 0}, {exr.width, exr.height}};
+    ScheduleOptions schedule;
+    schedule.blockSize = options.blockSize;
+    const std::vector<Block> blocks = MakeBlocks(region, schedule);
+    const auto start = std::chrono::steady_clock::now();
+    const DenoisedImage denoised = DenoiseImage(picture, region, blocks);
+    if (!options.quiet)
+        fmt::print(stderr, "denoised in {}; {}\n", FormatDuration(SecondsSince(start)),
+                   TextOf(denoised.blocks));
+
+    const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
+    std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
+    for (size_t c = 0; c < 3; ++c) {
+        ExrChannel channel{std::string(1, "RGB"[c]), {}};
+        for (size_t i = c; i < denoised.image.values.size(); i += 3)
+            channel.values.push_back(denoised.image.values[i]);
+        exr.channels.push_back(std::move(channel));
+    }
+    for (ExrChannel& channel : MakeDenoisedChannels(denoised, noisy))
+        exr.channels.push_back(std::move(channel));
+    exr.attributes["denoised"] = kDenoisedNote;
+    WriteExr(options.output, exr);
+    WritePng(
+        png,
+        [&](int y, std::span<float> row) {
+            std::copy_n(&denoised.image.values[size_t(y) * row.size()], row.size(), row.begin());
+        },
+        exr.width, exr.height);
+    fmt::print("{}\n{}\n", options.output, png);
+    return kDone;
+}
+
+}  // namespace
+
+void AddDenoiseCommand(CLI::App& app, Command* command) {
+    CLI::App* denoise = app.add_subcommand(
+        "denoise", "Takes the noise out of a picture, and says how wrong it may still be.");
+    auto options = std::make_shared<Options>();
+    denoise->add_option("IN", options->input, "The picture, an EXR")
+        ->required()
+        ->check(CLI::ExistingFile);
+    denoise->add_option("--half", options->half, "An EXR of other samples of the same picture")
+        ->check(CLI::ExistingFile)
+        ->type_name("B.exr");
+    denoise->add_option("-o,--output", options->output, "Image to write [IN.denoised.exr]")
+        ->check([](const std::string& file) {
+            return file.ends_with(".exr") ? "" : file + " does not end in .exr";
+        })
+        ->type_name("OUT.exr");
+    denoise
+        ->add_option("--block", options->blockSize,
+                     "Pixels a side of the blocks whose error is told")
+        ->check(CLI::Range(10, 1 << 16))
+        ->type_name("N")
+        ->capture_default_str();
+    denoise->add_flag("--quiet", options->quiet, "Print only errors and the files written");
+    denoise->footer(kFooter);
+    denoise->callback([=] { *command = [=] { return RunDenoise(*options); }; });
+}
+
+}  // namespace lull

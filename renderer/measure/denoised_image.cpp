@@ -1,0 +1,55 @@
+#include "renderer/measure/denoised_image.h"
+
+#include <fmt/format.h>
+
+namespace lull {
+
+namespace {
+
+constexpr int kSmallest = 10;  // pixels a side of a block whose visible error can be measured
+
+}  // namespace
+
+DenoisedImage DenoiseImage(const NoisyPicture& picture, const PixelRect& region,
+                           const std::vector<Block>& blocks) {
+    const DenoisedPicture denoised = Denoise(picture);
+    DenoisedImage result{{region.Width(), region.Height(), {}}, {}, {}};
+    result.image.values.resize(denoised.picture.values.size());
+    for (int c = 0; c < kColours; ++c)
+        for (size_t i = 0; i < denoised.picture.Area(); ++i)
+            result.image.values[3 * i + size_t(c)] = denoised.picture.Plane(c)[i];
+    const EstimatedError error = MeasureError(denoised);
+    result.error = StandardError(error).values;
+    for (const Block& block : blocks) {
+        const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
+        const bool isSmall = std::min(max.x() - min.x(), max.y() - min.y()) < kSmallest;
+        result.blocks.push_back(
+            isSmall ? VisibleError()
+                    : MeasureVisibleError(error, min.x(), min.y(), max.x(), max.y()));
+    }
+    return result;
+}
+
+std::string TextOf(const std::vector<VisibleError>& blocks) {
+    std::vector<double> upper;
+    for (const VisibleError& error : blocks) upper.push_back(error.upper);
+    std::ranges::sort(upper);
+    return fmt::format(
+        "visible error in lightness, of 0 to 100, probably at most {:.2f} in half of "
+        "the blocks and {:.2f} in all",
+        upper[upper.size() / 2], upper.back());
+}
+
+std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage& image,
+                                             std::span<const float> noisy) {
+    std::vector<ExrChannel> channels;
+    for (size_t c = 0; c < 3; ++c) {
+        ExrChannel channel{std::string("noisy.") + "RGB" [c], {}};
+        for (size_t i = c; i < noisy.size(); i += 3) channel.values.push_back(noisy[i]);
+        channels.push_back(std::move(channel));
+    }
+    channels.push_back({"error", image.error});
+    return channels;
+}
+
+}  // namespace lull

@@ -1,0 +1,33 @@
+// Denoises a finished render.
+#pragma once
+
+#include "renderer/denoise/visible_error.h"
+#include "renderer/measure/image_error.h"
+#include "renderer/output/feature_film.h"
+#include "renderer/output/image_io.h"
+#include "renderer/render/schedule.h"
+
+namespace lull {
+
+struct DenoisedImage {
+    RgbImage image;
+    std::vector<float> error;          // estimated standard error of each pixel in lightness
+    std::vector<VisibleError> blocks;  // of each block; 0 of those below 10 pixels a side
+};
+
+// Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
+// have had.
+DenoisedImage DenoiseImage(const NoisyPicture&, const PixelRect& region, const std::vector<Block>&);
+
+// Says how large the visible errors of blocks probably are at most.
+std::string TextOf(const std::vector<VisibleError>&);
+
+// What the header of an EXR says of R, G, B.
+inline constexpr const char* kDenoisedNote =
+    "R, G, B; noisy.R, .G, .B are the means of the samples";
+
+// Returns the channels that an EXR has beside R, G, B that are denoised: noisy.R .G .B, the mean of
+// the samples (R, G, B of each pixel), and `error`.
+std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage&, std::span<const float> noisy);
+
+}  // namespace lull

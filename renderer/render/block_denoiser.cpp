@@ -1,0 +1,19 @@
+#include "renderer/render/block_denoiser.h"
+
+#include "renderer/denoise/film_picture.h"
+
+namespace lull {
+
+VisibleError BlockDenoiser::MeasureBlock(int block) const {
+    const PixelRect& pixels = blocks.at(size_t(block)).pixels;
+    return MeasureVisibleError(MeasureError(Denoise(PictureOf(*film, *featureFilm, pixels))), 0, 0,
+                               pixels.Width(), pixels.Height());
+}
+
+SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser> denoiser) {
+    return [denoiser](const BlockView&, const BlockInfo& block) -> Signals {
+        return denoiser->MeasureBlock(block.index).upper;
+    };
+}
+
+}  // namespace lull

@@ -1,0 +1,34 @@
+// Measures, while a render goes on, what is still wrong with a block once it is denoised.
+#pragma once
+
+#include "renderer/denoise/visible_error.h"
+#include "renderer/output/feature_film.h"
+#include "renderer/render/schedule.h"
+#include "stopping/rules/criterion.h"
+
+namespace lull {
+
+// Denoises blocks by themselves, so that what is said of one does not depend on what others have
+// had. Can be asked by several threads, of different blocks, whose pixels then must not change.
+class BlockDenoiser {
+  public:
+    explicit BlockDenoiser(std::vector<Block> blocks) : blocks(std::move(blocks)) {}
+
+    // Sets whose pixels they are; both must be there while it is asked.
+    void Show(const Film* pixels, const FeatureFilm* features) {
+        film = pixels;
+        featureFilm = features;
+    }
+
+    VisibleError MeasureBlock(int block) const;
+
+  private:
+    std::vector<Block> blocks;
+    const Film* film = nullptr;
+    const FeatureFilm* featureFilm = nullptr;
+};
+
+// Returns what the rule `denoised` looks at: the upper bound.
+SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser>);
+
+}  // namespace lull

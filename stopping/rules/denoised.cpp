@@ -1,0 +1,29 @@
+#include "stopping/rules/denoised.h"
+
+#include <cmath>
+
+#include "stopping/rules/argument.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t kTag = 0x31534e44;  // "DNS1"
+constexpr int kVotes = 2;
+constexpr int kFirstSpp = 40;
+
+}  // namespace
+
+CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& context) {
+    return FactoryOf({.threshold = ParseThreshold(argument) / context.caution,
+                      .votes = kVotes,
+                      .tag = kTag,
+                      .need = ViewNeed::Nothing,
+                      .measure = SuppliedMeasure(context, denoisedRuleName),
+                      .makeGauge = [](const BlockInfo&) {
+                          return MakeMeasuredGauge(
+                              1, {.firstSpp = kFirstSpp, .growth = std::sqrt(2.0)});
+                      }});
+}
+
+}  // namespace lull

@@ -1,0 +1,18 @@
+// Judges blocks by the error that is still visible once they are denoised.
+#pragma once
+
+#include "stopping/rules/voting.h"
+
+namespace lull {
+
+// The name under which a program supplies the measure: the visible error of the block, denoised
+// from nothing but its own samples, in lightness, as a bound that is seldom exceeded.
+inline constexpr const char* denoisedRuleName = "denoised";
+
+// Reads the threshold T, which the context's caution divides. The block is looked at first at 40
+// spp and then wherever the spp have grown by the root of 2, as denoising it takes as long as some
+// samples; it stops when the bound was below T at the last two looks. Throws std::invalid_argument
+// for a bad threshold, and where the program does not measure this.
+CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& context);
+
+}  // namespace lull
