@@ -19,13 +19,15 @@ PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, F
 }
 
 struct Rendered {
-    Film film{kRegion};
-    AovFilm aovs{kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")};
+    Film film;
+    AovFilm aovs;
     RenderOptions options;
     RenderExtras extras;
     RenderResult result;
 
-    Rendered() {
+    Rendered()
+        : film(kRegion),
+          aovs(kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")) {
         options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
         options.sampler = SamplerKind::Random;
         options.threads = 1;
