@@ -7,7 +7,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
-namespace lull {
+namespace lull::aov_test {
 namespace {
 
 const PixelRect kRegion = {{5, 3}, {75, 63}};
@@ -130,4 +130,4 @@ TEST(Aovs, OfAnotherRegionAreRefused) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::aov_test
