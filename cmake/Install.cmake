@@ -58,9 +58,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/${CMAKE_IN
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-# A program for this machine's processor is not one for all: the version says so.
-if(LULL_NATIVE)
-  set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}+native)
+# A program for one processor is not one for all: the version says so.
+if(LULL_ARCH)
+  set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}+${LULL_ARCH})
 endif()
 if(TARGET lull_python)
   math(EXPR next "${Python3_VERSION_MINOR} + 1")

@@ -18,3 +18,4 @@ build/release/renderer/lull render scenes/textured/scene.pbrt -o out/textured.ex
     --resolution 400x400 --block 100 --cap 1000 --report out/textured.json
 echo "The picture is in $PWD/out/textured.png and, linear, in $PWD/out/textured.exr;"
 echo "$PWD/out/textured.spp.png shows how many samples each block took."
+echo "To call the program by its name, type: export PATH=\"$PWD/build/release/renderer:\$PATH\""

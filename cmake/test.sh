@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs what is missing, checks the format, builds and runs all tests; then builds the unit tests
-# once more with address and undefined-behaviour sanitizers and runs them. Fails if anything fails.
+# once more with address and undefined-behaviour sanitizers and runs them. Fails if anything fails;
+# the last line says how many tests were skipped in both builds, and why.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . cmake/packages.sh
@@ -18,3 +19,9 @@ for preset in release sanitize; do
     cmake --build --preset $preset
     ctest --preset $preset -j"$(nproc)"
 done
+
+# GoogleTest writes "FILE:LINE: Skipped" and below it why, with what differs behind a colon.
+echo "== skipped"
+skipped=$(sed -n '/: Skipped$/{n;s/:.*//;p}' build/{release,sanitize}/Testing/Temporary/LastTest.log |
+    sort | uniq -c | sed 's/^ *//' | paste -sd, | sed 's/,/, /g')
+echo "All passed; skipped: ${skipped:-none}"

@@ -5,7 +5,7 @@
 #include "renderer/output/image_io.h"
 #include "tests/integration/run_lull.h"
 
-namespace lull {
+namespace lull::compare_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -300,4 +300,4 @@ TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::compare_test

@@ -4,8 +4,8 @@
 #include "renderer/output/file_io.h"
 #include "stopping/learning/dataset.h"
 #include "tests/integration/run_lull.h"
+#include "tests/stopping/golden_data.h"
 #include "tests/stopping/learning/channel_recordings.h"
-#include "tests/stopping/shared_data.h"
 
 namespace lull {
 namespace {
@@ -49,9 +49,9 @@ std::string Line(const std::string& out, const std::string& begin) {
 }
 
 TEST(Evaluate, PrintsThePublishedErrors) {
-    LULL_SHARED_FILE(human, "thresholds/human.csv");
-    LULL_SHARED_FILE(entropy, "thresholds/svd-entropy-rnn.csv");
-    LULL_SHARED_FILE(attributes, "thresholds/26-attributes-rnn.csv");
+    const std::string human = ThresholdsFile("human.csv"),
+                      entropy = ThresholdsFile("svd-entropy-rnn.csv"),
+                      attributes = ThresholdsFile("26-attributes-rnn.csv");
     const TemporaryDirectory directory;
     const std::string files = " --human '" + human + "' --predicted '";
     const Outcome first = RunLull(directory, "evaluate" + files + entropy + "' --grid 40");

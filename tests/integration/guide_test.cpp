@@ -4,7 +4,7 @@
 #include "renderer/output/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
-namespace lull {
+namespace lull::guide_test {
 namespace {
 
 // A room that a lamp lights by way of its ceiling.
@@ -107,4 +107,4 @@ TEST(GuideOption, GoesOnOnlyWithTheSameGuide) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::guide_test

@@ -7,7 +7,7 @@
 #include "renderer/output/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
-namespace lull {
+namespace lull::interruption_test {
 namespace {
 
 constexpr const char* kOptions =
@@ -154,4 +154,4 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::interruption_test

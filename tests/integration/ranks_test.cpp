@@ -7,7 +7,7 @@
 #include "stopping/learning/dataset.h"
 #include "tests/integration/run_and_signal.h"
 
-namespace lull {
+namespace lull::ranks_test {
 namespace {
 
 constexpr const char* kRender =
@@ -203,4 +203,4 @@ TEST_F(RanksTest, EndByTheClock) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::ranks_test

@@ -5,7 +5,7 @@
 #include "tests/renderer/input/test_files.h"
 #include "tests/shared_folder.h"
 
-namespace lull {
+namespace lull::loop_subdivision_test {
 namespace {
 
 using Floats = std::vector<float>;
@@ -128,8 +128,7 @@ TEST(LoopSubdivision, Errors) {
 }
 
 TEST(LoopSubdivision, KillerooHasItsCounts) {
-    const auto scene = SharedFolder() / "pbrt-scenes/killeroo-simple/scene.pbrt";
-    if (!std::filesystem::exists(scene)) GTEST_SKIP() << "no shared scene at " << scene;
+    LULL_SHARED_FILE(scene, "pbrt-scenes/killeroo-simple/scene.pbrt");
     Warnings warnings;
     const Description d = ParsePbrt(scene.string(), warnings);
     for (const ShapeEntity& shape : d.shapes) {
@@ -149,4 +148,4 @@ TEST(LoopSubdivision, KillerooHasItsCounts) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::loop_subdivision_test

@@ -5,7 +5,7 @@
 #include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/output/test_files.h"
 
-namespace lull {
+namespace lull::scene_hash_test {
 namespace {
 
 constexpr const char* kScene = R"(
@@ -62,4 +62,4 @@ TEST(SceneHash, ChangesWithEverythingThatIsSeen) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::scene_hash_test

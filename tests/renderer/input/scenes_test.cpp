@@ -55,8 +55,7 @@ class Scenes : public testing::TestWithParam<Inventory> {};
 
 TEST_P(Scenes, MatchTheInventory) {
     const Inventory& expected = GetParam();
-    const auto file = SharedFolder() / "pbrt-scenes" / expected.file;
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared scene at " << file;
+    LULL_SHARED_FILE(file, std::filesystem::path("pbrt-scenes") / expected.file);
     Warnings warnings;
     const Description d = ParsePbrt(file.string(), warnings);
     EXPECT_EQ(CountTriangles(d, warnings), expected.triangles);
@@ -235,8 +234,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, Scenes, testing::ValuesIn(Inventories()), [](co
 });
 
 TEST(Scenes, MediumIsReadWithVolpath) {
-    const auto file = SharedFolder() / "pbrt-scenes/coffee-splash/scene-volpath.pbrt";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared scene at " << file;
+    LULL_SHARED_FILE(file, "pbrt-scenes/coffee-splash/scene-volpath.pbrt");
     Warnings warnings;
     const Description d = ParsePbrt(file.string(), warnings);
     EXPECT_EQ(d.shapes.size(), 9u);

@@ -62,8 +62,7 @@ TEST(Spectrum, Copper) {
 }
 
 TEST(Spectrum, FilesOfMetals) {
-    const auto scenes = SharedFolder() / "pbrt-scenes";
-    if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "no shared scenes at " << scenes;
+    LULL_SHARED_FILE(scenes, "pbrt-scenes");
     const auto load = [&](const char* name) { return LoadSpectrum((scenes / name).string()); };
     ExpectNear(load("bathroom/spds/Ag.eta.spd"), .15493518, .11647548, .13808739);
     ExpectNear(load("bathroom/spds/Ag.k.spd"), 4.8181009, 3.1156166, 2.1424017);

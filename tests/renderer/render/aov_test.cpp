@@ -7,7 +7,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
-namespace lull {
+namespace lull::aov_test {
 namespace {
 
 const PixelRect kRegion = {{5, 3}, {75, 63}};
@@ -19,12 +19,14 @@ PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, F
 }
 
 struct Rendered {
-    Film film{kRegion};
-    AovFilm aovs{kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")};
+    Film film;
+    AovFilm aovs;
     RenderOptions options;
     RenderResult result;
 
-    Rendered() {
+    Rendered()
+        : film(kRegion),
+          aovs(kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")) {
         options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
         options.sampler = SamplerKind::Random;
         options.threads = 1;
@@ -128,4 +130,4 @@ TEST(Aovs, OfAnotherRegionAreRefused) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::aov_test

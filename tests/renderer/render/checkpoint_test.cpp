@@ -9,7 +9,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
-namespace lull {
+namespace lull::checkpoint_test {
 namespace {
 
 const PixelRect kRegion = {{0, 0}, {131, 97}};
@@ -203,4 +203,4 @@ TEST(Checkpoint, RefusesDamagedFiles) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::checkpoint_test

@@ -6,7 +6,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
-namespace lull {
+namespace lull::scene_render_test {
 namespace {
 
 // A box open to the viewer with a lamp under its ceiling, a glass ball and a mirror ball.
@@ -162,4 +162,4 @@ TEST(SceneRender, ShowsNoBordersOfBlocks) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::scene_render_test

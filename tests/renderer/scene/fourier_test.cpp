@@ -166,9 +166,10 @@ TEST(Fourier, RefusesBrokenFiles) {
     const std::string whole = Example().Bytes();
     for (size_t length = 0; length < whole.size(); length += 97) {
         const TemporaryDirectory directory;
-        EXPECT_NE(
-            ErrorOf([&] { LoadFourierTable(directory.Write("a.bsdf", whole.substr(0, length))); }),
-            "");
+        EXPECT_NE(lull::ErrorOf([&] {
+                      LoadFourierTable(directory.Write("a.bsdf", whole.substr(0, length)));
+                  }),
+                  "");
     }
 }
 

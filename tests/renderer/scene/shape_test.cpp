@@ -7,7 +7,7 @@
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/output/test_files.h"
 
-namespace lull {
+namespace lull::shape_test {
 namespace {
 
 using test::Random;
@@ -337,4 +337,4 @@ TEST(Instances, GiveWhatPlacedShapesGive) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::shape_test

@@ -5,7 +5,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
-namespace lull {
+namespace lull::texture_test {
 namespace {
 
 constexpr bool kFloat = false, kSpectrum = true;
@@ -263,4 +263,4 @@ TEST(Texture, SurvivesAnyCoordinates) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::texture_test

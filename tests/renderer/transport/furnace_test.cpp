@@ -8,7 +8,7 @@
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
-namespace lull {
+namespace lull::furnace_test {
 namespace {
 
 constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
@@ -316,4 +316,4 @@ TEST(RenderSample, IsTheSameBitsInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::furnace_test

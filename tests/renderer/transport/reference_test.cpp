@@ -157,15 +157,13 @@ class ReferenceTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     const std::string name = GetParam();
-    const auto shared = SharedFolder();
-    const auto file = shared / "references" / (name + ".exr");
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no reference renders at " << shared;
+    LULL_SHARED_FILE(file, "references/" + name + ".exr");
     const Estimator estimator =
         std::getenv("LULL_REFERENCE_COMBINED") ? Estimator::Combined : Estimator::PbrtV3;
     const auto filtering =
         ShowsTextureFiltering(name) ? TextureFiltering::PbrtV3 : TextureFiltering::Bilinear;
     const auto scene =
-        LoadScene(shared / "pbrt-scenes" / name / "scene.pbrt", estimator, filtering);
+        LoadScene(SharedFolder() / "pbrt-scenes" / name / "scene.pbrt", estimator, filtering);
     const Reference reference = LoadReference(file.string());
     const int samples = FromEnvironment("LULL_REFERENCE_SPP", 64);
 

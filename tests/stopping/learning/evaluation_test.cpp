@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "stopping/rules/thresholds.h"
-#include "tests/stopping/shared_data.h"
+#include "tests/stopping/golden_data.h"
 
 namespace lull {
 namespace {
@@ -49,18 +49,16 @@ TEST(CriticalError, IsTheMeanOverBlocks) {
 }
 
 TEST(CriticalError, IsThePublishedOne) {
-    LULL_SHARED_FILE(humanPath, "thresholds/human.csv");
-    const std::vector<ThresholdsRow> human = ReadThresholds(humanPath);
+    const std::vector<ThresholdsRow> human = ReadThresholds(ThresholdsFile("human.csv"));
     const struct {
         const char* file;
         int grid;
         double percent[3];
-    } published[] = {{"thresholds/svd-entropy-rnn.csv", 40, {15.05, 13.51, 12.16}},
-                     {"thresholds/26-attributes-rnn.csv", 20, {17.62, 16.02, 14.57}}};
+    } published[] = {{"svd-entropy-rnn.csv", 40, {15.05, 13.51, 12.16}},
+                     {"26-attributes-rnn.csv", 20, {17.62, 16.02, 14.57}}};
     for (const auto& [file, grid, percent] : published) {
-        LULL_SHARED_FILE(path, file);
         std::vector<ViewpointOutcome> viewpoints;
-        for (const ThresholdsRow& row : ReadThresholds(path)) {
+        for (const ThresholdsRow& row : ReadThresholds(ThresholdsFile(file))) {
             const auto people = std::ranges::find(human, row.name, &ThresholdsRow::name);
             if (people == human.end()) continue;
             viewpoints.push_back({.name = row.name});

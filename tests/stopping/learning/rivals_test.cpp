@@ -8,7 +8,7 @@
 
 #include "tests/stopping/learning/channel_recordings.h"
 
-namespace lull {
+namespace lull::rivals_test {
 namespace {
 
 // Holds blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
@@ -132,4 +132,4 @@ TEST(Rivals, NeedTwoViewpoints) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::rivals_test

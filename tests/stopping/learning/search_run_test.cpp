@@ -10,7 +10,7 @@
 
 #include "tests/stopping/learning/learning_data.h"
 
-namespace lull {
+namespace lull::search_run_test {
 namespace {
 
 void SetOptions(std::span<const OptionValue> values, TrainingPlan* plan) {
@@ -150,4 +150,4 @@ TEST(Search, GoesOnAfterATrainingThatDiverges) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::search_run_test

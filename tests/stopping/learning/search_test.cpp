@@ -9,7 +9,7 @@
 
 #include "tests/stopping/learning/made_up_recordings.h"
 
-namespace lull {
+namespace lull::search_test {
 namespace {
 
 std::vector<SearchAxis> Read(const std::string& text) {
@@ -135,4 +135,4 @@ TEST(SearchCost, SaysHowLongItTakes) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::search_test

@@ -8,7 +8,7 @@
 
 #include "tests/stopping/learning/learning_data.h"
 
-namespace lull {
+namespace lull::training_run_test {
 namespace {
 
 void WriteFile(const std::string& path, std::span<const std::byte> bytes) {
@@ -126,4 +126,4 @@ TEST(TrainingCheckpoint, TellsItsOwnFaultsFromThoseOfTrainings) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::training_run_test

@@ -15,20 +15,18 @@
 #include "stopping/base/hdf5_file.h"
 #include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
+#include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/shared_data.h"
 
-namespace lull {
+namespace lull::model_file_test {
 namespace {
 
 TEST(ModelFile, AgreesWithKeras) {
-    LULL_SHARED_FILE(valuesPath, "golden/keras_lstm.json");
     double worst = 0;
-    for (const nlohmann::json& golden : ReadJson(valuesPath)) {
+    for (const nlohmann::json& golden : ReadJson(GoldenFile("keras_lstm.json"))) {
         const std::string name = golden["file"];
-        LULL_SHARED_FILE(path, "golden/" + name);
-        const Model model = ReadModel(path);
+        const Model model = ReadModel(GoldenFile(name));
         EXPECT_EQ(model.settings.k, golden["k"].get<int>());
         EXPECT_EQ(model.settings.m, golden["m"].get<int>());
         EXPECT_EQ(model.settings.n, 40);  // what the file does not say is the paper's
@@ -289,4 +287,4 @@ TEST(Checksum, IsTheKnownCrc32) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::model_file_test

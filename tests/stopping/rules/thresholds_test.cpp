@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/stopping/golden_data.h"
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/shared_data.h"
 
-namespace lull {
+namespace lull::thresholds_test {
 namespace {
 
 std::vector<ThresholdsRow> Parse(const std::string& text) {
@@ -29,7 +29,7 @@ std::string ErrorOf(const std::string& text) {
 TEST(Thresholds, ReadThePublishedFilesAndWriteThemBack) {
     for (const auto& [name, count] : {std::pair("human", 38u), std::pair("svd-entropy-rnn", 80u),
                                       std::pair("26-attributes-rnn", 80u)}) {
-        LULL_SHARED_FILE(path, std::string("thresholds/") + name + ".csv");
+        const std::string path = ThresholdsFile(std::string(name) + ".csv");
         const std::vector<ThresholdsRow> rows = ReadThresholds(path);
         EXPECT_EQ(rows.size(), count);
         for (const ThresholdsRow& row : rows) EXPECT_EQ(row.spp.size(), 16u) << row.name;
@@ -80,4 +80,4 @@ TEST(Thresholds, WriteOnlyWhatCanBeRead) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::thresholds_test

@@ -10,8 +10,9 @@
 
 #include "stopping/signals/haar_shrinkage.h"
 #include "stopping/signals/lightness.h"
+#include "tests/shared_folder.h"
+#include "tests/stopping/golden_data.h"
 #include "tests/stopping/read_png.h"
-#include "tests/stopping/shared_data.h"
 
 namespace lull {
 namespace {
@@ -27,9 +28,8 @@ std::vector<double> WhiteNoise(int count, double level, double deviation, unsign
 // The golden values are those of OpenCV, SciPy, PyWavelets and scikit-image.
 TEST(Attributes26, AgreeOnARealImage) {
     LULL_SHARED_FILE(imagePath, "golden/bathroom_00010.png");
-    LULL_SHARED_FILE(valuesPath, "golden/attributes26_bathroom.json");
-    const nlohmann::json golden = ReadJson(valuesPath);
-    const std::vector<uint8_t> srgb = ReadPng(imagePath, 800, 800);
+    const nlohmann::json golden = ReadJson(GoldenFile("attributes26_bathroom.json"));
+    const std::vector<uint8_t> srgb = ReadPng(imagePath.string(), 800, 800);
     ASSERT_EQ(srgb.size(), 800u * 800 * 3);
     std::vector<double> whole(800 * 800);
     Lightness(srgb, whole);

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "stopping/signals/lightness.h"
+#include "tests/shared_folder.h"
+#include "tests/stopping/golden_data.h"
 #include "tests/stopping/read_png.h"
-#include "tests/stopping/shared_data.h"
 
 namespace lull {
 namespace {
@@ -34,10 +35,9 @@ std::vector<double> BlockOf(const std::vector<uint8_t>& srgb, int imageWidth, in
 
 TEST(SvdEntropy, AgreesOnARealImage) {
     LULL_SHARED_FILE(imagePath, "golden/bathroom_00010.png");
-    LULL_SHARED_FILE(valuesPath, "golden/svd_entropy_bathroom.json");
-    const nlohmann::json golden = ReadJson(valuesPath);
+    const nlohmann::json golden = ReadJson(GoldenFile("svd_entropy_bathroom.json"));
     const int width = 800;
-    const std::vector<uint8_t> srgb = ReadPng(imagePath, width, 800);
+    const std::vector<uint8_t> srgb = ReadPng(imagePath.string(), width, 800);
     ASSERT_EQ(srgb.size(), size_t(width) * 800 * 3);
 
     double worstMean = 0, worstEntropy = 0;
@@ -65,9 +65,8 @@ TEST(SvdEntropy, AgreesOnARealImage) {
 // doubles with 50 digits, so that none of them is out of reach. The entropies of the constant
 // ones (7e-121, 2e-14) are far below what is asked for.
 TEST(SvdEntropy, AgreesOnHardMatrices) {
-    LULL_SHARED_FILE(path, "golden/svd_entropy_hard.json");
     double worst = 0;
-    for (const nlohmann::json& entry : ReadJson(path)) {
+    for (const nlohmann::json& entry : ReadJson(GoldenFile("svd_entropy_hard.json"))) {
         const int n = entry["n"];
         RowMatrix matrix = RowMatrix::Zero(n, n);
         if (entry.contains("matrix"))
