@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "renderer/commands/checkpoint_options.h"
-#include "renderer/output/aov_channels.h"
+#include "renderer/render/aov_channels.h"
 #include "renderer/render/extras.h"
 
 namespace lull {

@@ -1,8 +1,8 @@
 // Renders with more than the image: layers beside it, and a viewer that sees it grow.
 #pragma once
 
-#include "renderer/output/aov_film.h"
 #include "renderer/output/display.h"
+#include "renderer/render/aov_film.h"
 #include "renderer/render/checkpoint.h"
 
 namespace lull {
@@ -11,11 +11,9 @@ namespace lull {
 using AovSource =
     std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
 
-// Returns the scene as such a source of samples, the same ones as those of SamplesOf(); it must
-// outlive the source.
-AovSource AovSamplesOf(const Scene&, Estimator, const AovSet& wanted);
-// The same with paths that the guide directs, which must outlive the source as well.
-AovSource AovSamplesOf(const Scene&, const Guide&, const AovSet& wanted);
+// Returns the scene as such a source of samples, the same ones as those of SamplesOf(), and for as
+// long.
+AovSource AovSamplesOf(const Scene&, PathOptions, const AovSet& wanted);
 
 struct RenderExtras {
     // Layers of the same region as the film, and whence the samples of both come. Null: none.

@@ -6,7 +6,6 @@
 
 #include "renderer/base/color.h"
 #include "renderer/render/guide_trial.h"
-#include "renderer/transport/guided_path_tracer.h"
 
 namespace lull {
 
@@ -70,15 +69,13 @@ std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
 bool RunRound(const Scene& scene, const PixelRect& region, const LearningOptions& options,
               Learning* learning) {
     GuideState& state = learning->state;
-    const float usual = float(learning->usual);
-    const SampleSource source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderGuidedSample(scene, state.guide, sampler, pixel, index,
-                                  {.record = &state.record, .usual = usual});
-    };
+    PathOptions paths(state.guide);
+    paths.record = &state.record;
+    paths.usual = float(learning->usual);
     Film film(region);
     const RenderOptions render =
         MakeRenderOptions(options, learning->round, RoundSamples(learning->round));
-    return !Render(source, render, &film).cancelled;
+    return !Render(SamplesOf(scene, paths), render, &film).cancelled;
 }
 
 RefineOptions MakeRefineOptions(const LearningOptions& options, int round) {
@@ -167,12 +164,6 @@ bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& o
                   fmt::format("variance times work is {} what it is without",
                               pays ? "below" : "not surely below"),
                   learning);
-}
-
-SampleSource SamplesOf(const Scene& scene, const Guide& guide) {
-    return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderGuidedSample(scene, guide, sampler, pixel, index);
-    };
 }
 
 }  // namespace lull

@@ -1,7 +1,7 @@
 // Puts what ranks say to each other (peers.h) into bytes.
 #pragma once
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"

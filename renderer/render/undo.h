@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_film.h"
 
 namespace lull {
 

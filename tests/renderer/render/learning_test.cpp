@@ -10,7 +10,6 @@
 #include "renderer/render/learning_state.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
-#include "renderer/transport/guided_path_tracer.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -120,7 +119,7 @@ TEST(Learning, WithoutAnythingToSayPathsAreThoseWithout) {
     int differ = 0;  // where rounding ends one path earlier
     for (int k = 0; k < 500; ++k) {
         const Vec2i pixel(k % 16, k / 16 % 16);
-        const Rgb guided = RenderGuidedSample(*scene, nothing, a, pixel, uint32_t(k)).radiance;
+        const Rgb guided = RenderSample(*scene, nothing, a, pixel, uint32_t(k)).radiance;
         const Rgb plain = RenderSample(*scene, Estimator::Combined, b, pixel, uint32_t(k)).radiance;
         differ += !((guided - plain).abs() <= 1e-3f * plain + 1e-6f).all();
     }

@@ -1,7 +1,7 @@
 // Turns the sums of layers into the channels of an EXR.
 #pragma once
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_film.h"
 #include "renderer/output/image_io.h"
 
 namespace lull {
