@@ -112,7 +112,6 @@ std::string NameOf(GuideMode mode) {
 
 std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator) {
     if (estimator != Estimator::Combined) return "the estimator is pbrt-v3's";
-    if (scene.isVolumetric) return "the scene has participating media";
     if (scene.maxDepth < 2) return "paths have one bounce at most";
     if (scene.lights.Count() == 0) return "the scene has no light";
     return {};

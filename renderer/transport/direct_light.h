@@ -30,10 +30,10 @@ template <typename Media, typename Vertex, typename Guiding>
     const float cosine = v.Cosine(light->wi);
     const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
     if constexpr (!Media::kExist) {
-        if (IsBlack(L) || !Media::Sees(context, v, *light)) return Rgb::Zero();
+        if (IsBlack(L) || !context.media.Sees(context, v, *light)) return Rgb::Zero();
         return L;
     } else {
-        const auto sight = Media::See(context, v, *light);
+        const auto sight = context.media.See(context, v, *light);
         if (IsBlack(sight.share)) return Rgb::Zero();
         if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * sight.share;
         // What no ray can reach keeps pbrt-v3's weight, too.
@@ -57,23 +57,22 @@ Rgb SampleDirectionForLight(const PathContext<Media>& context, const Vertex& v, 
     if (area && area->isHidden) return Rgb::Zero();
     const auto sample = v.Sample(u, LobeSet::NonSpecular);
     if (!sample) return Rgb::Zero();
-    Rgb L, share = Rgb::Ones();
+    Sighting sighting;
+    Rgb L;
     float lightPdf;
     if (environment) {
         lightPdf = environment->Pdf(sample->wi);
-        if (lightPdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &share))
+        if (lightPdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
             return Rgb::Zero();
         L = environment->Le(sample->wi);
     } else {
-        Hit found;
-        SurfaceInteraction at;
-        if (!context.media.MeetsLight(context, v, sample->wi, index, &found, &at, &share))
-            return Rgb::Zero();
-        L = area->Le(at.n, -sample->wi, found);
+        if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
+        const SurfaceInteraction& at = sighting.at;
+        L = area->Le(at.n, -sample->wi, sighting.found);
         lightPdf = area->Pdf(v.Position(), at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
-    return sample->f * L * share *
+    return sample->f * L * sighting.share *
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 

@@ -40,10 +40,10 @@ class Beam {
 
 }  // namespace
 
-Media::Sight Media::See(const Context& context, const Vec3f& origin, const Vec3f& target,
-                        int medium, bool isAtInfinity) {
+Media::Sight Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target, int from,
+                         bool isAtInfinity) {
     const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
-    Beam beam(context, rayFrom(origin), medium);
+    Beam beam(context, rayFrom(origin), from);
     while (beam.Advance()) {
         if (!beam.isInterface || IsBlack(beam.transmittance)) return {};
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
@@ -53,18 +53,17 @@ Media::Sight Media::See(const Context& context, const Vec3f& origin, const Vec3f
     return sight;
 }
 
-int Media::Follow(const Context& context, const Ray& ray, int medium, Hit* found,
-                  SurfaceInteraction* at, Rgb* share) {
-    Beam beam(context, ray, medium);
+int Media::Follow(const Context& context, const Ray& ray, int from, Sighting* sighting) {
+    Beam beam(context, ray, from);
     bool isHit;
     while ((isHit = beam.Advance()) && beam.isInterface) {
         if (IsBlack(beam.transmittance)) return kNoLight;
         beam.ray = beam.hit.SpawnRay(ray.d);
     }
-    *share *= beam.transmittance;
+    sighting->share = beam.transmittance;
     if (!isHit) return kNothing;
-    if (found) *found = beam.found;
-    if (at) *at = beam.hit;
+    sighting->found = beam.found;
+    sighting->at = beam.hit;
     const int light = context.scene.shapes.LightAt(beam.found);
     return light >= 0 ? light : kNoLight;
 }

@@ -6,6 +6,13 @@
 
 namespace lull {
 
+// Holds what a ray finds that looks for a light.
+struct Sighting {
+    Hit found;                // the light's surface, if it has one
+    SurfaceInteraction at;    // there
+    Rgb share = Rgb::Ones();  // of its light that gets to where the ray starts, an estimate
+};
+
 // Without media: nothing is there. As with pbrt-v3's path integrator, interfaces block shadow rays.
 struct NoMedia {
     static constexpr bool kExist = false;
@@ -29,19 +36,20 @@ struct NoMedia {
         return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
     }
 
-    // Says whether a ray in direction wi leaves the scene; *share is left as it is.
-    static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi, Rgb*) {
+    // Says whether a ray in direction wi leaves the scene.
+    static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
+                            Sighting*) {
         return !context.scene.accelerator.Occluded(v.hit.SpawnRay(wi), context.camera.time);
     }
-    // Says whether it meets area light `index`, which `found` and `at` then are of.
+    // Says whether it meets area light `index`.
     static bool MeetsLight(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
-                           int index, Hit* found, SurfaceInteraction* at, Rgb*) {
+                           int index, Sighting* sighting) {
         const Ray ray = v.hit.SpawnRay(wi);
         const Scene& scene = context.scene;
-        if (!scene.accelerator.Intersect(ray, found, context.camera.time) ||
-            scene.shapes.LightAt(*found) != index)
+        if (!scene.accelerator.Intersect(ray, &sighting->found, context.camera.time) ||
+            scene.shapes.LightAt(sighting->found) != index)
             return false;
-        scene.shapes.Interact(ray, *found, kNeedsNothing, at);
+        scene.shapes.Interact(ray, sighting->found, kNeedsNothing, &sighting->at);
         return true;
     }
 
@@ -86,28 +94,28 @@ class Media {
     // As in pbrt-v3, light from infinity comes from twice the scene's radius away: through a medium
     // that fills the world it would not come from farther.
     template <typename Vertex>
-    static Sight See(const Context& context, const Vertex& v, const LightSample& light) {
+    Sight See(const Context& context, const Vertex& v, const LightSample& light) const {
         const Vec3f p = v.Position();
         const Vec3f origin = v.OriginTowards(light.isAtInfinity ? light.wi : Vec3f(light.p - p));
         const Vec3f target =
             light.isAtInfinity ? Vec3f(p + context.scene.shapes.bounds.Diagonal().norm() * light.wi)
                                : OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
         if (!v.IsSameSide(target - origin, light.wi)) return {};
-        return See(context, origin, target, MediumTowards(context, v, light.wi),
-                   light.isAtInfinity);
+        return Look(context, origin, target, Towards(v, light.wi), light.isAtInfinity);
     }
 
-    // As without media; *share is multiplied by what they leave of the light.
+    // As without media.
     template <typename Vertex>
-    static bool LeavesScene(const Context& context, const Vertex& v, const Vec3f& wi, Rgb* share) {
-        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, MediumTowards(context, v, wi),
-                      nullptr, nullptr, share) == kNothing;
+    bool LeavesScene(const Context& context, const Vertex& v, const Vec3f& wi,
+                     Sighting* sighting) const {
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
+               kNothing;
     }
     template <typename Vertex>
-    static bool MeetsLight(const Context& context, const Vertex& v, const Vec3f& wi, int index,
-                           Hit* found, SurfaceInteraction* at, Rgb* share) {
-        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, MediumTowards(context, v, wi),
-                      found, at, share) == index;
+    bool MeetsLight(const Context& context, const Vertex& v, const Vec3f& wi, int index,
+                    Sighting* sighting) const {
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
+               index;
     }
 
     // What lies behind an interface still belongs to the last vertex, whose shadow rays see it;
@@ -126,21 +134,18 @@ class Media {
     // What a ray can meet beside area lights.
     static constexpr int kNothing = -2, kNoLight = -1;
 
+    // Return the medium on the side of a vertex that a direction points to.
     int Towards(const SurfaceVertex& v, const Vec3f& wi) const {
         return table->Beyond(v.shape, wi.dot(v.hit.n) > 0, medium);
     }
     int Towards(const MediumVertex&, const Vec3f&) const { return medium; }
-    template <typename Vertex>
-    static int MediumTowards(const Context& context, const Vertex& v, const Vec3f& wi) {
-        return context.media.Towards(v, wi);
-    }
 
-    static Sight See(const Context&, const Vec3f& origin, const Vec3f& target, int medium,
-                     bool isAtInfinity);
-    // Follows a ray, which starts in `medium`, through interfaces to a surface. Returns its light,
-    // or one of the above. `found` and `at`, if given, receive the surface.
-    static int Follow(const Context&, const Ray&, int medium, Hit* found, SurfaceInteraction* at,
-                      Rgb* share);
+    // Looks along a segment that starts in medium `from`.
+    static Sight Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
+                      bool isAtInfinity);
+    // Follows a ray that starts in medium `from` through interfaces. Returns the light that it
+    // meets, or one of the above.
+    static int Follow(const Context&, const Ray&, int from, Sighting*);
 
     const MediumTable* table;
     int medium;  // that the path's next ray is in
