@@ -45,10 +45,9 @@ template <typename Media, typename Vertex, typename Guiding>
 }
 
 // Returns the light that a direction sampled for it finds on light `index`: the other half of
-// pbrt-v3's direct light.
+// pbrt-v3's direct light. Takes a copy of the context, which so can stay in registers.
 template <typename Media, typename Vertex>
-Rgb SampleDirectionForLight(const PathContext<Media>& context, const Vertex& v, int index,
-                            float pmf) {
+Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int index, float pmf) {
     const Vec2f u = context.sampler.Get2D();
     const Light& light = context.scene.lights[index];
     const AreaLight* area = std::get_if<AreaLight>(&light);

@@ -13,7 +13,7 @@ struct PathContext {
     const Scene& scene;
     Estimator estimator;
     Sampler& sampler;
-    CameraSample camera;
+    const CameraSample& camera;
     Media media;
 };
 

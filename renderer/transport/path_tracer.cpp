@@ -121,7 +121,8 @@ template <typename Media, typename Guiding, typename Recorder>
         bool isTransmission;
         if (!guiding.Scatter(bsdf, hit, L, sampler, &path, &isTransmission)) break;
         if ((needs & kScattersBelow) && isTransmission) [[unlikely]] {
-            // Works on copies: what it has a pointer to would lie in memory all along.
+            // Works on copies, as all that is not inlined here: what it has a pointer to would lie
+            // in memory all along.
             PathContext<Media> contextBelow = context;
             Path below = path;
             Rgb arriving = Rgb::Zero();
