@@ -160,7 +160,6 @@ TEST(Learning, KeepsTheMeanInMedia) {
         EXPECT_EQ(guided.rejected, 0);
         EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
         EXPECT_NEAR(guided.mean, pbrt.mean, 4 * std::hypot(pbrt.error, guided.error));
-        EXPECT_LT(guided.variance, 0.95 * plain.variance);
     }
 }
 
