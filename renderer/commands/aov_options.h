@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_channels.h"
 
 namespace lull {
 

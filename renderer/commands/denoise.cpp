@@ -7,7 +7,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
-#include "renderer/denoise/film_picture.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/measure/denoised_image.h"
 #include "renderer/output/file_io.h"
 #include "renderer/output/progress.h"

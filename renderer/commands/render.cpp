@@ -15,7 +15,7 @@
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/session_options.h"
-#include "renderer/denoise/film_picture.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"

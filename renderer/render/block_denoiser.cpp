@@ -1,6 +1,6 @@
 #include "renderer/render/block_denoiser.h"
 
-#include "renderer/denoise/film_picture.h"
+#include "renderer/render/film_picture.h"
 
 namespace lull {
 

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "renderer/render/forecast.h"
+#include "renderer/render/render.h"
 #include "renderer/render/undo.h"
 #include "stopping/base/parallel.h"
 

@@ -1,7 +1,6 @@
 #include "renderer/render/guide_trial.h"
 
 #include "renderer/base/color.h"
-#include "renderer/transport/guided_path_tracer.h"
 
 namespace lull {
 
@@ -30,15 +29,13 @@ std::optional<Arm> TakeSamples(const Scene& scene, const PixelRect& region, cons
                                const RenderOptions& options) {
     Arm arm{std::vector<PixelSums>(size_t(region.Area()))};
     const SampleSource source = [&](Sampler& sampler, const Vec2i& p, uint32_t index) {
-        int vertices = 0;
-        const PathSample sample =
-            RenderGuidedSample(scene, guide, sampler, p, index, {.vertices = &vertices});
+        const PathSample sample = RenderSample(scene, guide, sampler, p, index);
         PixelSums& pixel = arm.pixels[size_t(p.y() - region.min.y()) * size_t(region.Width()) +
                                       size_t(p.x() - region.min.x())];
         const double y = double(Luminance(sample.radiance));
         pixel.sum += y;
         pixel.squares += y * y;
-        pixel.vertices += vertices;
+        pixel.vertices += sample.vertices;
         return sample;
     };
     Film film(region, {.grid = GridOf(options.schedule)});
@@ -63,7 +60,7 @@ PieceSums SumsOf(const Arm& arm, const PixelRect& region, const PixelRect& piece
 }
 
 // Returns the derivative of CIE lightness L* by luminance; 0 beyond white.
-double LightnessSlope(double y) {
+double SlopeUpToWhite(double y) {
     constexpr double kLinear = 0.008856, kSlope = 903.3;
     return y > 1 ? 0 : y > kLinear ? 116. / 3 * std::pow(y, -2. / 3) : kSlope;
 }
@@ -94,7 +91,7 @@ std::optional<GuideTrial> TryGuide(const Scene& scene, const PixelRect& region, 
             const PieceSums a = SumsOf(*unguided, region, piece, n);
             const PieceSums b = SumsOf(*guided, region, piece, n);
             const double area = double(piece.Area());
-            const double slope = LightnessSlope((a.luminance + b.luminance) / 2 / area);
+            const double slope = SlopeUpToWhite((a.luminance + b.luminance) / 2 / area);
             const Noise both{slope * std::sqrt(a.variance / area),
                              slope * std::sqrt(b.variance / area)};
             if (both.unguided + both.guided < INFINITY) noise.push_back(both);

@@ -4,24 +4,20 @@
 
 #include <functional>
 
-#include "renderer/output/feature_film.h"
+#include "renderer/render/feature_film.h"
 #include "renderer/transport/path_tracer.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
 
 namespace lull {
 
-class Guide;
-
 // As SampleSource, and says what the sample's path has met first.
 using AovSource =
     std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
 
-// Returns the scene as such a source of samples, the same ones as those of SamplesOf(); it must
-// outlive the source.
-AovSource AovSamplesOf(const Scene&, Estimator, const AovSet& wanted);
-// The same with paths that the guide directs, which must outlive the source as well.
-AovSource AovSamplesOf(const Scene&, const Guide&, const AovSet& wanted);
+// Returns the scene as such a source of samples, the same ones as those of SamplesOf(), and for as
+// long.
+AovSource AovSamplesOf(const Scene&, PathOptions, const AovSet& wanted);
 
 struct Layers {
     // Of the film's region; null: not collected.

@@ -8,7 +8,6 @@
 #include "renderer/base/error.h"
 #include "renderer/output/progress.h"
 #include "renderer/render/guide_trial.h"
-#include "renderer/transport/guided_path_tracer.h"
 
 namespace lull {
 
@@ -71,15 +70,13 @@ std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
 bool RunRound(const Scene& scene, const PixelRect& region, const LearningOptions& options,
               Learning* learning) {
     GuideState& state = learning->state;
-    const float usual = float(learning->usual);
-    const SampleSource source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderGuidedSample(scene, state.guide, sampler, pixel, index,
-                                  {.record = &state.record, .usual = usual});
-    };
+    PathOptions paths(state.guide);
+    paths.record = &state.record;
+    paths.usual = float(learning->usual);
     const RenderOptions render =
         MakeRenderOptions(options, learning->round, RoundSamples(learning->round));
     Film film(region, {.grid = GridOf(render.schedule)});
-    return !Render(source, render, &film).cancelled;
+    return !Render(SamplesOf(scene, paths), render, &film).cancelled;
 }
 
 RefineOptions MakeRefineOptions(const LearningOptions& options, int round) {
@@ -116,7 +113,6 @@ std::string NameOf(GuideMode mode) {
 
 std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator) {
     if (estimator != Estimator::Combined) return "the estimator is pbrt-v3's";
-    if (scene.isVolumetric) return "the scene has participating media";
     if (scene.maxDepth < 2) return "paths have one bounce at most";
     if (scene.lights.Count() == 0) return "the scene has no light";
     return {};
@@ -204,12 +200,6 @@ bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& o
                   fmt::format("variance times work is {} what it is without",
                               pays ? "below" : "not surely below"),
                   learning);
-}
-
-SampleSource SamplesOf(const Scene& scene, const Guide& guide) {
-    return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderGuidedSample(scene, guide, sampler, pixel, index);
-    };
 }
 
 }  // namespace lull

@@ -81,8 +81,4 @@ std::string TextOf(const GuideFigures&, GuideMode);
 bool Learn(const Scene&, const PixelRect& region, const LearningOptions&, Learning* learning,
            const std::function<void(const Learning&)>& onRound = {});
 
-// Returns the scene as a source of samples by Estimator::Combined with paths that the guide
-// directs. Both must outlive the source.
-SampleSource SamplesOf(const Scene&, const Guide&);
-
 }  // namespace lull

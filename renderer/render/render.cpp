@@ -8,8 +8,6 @@
 
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/rank_executor_internal.h"
-#include "renderer/transport/first_hit.h"
-#include "renderer/transport/guided_path_tracer.h"
 
 namespace lull {
 
@@ -47,32 +45,17 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
     return result;
 }
 
-SampleSource SamplesOf(const Scene& scene, Estimator estimator) {
-    return [&scene, estimator](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderSample(scene, estimator, sampler, pixel, index);
+SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
+    return [&scene, options](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return RenderSample(scene, options, sampler, pixel, index);
     };
 }
 
-AovSource AovSamplesOf(const Scene& scene, Estimator estimator, const AovSet& wanted) {
-    if (!wanted.FirstHits())
-        return
-            [&scene, estimator](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
-                return RenderSample(scene, estimator, sampler, pixel, index);
-            };
-    return [&scene, estimator, throughSpecular = wanted.throughSpecular](
-               Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
-        return RenderSample(scene, estimator, sampler, pixel, index, throughSpecular, firstHit);
-    };
-}
-
-AovSource AovSamplesOf(const Scene& scene, const Guide& guide, const AovSet& wanted) {
-    if (!wanted.FirstHits())
-        return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
-            return RenderGuidedSample(scene, guide, sampler, pixel, index);
-        };
-    return [&, throughSpecular = wanted.throughSpecular](Sampler& sampler, const Vec2i& pixel,
-                                                         uint32_t index, FirstHit* firstHit) {
-        return RenderGuidedSample(scene, guide, sampler, pixel, index, throughSpecular, firstHit);
+AovSource AovSamplesOf(const Scene& scene, PathOptions options, const AovSet& wanted) {
+    options.throughSpecular = wanted.throughSpecular;
+    return [&scene, options, asks = wanted.FirstHits()](Sampler& sampler, const Vec2i& pixel,
+                                                        uint32_t index, FirstHit* firstHit) {
+        return RenderSample(scene, options, sampler, pixel, index, asks ? firstHit : nullptr);
     };
 }
 

@@ -99,7 +99,8 @@ using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint
 RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
                     const RenderState* interrupted = nullptr);
 
-// Returns the scene as a source of samples; it must outlive the source.
-SampleSource SamplesOf(const Scene&, Estimator);
+// Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
+// source.
+SampleSource SamplesOf(const Scene&, const PathOptions&);
 
 }  // namespace lull

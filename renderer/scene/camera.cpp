@@ -49,20 +49,22 @@ Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* we
     return {position + rotation * ray.o, rotation * ray.d, kInfinity};
 }
 
-Ray Camera::GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
+Ray Camera::GenerateRareRay(const CameraSample& sample, float* weight) const {
+    const auto& [film, lens, time] = sample;
     const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
                     : lenses                              ? GenerateRealisticRay(film, lens, weight)
                                                           : GenerateOtherRay(film, lens);
     return motion ? Move(ray, time) : ray;
 }
 
-std::optional<Ray> Camera::NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
-                                   int axis) const {
-    const Vec2f step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);
-    if (!lenses) return GenerateRay(film + step, lens, time);
+std::optional<Ray> Camera::NextRay(const Ray& ray, CameraSample sample, int axis) const {
+    const Vec2f film = sample.film, step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);
+    sample.film = film + step;
+    if (!lenses) return GenerateRay(sample);
     for (const float share : {0.05f, -0.05f}) {
         float weight;
-        const Ray next = GenerateRay(film + share * step, lens, time, &weight);
+        sample.film = film + share * step;
+        const Ray next = GenerateRay(sample, &weight);
         if (weight > 0)
             return Ray{ray.o + (next.o - ray.o) / share, ray.d + (next.d - ray.d) / share,
                        kInfinity};

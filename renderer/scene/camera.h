@@ -9,6 +9,13 @@
 
 namespace lull {
 
+// Says where and when a path starts.
+struct CameraSample {
+    Vec2f film;                      // pixels
+    Vec2f lens = Vec2f(0.5f, 0.5f);  // in [0, 1)^2, chooses the point on the lens
+    float time = 0;                  // from 0, where the shutter opens, to 1
+};
+
 enum class Projection { Perspective, Orthographic, Environment, Realistic };
 
 struct Camera {
@@ -36,32 +43,30 @@ struct Camera {
 
     bool HasLens() const { return lensRadius > 0 || lenses; }
 
-    // Returns the ray through `film` (pixels) and the lens point that u chooses, at `time` from 0
-    // where the shutter opens to 1; direction unit. The radiance that it finds counts *weight
-    // times, which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
-    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const {
+    // Returns the ray of a sample; direction unit. The radiance that it finds counts *weight times,
+    // which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
+    Ray GenerateRay(const CameraSample& sample, float* weight) const {
         *weight = 1;
         if (projection == Projection::Perspective && !motion) [[likely]]
-            return GeneratePerspectiveRay(film, lens);
-        return GenerateRareRay(film, lens, time, weight);
+            return GeneratePerspectiveRay(sample.film, sample.lens);
+        return GenerateRareRay(sample, weight);
     }
-    Ray GenerateRay(const Vec2f& film, const Vec2f& lens, float time = 0) const {
+    Ray GenerateRay(const CameraSample& sample) const {
         float weight;
-        return GenerateRay(film, lens, time, &weight);
+        return GenerateRay(sample, &weight);
     }
 
-    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that through `film`
-    // and `lens`. For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it;
-    // nothing where no light passes there.
-    std::optional<Ray> NextRay(const Ray& ray, const Vec2f& film, const Vec2f& lens, float time,
-                               int axis) const;
+    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that of the sample.
+    // For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it; nothing
+    // where no light passes there.
+    std::optional<Ray> NextRay(const Ray& ray, CameraSample, int axis) const;
 
   private:
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
     // Of all but perspective cameras at rest: apart, so that these do not pay for it.
-    Ray GenerateRareRay(const Vec2f& film, const Vec2f& lens, float time, float* weight) const;
+    Ray GenerateRareRay(const CameraSample&, float* weight) const;
     Ray Move(const Ray& ray, float time) const;
 };
 

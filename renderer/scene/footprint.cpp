@@ -18,12 +18,12 @@ Vec2f ParametersOf(const Vec3f& d, const SurfaceInteraction& hit) {
 
 }  // namespace
 
-void ComputeFootprint(const Camera& camera, const Vec2f& film, const Vec2f& lens, float time,
-                      float spacing, SurfaceInteraction* hit) {
-    const Ray ray = camera.GenerateRay(film, lens, time);
+void ComputeFootprint(const Camera& camera, const CameraSample& sample, SurfaceInteraction* hit) {
+    const float spacing = camera.sampleSpacing;
+    const Ray ray = camera.GenerateRay(sample);
     std::array<Vec3f, 2> moves;
     for (int axis = 0; axis < 2; ++axis) {
-        const std::optional<Ray> next = camera.NextRay(ray, film, lens, time, axis);
+        const std::optional<Ray> next = camera.NextRay(ray, sample, axis);
         if (!next) return;
         const Vec3f o = ray.o + spacing * (next->o - ray.o);
         const Vec3f d = ray.d + spacing * (next->d - ray.d);

@@ -6,11 +6,9 @@
 
 namespace lull {
 
-// Fills in dpdx, dpdy, duvdx and duvdy of a hit of the camera ray through `film` and `lens` at
-// `time`, from where the rays one pixel to the right and below meet the tangent plane (Igehy 1999;
-// pbrt 3rd ed., 10.1). `spacing` is the distance of samples in pixels: pbrt-v3's 1 / sqrt(samples
-// per pixel).
-void ComputeFootprint(const Camera& camera, const Vec2f& film, const Vec2f& lens, float time,
-                      float spacing, SurfaceInteraction* hit);
+// Fills in dpdx, dpdy, duvdx and duvdy of a hit of the sample's camera ray, from where the rays one
+// pixel to the right and below meet the tangent plane (Igehy 1999; pbrt 3rd ed., 10.1). Samples lie
+// Camera::sampleSpacing apart.
+void ComputeFootprint(const Camera&, const CameraSample&, SurfaceInteraction* hit);
 
 }  // namespace lull

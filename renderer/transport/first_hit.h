@@ -1,23 +1,21 @@
-// Says of samples what their paths have met first, for layers beside the image.
+// Says what a path has met first, for layers beside the image.
 #pragma once
 
-#include "renderer/output/aov_film.h"
-#include "renderer/transport/guide.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/base/math.h"
 
 namespace lull {
 
-// Takes the same sample as RenderSample() does otherwise, and says what its path has met first.
-// With `throughSpecular` (see AovSet), albedo is that of what is seen times what mirrors and glass
-// leave of it, and depth goes on by the way behind them, as if they were windows. A path that is at
-// its greatest depth, or ends before it finds something, has found nothing.
-PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index, bool throughSpecular,
-                        FirstHit* firstHit);
-
-// Does the same beside RenderGuidedSample().
-PathSample RenderGuidedSample(const Scene& scene, const Guide& guide, Sampler& sampler,
-                              const Vec2i& pixel, uint32_t index, bool throughSpecular,
-                              FirstHit* firstHit);
+// Describes a surface, or a point in a medium, which has no normal, object or material.
+struct FirstHit {
+    Rgb albedo = Rgb::Zero();        // in [0, 1]; where light is seen instead, that
+    Vec3f normal = Vec3f::Zero();    // shading, unit, world, on the viewer's side
+    Vec3f position = Vec3f::Zero();  // world
+    float depth = 0;        // from the camera's plane along its axis; environment cameras: distance
+    uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
+    uint32_t material = 0;  // 1 + number of the material; 0: none
+    bool found = false;     // there was one
+    // Of the sample: its filter weight, and the squared distance from the pixel's centre.
+    float weight = 1, offset2 = 0;
+};
 
 }  // namespace lull

@@ -1,9 +1,8 @@
-// Lets the loops over paths say what a path meets first. A loop is compiled once with a recorder
+// Lets the loop over a path say what it meets first. The loop is compiled once with a recorder
 // and once without, so that where nobody asks for layers there is not even a branch.
 #pragma once
 
 #include "renderer/bsdf/albedo.h"
-#include "renderer/transport/first_hit.h"
 #include "renderer/transport/path_state.h"
 
 namespace lull {
@@ -12,21 +11,17 @@ namespace lull {
 struct NoFirstHit {
     static constexpr bool Wanted() { return false; }
     static void Advance(float) {}
-    static void LeaveScene(const Path&, const Scene&, Estimator) {}
-    static void MeetSurface(const Path&, const Scene&, Estimator, const Hit&,
-                            const SurfaceInteraction&, const Bsdf&) {}
+    static void LeaveScene(const Path&) {}
+    static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
     static void MeetMedium(const Path&, const Vec3f&) {}
 };
 
 class FirstHitRecorder {
   public:
-    FirstHitRecorder(const Camera& camera, const Ray& cameraRay, float time, bool throughSpecular,
-                     FirstHit* hit)
-        : camera(camera),
-          direction(cameraRay.d),
-          time(time),
-          throughSpecular(throughSpecular),
-          hit(hit) {}
+    // `direction` is that of the camera's ray at `time`.
+    FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
+                     float time, FirstHit* hit)
+        : scene(scene), options(options), direction(direction), time(time), hit(hit) {}
 
     // Says whether it has still to be found.
     bool Wanted() const { return !done; }
@@ -37,22 +32,23 @@ class FirstHitRecorder {
     }
 
     // Nothing is there: what shines from there stands for the albedo.
-    void LeaveScene(const Path& path, const Scene& scene, Estimator estimator) {
+    void LeaveScene(const Path& path) {
         if (done) return;
         done = true;
-        StoreColor(Emission(scene, estimator, path, nullptr, {}) * scene.film.scale, path);
+        StoreColor(Emission(scene, options.estimator, path, nullptr, {}) * scene.film.scale, path);
     }
 
-    void MeetSurface(const Path& path, const Scene& scene, Estimator estimator, const Hit& found,
-                     const SurfaceInteraction& at, const Bsdf& bsdf) {
+    void MeetSurface(const Path& path, const Hit& found, const SurfaceInteraction& at,
+                     const Bsdf& bsdf) {
         if (done) return;
         const bool isSpecular = bsdf.LobeCount(LobeSet::All) > 0 &&
                                 bsdf.LobeCount(LobeSet::NonSpecular) == 0 &&
                                 !(scene.materials.Needs(at.material) & kScattersBelow);
-        if (isSpecular && throughSpecular && at.areaLight < 0) return;
+        if (isSpecular && options.throughSpecular && at.areaLight < 0) return;
         Rgb color = AlbedoOf(bsdf, at.wo);
         if (at.areaLight >= 0)
-            color = color.max(Emission(scene, estimator, path, &at, found) * scene.film.scale);
+            color =
+                color.max(Emission(scene, options.estimator, path, &at, found) * scene.film.scale);
         Store(color, at.p, path);
         if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
         hit->object =
@@ -82,16 +78,17 @@ class FirstHitRecorder {
     }
 
     float DepthPerDistance() const {
+        const Camera& camera = scene.camera;
         if (camera.projection == Projection::Environment) return 1;
         Vec3f axis = camera.rotation.col(2);
         if (camera.motion) axis = TransformVector(camera.motion->At(time), axis);
         return direction.dot(axis) / axis.norm();
     }
 
-    const Camera& camera;
-    const Vec3f direction;  // of the camera's ray
+    const Scene& scene;
+    const PathOptions& options;
+    const Vec3f direction;
     const float time;
-    const bool throughSpecular;
     FirstHit* hit;
     float distance = 0;  // of the path so far
     bool done = false;

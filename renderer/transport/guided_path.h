@@ -1,4 +1,4 @@
-// What a loop over paths does at each vertex with a guide, and without.
+// What the loop over a path does at each vertex with a guide, and without.
 #pragma once
 
 #include "renderer/transport/guide_record.h"
@@ -9,6 +9,7 @@ namespace lull {
 // Without a guide: what there is anyhow, at no cost.
 struct Unguided {
     void Enter(const SurfaceInteraction&, const Bsdf&, bool) {}
+    void EnterMedium() {}
     float Pdf(float bsdfPdf, const Vec3f&) const { return bsdfPdf; }
     bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, const Rgb&, Sampler& sampler,
                  Path* path, bool* isTransmission) {
@@ -38,6 +39,9 @@ class Guided {
         leaf = guide.Leaf(guide.Find(hit.p));
         fraction = leaf.fraction;
     }
+
+    // Comes to a point in a medium.
+    void EnterMedium() { ++vertices; }
 
     // Returns the density of sampling w where the BSDF's alone is `bsdfPdf`. What BSDFs cannot
     // sample is not sampled.

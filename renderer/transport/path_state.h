@@ -1,10 +1,21 @@
-// Shares what the loops over paths with and without media both need.
+// Holds a path between two vertices, and takes it from one to the next.
 #pragma once
 
 #include "renderer/base/sampling.h"
 #include "renderer/transport/path_tracer.h"
 
 namespace lull {
+
+// Holds what stays the same all along a path, and, in `media`, what lies about its next ray: a
+// policy (path_media.h).
+template <typename Media>
+struct PathContext {
+    const Scene& scene;
+    Estimator estimator;
+    Sampler& sampler;
+    const CameraSample& camera;
+    Media media;
+};
 
 // Carries the state of a path from one vertex to the next.
 struct Path {

@@ -1,9 +1,13 @@
-// Estimates the radiance along a camera ray by tracing paths.
+// Estimates the radiance along camera rays by tracing paths.
 #pragma once
 
 #include "renderer/scene/scene.h"
+#include "renderer/transport/first_hit.h"
 
 namespace lull {
+
+class Guide;
+class GuideRecord;
 
 // PbrtV3 takes pbrt-v3's strategies as they are: at each vertex one light is chosen and sampled
 // both by the light and by a BSDF ray of its own. Combined has the same mean from fewer rays: the
@@ -11,19 +15,33 @@ namespace lull {
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
 
+// Says how paths are traced. What it points to must outlive it.
+struct PathOptions {
+    PathOptions(Estimator estimator) : estimator(estimator) {}
+    // Lets a guide choose directions too, by Estimator::Combined. The mean is the same. In media,
+    // and where light spreads below a surface, directions are not guided.
+    PathOptions(const Guide& guide) : guide(&guide) {}
+
+    Estimator estimator = Estimator::Combined;
+    const Guide* guide = nullptr;
+    GuideRecord* record = nullptr;  // of the guide; gets what paths find. Null: nothing does
+    float usual = 1;                // the luminance that a path usually brings, > 0, for the record
+    // Lets the albedo of a FirstHit be that of what is seen times what mirrors and glass leave of
+    // it, and its depth go on by the way behind them, as if they were windows.
+    bool throughSpecular = false;
+};
+
 struct PathSample {
-    Rgb radiance;   // filter weight and film scale applied: the pixel is the mean of these
-    bool rejected;  // was NaN, infinite or negative, and counts as black
+    Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
+    bool rejected;     // was NaN, infinite or negative, and counts as black
+    int vertices = 0;  // that the path had beside the camera; counted of guided paths alone
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,
-// index) alone, whatever the thread or the order.
-PathSample RenderSample(const Scene& scene, Estimator estimator, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index);
-
-// Returns the radiance that arrives at `time`, from 0 where the shutter opens to 1, along `ray`:
-// the camera's through `film` (pixels) and `lens`.
-Rgb Radiance(const Scene& scene, Estimator estimator, Sampler& sampler, const Ray& ray,
-             const Vec2f& film, const Vec2f& lens, float time);
+// index) alone, whatever the thread or the order. `firstHit`, if given, receives what the path has
+// met first; one that is at its greatest depth, or ends before it finds something, has found
+// nothing.
+PathSample RenderSample(const Scene&, const PathOptions&, Sampler&, const Vec2i& pixel,
+                        uint32_t index, FirstHit* firstHit = nullptr);
 
 }  // namespace lull

@@ -62,6 +62,15 @@ Revolved Finished(Revolved shape) {
     return shape;
 }
 
+// Returns how far the surface gets from the axis, squared.
+double LargestRadius2(const Revolved& shape) {
+    if (shape.isOnSurface)
+        return std::max(shape.start.head<2>().squaredNorm(), shape.end.head<2>().squaredNorm());
+    const double middle = std::clamp(0., shape.zMin, shape.zMax);  // where r2 has its extremum
+    return std::max(
+        {Radius2(shape, shape.zMin), Radius2(shape, middle), Radius2(shape, shape.zMax)});
+}
+
 // Turns a line from `start` to `end`, of different heights.
 Revolved TurnedLine(const Vector3d& start, const Vector3d& end, float phiMax) {
     Revolved shape;
@@ -74,6 +83,23 @@ Revolved TurnedLine(const Vector3d& start, const Vector3d& end, float phiMax) {
     const Eigen::Vector2d atZero = start.head<2>() - slope * start.z();
     shape.r2 = {atZero.squaredNorm(), 2 * atZero.dot(slope), slope.squaredNorm()};
     return Finished(shape);
+}
+
+// Returns r2 of pbrt-v3's hyperboloid, x^2 + y^2 = r2[0] + r2[2] z^2 through the circles of p2 and
+// of a second point of the line from p1: the first of p1 + 2 k (p2 - p1) for which float can tell
+// the surface from a cone. Nothing where there is none, as for lines through the origin, with which
+// pbrt-v3 does not end, or where the circles have the same distance from z = 0.
+std::optional<Vector3d> PbrtHyperboloid(const Vector3d& p1, const Vector3d& p2) {
+    constexpr int kMost = 32;
+    const double r2 = p2.head<2>().squaredNorm(), z2 = p2.z() * p2.z();
+    for (int k = 1; k <= kMost; ++k) {
+        const Vector3d q = p1 + 2 * k * (p2 - p1);
+        const double qr2 = q.head<2>().squaredNorm(), qz2 = q.z() * q.z();
+        if (qz2 == z2) return {};
+        if (qr2 == 0 || float(r2 * qz2 / (qr2 * z2)) == 1) continue;
+        return Vector3d((qr2 * z2 - r2 * qz2) / (z2 - qz2), 0, (qr2 - r2) / (qz2 - z2));
+    }
+    return {};
 }
 
 }  // namespace
@@ -101,7 +127,12 @@ Revolved MakeHyperboloid(const Vec3f& p1, const Vec3f& p2, float phiMax) {
     // pbrt-v3 swaps the ends here, which turns the surface inside out.
     const bool swaps = p2.z() == 0;
     const Vector3d a = p1.cast<double>(), b = p2.cast<double>();
-    return swaps ? TurnedLine(b, a, phiMax) : TurnedLine(a, b, phiMax);
+    Revolved shape = swaps ? TurnedLine(b, a, phiMax) : TurnedLine(a, b, phiMax);
+    if (const auto r2 = PbrtHyperboloid(shape.start, shape.end)) {
+        shape.r2 = *r2;
+        shape.isOnSurface = false;
+    }
+    return shape;
 }
 
 bool HasArea(const Revolved& shape) {
@@ -112,8 +143,7 @@ bool HasArea(const Revolved& shape) {
 }
 
 Bounds3f Revolved::WorldBounds() const {
-    const auto r =
-        float(std::sqrt(std::max({start.head<2>().squaredNorm(), end.head<2>().squaredNorm()})));
+    const auto r = float(std::sqrt(LargestRadius2(*this)));
     return TransformBounds(place.worldFromShape, Vec3f(-r, -r, float(zMin)),
                            Vec3f(r, r, float(zMax)));
 }
@@ -156,6 +186,8 @@ void Interact(const Revolved& shape, const Ray& worldRay, float t, SurfaceNeeds 
     };
     const Vector3d dpdu(-phiMax * p.y(), phiMax * p.x(), 0), dpdv = turned(c.dp);
     Vector3d gradient = shape.normalSign * HalfGradient(shape, p);
+    if (!shape.isOnSurface)
+        if (const Vector3d cross = dpdu.cross(dpdv); cross.squaredNorm() > 0) gradient = cross;
     if (!(gradient.squaredNorm() > 0)) gradient = Vector3d(0, 0, 1);  // the tip of a cone
     const double length = gradient.norm();
     const Vector3d n = gradient / length;
@@ -163,14 +195,19 @@ void Interact(const Revolved& shape, const Ray& worldRay, float t, SurfaceNeeds 
     hit->uv = {float(phi / phiMax), float(HeightToV(shape, p.z()))};
     hit->dndu = hit->dndv = Vec3f::Zero();
     if (needs & kNeedsNormalDerivatives) {
-        // Differentiate the unit gradient, whose own derivative is diagonal.
-        const auto derivative = [&](const Vector3d& dp) -> Vec3f {
-            const Vector3d dg = shape.normalSign * Vector3d(dp.x(), dp.y(), -shape.r2[2] * dp.z());
+        // Differentiate the unit gradient, whose own derivative is diagonal, or that cross product.
+        const auto ofUnit = [&](const Vector3d& dg) -> Vec3f {
             const Vec3f dn = ((dg - n * n.dot(dg)) / length).cast<float>();
             return dn.allFinite() ? dn : Vec3f(Vec3f::Zero());
         };
-        hit->dndu = derivative(dpdu);
-        hit->dndv = derivative(dpdv);
+        const auto ofGradient = [&](const Vector3d& dp) {
+            return Vector3d(shape.normalSign * Vector3d(dp.x(), dp.y(), -shape.r2[2] * dp.z()));
+        };
+        const Vector3d duu = -phiMax * phiMax * Vector3d(p.x(), p.y(), 0);
+        const Vector3d duv = phiMax * Vector3d(-dpdv.y(), dpdv.x(), 0);
+        hit->dndu = ofUnit(shape.isOnSurface ? ofGradient(dpdu)
+                                             : Vector3d(duu.cross(dpdv) + dpdu.cross(duv)));
+        hit->dndv = ofUnit(shape.isOnSurface ? ofGradient(dpdv) : Vector3d(duv.cross(dpdv)));
     }
     // The cross product of the tangents would vanish on the axis; the normal is known.
     CoordinateSystem(n.cast<float>(), &hit->dpdu, &hit->dpdv);

@@ -11,6 +11,7 @@ namespace lull {
 struct Revolved {
     QuadricPlacement place;
     bool isParabola = false;  // the curve; else a straight line
+    bool isOnSurface = true;  // the curve; else dpdv is the line's, and the normal dpdu x dpdv
     Eigen::Vector3d start = Eigen::Vector3d::Zero(), end = Eigen::Vector3d::Zero();
     Eigen::Vector3d r2 = Eigen::Vector3d::Zero();
     double zMin = 0, zMax = 0;
@@ -23,8 +24,12 @@ struct Revolved {
 
 // Make the shapes from their sizes (pbrt 3rd ed., 3.3 and 3.5). The cylinder stands on zMin; the
 // cone has its tip at `height`; the paraboloid touches the origin and has `radius` at zMax; the
-// hyperboloid turns the line from p1 to p2. `phiMax` in radians. The result has no area, and must
-// not be used, where HasArea says so.
+// hyperboloid is pbrt-v3's. `phiMax` in radians. The result has no area, and must not be used,
+// where HasArea says so.
+//
+// pbrt-v3's hyperboloid is not what the line from p1 to p2 sweeps out, but where the line's waist
+// is at z = 0: its waist always is, and it goes through p2 and the point as far behind p2 as p1 is
+// before it. Heights end where the line does; uv, tangents and normals are those of the line.
 Revolved MakeCylinder(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeCone(float radius, float height, float phiMax);
 Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);

@@ -10,7 +10,6 @@
 #include "renderer/render/learning_state.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
-#include "renderer/transport/guided_path_tracer.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
@@ -18,13 +17,13 @@ namespace {
 
 std::unique_ptr<const Scene> MakeScene(const std::string& world, int size = 16,
                                        const std::string& camera = "0 0 -0.9  0 0 0  0 1 0",
-                                       int maxDepth = 100) {
+                                       int maxDepth = 100, const std::string& integrator = "path") {
     const TemporaryDirectory directory;
     Warnings warnings;
     const std::string text = "LookAt " + camera + "\nCamera \"perspective\" \"float fov\" [80]\n" +
                              "Film \"image\" \"integer xresolution\" [" + std::to_string(size) +
                              "] \"integer yresolution\" [" + std::to_string(size) + "]\n" +
-                             "Integrator \"path\" \"integer maxdepth\" [" +
+                             "Integrator \"" + integrator + "\" \"integer maxdepth\" [" +
                              std::to_string(maxDepth) + "]\nWorldBegin\n" + world + "\nWorldEnd\n";
     const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
     CompileOptions options;
@@ -120,7 +119,7 @@ TEST(Learning, WithoutAnythingToSayPathsAreThoseWithout) {
     int differ = 0;  // where rounding ends one path earlier
     for (int k = 0; k < 500; ++k) {
         const Vec2i pixel(k % 16, k / 16 % 16);
-        const Rgb guided = RenderGuidedSample(*scene, nothing, a, pixel, uint32_t(k)).radiance;
+        const Rgb guided = RenderSample(*scene, nothing, a, pixel, uint32_t(k)).radiance;
         const Rgb plain = RenderSample(*scene, Estimator::Combined, b, pixel, uint32_t(k)).radiance;
         differ += !((guided - plain).abs() <= 1e-3f * plain + 1e-6f).all();
     }
@@ -137,6 +136,31 @@ TEST(Learning, KeepsTheMeanAndLowersTheVariance) {
     EXPECT_EQ(guided.rejected, 0);
     EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
     EXPECT_LT(guided.variance, 0.8 * plain.variance);
+}
+
+// A ball of fog in that room, and fog about the camera.
+TEST(Learning, KeepsTheMeanInMedia) {
+    const std::string fog =
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.05 .1 .2] "
+        "\"rgb sigma_s\" [.4 .3 .2] \"float g\" .3\n";
+    const std::string ball =
+        "AttributeBegin\nMaterial \"none\"\nMediumInterface \"fog\" \"\"\n"
+        "Shape \"sphere\" \"float radius\" .6\nAttributeEnd\n";
+    const std::string view = "0 0 -0.9  0 0 0  0 1 0\n";
+    const auto inside =
+        MakeScene(kRoom, 16, view + fog + "MediumInterface \"\" \"fog\"", 30, "volpath");
+    const auto outside = MakeScene(fog + ball + kRoom, 16, view, 30, "volpath");
+    for (const Scene* scene : {inside.get(), outside.get()}) {
+        ASSERT_TRUE(scene->isVolumetric);
+        ASSERT_FALSE(WhyNotGuided(*scene, Estimator::Combined));
+        const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 500));
+        const Estimate pbrt = Measure(*scene, SamplesOf(*scene, Estimator::PbrtV3), 200, 4);
+        const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 120, 5);
+        const Estimate guided = Measure(*scene, SamplesOf(*scene, learning.guide), 120, 6);
+        EXPECT_EQ(guided.rejected, 0);
+        EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
+        EXPECT_NEAR(guided.mean, pbrt.mean, 4 * std::hypot(pbrt.error, guided.error));
+    }
 }
 
 // Asking for layers changes no guided sample, and what is seen first does not depend on the guide,

@@ -32,7 +32,7 @@ void ExpectNear(const Vec3f& a, const Vec3f& b, float tolerance = 1e-5f) {
 }
 
 Vec3f Direction(const Camera& camera, float x, float y) {
-    return camera.GenerateRay({x, y}, {0.5f, 0.5f}).d;
+    return camera.GenerateRay({{x, y}, {0.5f, 0.5f}}).d;
 }
 
 TEST(Camera, LooksAlongZWithTheFieldOfViewOnTheShorterAxis) {
@@ -46,7 +46,7 @@ TEST(Camera, LooksAlongZWithTheFieldOfViewOnTheShorterAxis) {
     ExpectNear(Direction(wide, 200, 100), Vec3f(2 * t, -t, 1).normalized());
     const Camera tall = MakeTestCamera(FilmOf(100, 200), {FloatParameter("halffov", {30})});
     ExpectNear(Direction(tall, 0, 0), Vec3f(-t, 2 * t, 1).normalized());
-    ExpectNear(wide.GenerateRay({3, 4}, {0, 0}).o, Vec3f::Zero());
+    ExpectNear(wide.GenerateRay({{3, 4}, {0, 0}}).o, Vec3f::Zero());
 }
 
 TEST(Camera, FollowsScreenWindowAndAspect) {
@@ -78,7 +78,7 @@ Mat4d RigidTransform() {
 TEST(Camera, StandsWhereItsTransformSays) {
     const Mat4d worldFromCamera = RigidTransform();
     const Camera camera = MakeTestCamera(FilmOf(100, 100), {}, worldFromCamera.inverse());
-    const Ray ray = camera.GenerateRay({20, 70}, {0.5f, 0.5f});
+    const Ray ray = camera.GenerateRay({{20, 70}, {0.5f, 0.5f}});
     ExpectNear(ray.o, Vec3f(3, -2, 5));
     ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f(-0.6f, -0.4f, 1).normalized()));
     EXPECT_NEAR((WorldToCamera(camera) - worldFromCamera.inverse()).norm(), 0, 1e-9);
@@ -102,7 +102,7 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
     constexpr int kRays = 20000;
     for (int i = 0; i < kRays; ++i) {
         const Vec2f film = random.Point().cwiseProduct(Vec2f(100, 80));
-        const Ray ray = lens.GenerateRay(film, random.Point());
+        const Ray ray = lens.GenerateRay({film, random.Point()});
         ASSERT_NEAR(ray.d.norm(), 1, 1e-5);
         const auto inCamera = [&](const Vec3f& p) {
             return TransformPoint(WorldToCamera(lens), p);
@@ -111,7 +111,7 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
         ASSERT_NEAR(o.z(), 0, 1e-5);
         ASSERT_LE(o.norm(), 0.3001f);
         radius2 += o.squaredNorm() / kRays;
-        const Vec3f straight = inCamera(pinhole.position + pinhole.GenerateRay(film, {0, 0}).d);
+        const Vec3f straight = inCamera(pinhole.position + pinhole.GenerateRay({film, {0, 0}}).d);
         ASSERT_NEAR((o + d * (4 / d.z()) - straight * (4 / straight.z())).norm(), 0, 2e-4);
     }
     EXPECT_NEAR(radius2, 0.3 * 0.3 / 2, 0.001);
@@ -124,7 +124,7 @@ TEST(Camera, OrthographicRaysAreParallel) {
                                          worldFromCamera.inverse(), "orthographic");
     const Vec2f lens(0.5f, 0.5f);
     for (const Vec2f& p : {Vec2f(0, 0), Vec2f(200, 0), Vec2f(50, 70)}) {
-        const Ray ray = camera.GenerateRay(p, lens);
+        const Ray ray = camera.GenerateRay({p, lens});
         ExpectNear(ray.o, TransformPoint(worldFromCamera,
                                          Vec3f(-3 + 4 * p.x() / 200, 4 - 6 * p.y() / 100, 0)));
         ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f::UnitZ()));
@@ -135,7 +135,7 @@ TEST(Camera, OrthographicRaysAreParallel) {
     }
     // The shorter axis holds [-1, 1] by default.
     const Camera wide = MakeTestCamera(film, {}, Mat4d::Identity(), "orthographic");
-    ExpectNear(wide.GenerateRay({0, 0}, lens).o, Vec3f(-2, 1, 0));
+    ExpectNear(wide.GenerateRay({{0, 0}, lens}).o, Vec3f(-2, 1, 0));
 }
 
 TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
@@ -146,7 +146,7 @@ TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
     test::Random random(2);
     for (int i = 0; i < 1000; ++i) {
         const Vec2f p = 10 * random.Point();
-        const Ray ray = camera.GenerateRay(p, random.Point());
+        const Ray ray = camera.GenerateRay({p, random.Point()});
         ASSERT_LE(ray.o.norm(), 0.2001f);
         ASSERT_NEAR(ray.d.norm(), 1, 1e-5);
         const Vec3f focus = ray.o + ray.d * (3 / ray.d.z());
@@ -160,7 +160,7 @@ TEST(Camera, EnvironmentSeesAllDirections) {
     const Camera camera = MakeTestCamera(film, {FloatParameter("lensradius", {2})},
                                          worldFromCamera.inverse(), "environment");
     const auto inCamera = [&](float x, float y) {
-        const Ray ray = camera.GenerateRay({x, y}, {0.1f, 0.2f});
+        const Ray ray = camera.GenerateRay({{x, y}, {0.1f, 0.2f}});
         ExpectNear(ray.o, Vec3f(3, -2, 5));
         return TransformVector(WorldToCamera(camera), ray.d);
     };

@@ -50,7 +50,7 @@ TEST(RealisticCamera, FocusesAtTheDistance) {
         std::vector<Vec3f> points;
         for (int i = 0; i < 2000; ++i) {
             float weight;
-            const Ray ray = camera.GenerateRay(film, random.Point(), 0, &weight);
+            const Ray ray = camera.GenerateRay({film, random.Point()}, &weight);
             ASSERT_TRUE(weight >= 0 && std::isfinite(weight));
             if (weight == 0) continue;
             ASSERT_NEAR(ray.d.norm(), 1, 1e-5f);
@@ -78,7 +78,7 @@ TEST(RealisticCamera, WeighsByTheLightThatPasses) {
         constexpr int kCount = 20000;
         for (int i = 0; i < kCount; ++i) {
             float weight;
-            c.GenerateRay(film, random.Point(), 0, &weight);
+            c.GenerateRay({film, random.Point()}, &weight);
             sum += weight;
         }
         return sum / kCount;
@@ -108,10 +108,10 @@ TEST(RealisticCamera, MayLetNothingPass) {
     test::Random random(3);
     for (int i = 0; i < 1000; ++i) {
         float weight;
-        const Ray ray = camera.GenerateRay({3, 3}, random.Point(), 0, &weight);
+        const Ray ray = camera.GenerateRay({{3, 3}, random.Point()}, &weight);
         EXPECT_TRUE(ray.o.allFinite() && ray.d.allFinite() && weight >= 0);
         dark += weight == 0;
-        EXPECT_FALSE(camera.NextRay(ray, {3, 3}, {0.5f, 0.5f}, 0, 0).has_value());
+        EXPECT_FALSE(camera.NextRay(ray, {{3, 3}}, 0).has_value());
     }
     EXPECT_EQ(dark, 1000);
     EXPECT_TRUE(Contains(CameraError(kLens, {FloatParameter("aperturediameter", {0})}),

@@ -222,16 +222,16 @@ TEST(Motion, CamerasMove) {
     const auto scene = MakeScene("", moves + "Camera \"perspective\"");
     EXPECT_TRUE(scene->isMoving);
     const Vec2f film(3, 4), lens(0, 0);
-    const Ray first = scene->camera.GenerateRay(film, lens, 0);
+    const Ray first = scene->camera.GenerateRay({film, lens, 0});
     for (const float time : {0.f, 0.25f, 1.f}) {
-        const Ray ray = scene->camera.GenerateRay(film, lens, time);
+        const Ray ray = scene->camera.GenerateRay({film, lens, time});
         EXPECT_NEAR((ray.o - Vec3f(2 * time, 0, 0)).norm(), 0, 1e-6);
         EXPECT_NEAR((ray.d - first.d).norm(), 0, 1e-6);
     }
     const auto still = MakeScene(
         "", moves + "Camera \"perspective\" \"float shutteropen\" .5 \"float shutterclose\" .5");
     EXPECT_FALSE(still->isMoving);
-    EXPECT_NEAR((still->camera.GenerateRay(film, lens).o - Vec3f(1, 0, 0)).norm(), 0, 1e-6);
+    EXPECT_NEAR((still->camera.GenerateRay({film, lens}).o - Vec3f(1, 0, 0)).norm(), 0, 1e-6);
     EXPECT_THROW(MakeScene("", "Camera \"perspective\" \"float shutterclose\" 1e39"), Error);
 }
 

@@ -29,7 +29,7 @@ Vector3d Turned(const Vector3d& p, double phi) {
 }
 
 std::vector<Example> Examples() {
-    const Vec3f p1(0.9f, 0.2f, -0.8f), p2(0.3f, 1.1f, 0.5f);  // its waist is not at z = 0
+    const Vec3f p1(0.5f, -0.72f, -0.8f), p2(0.5f, 0.45f, 0.5f);  // its waist is at z = 0
     std::vector<Example> examples = {
         {"cylinder", MakeCylinder(0.7f, 0.9f, -0.4f, kSweep),
          [](double u, double v) {
@@ -132,6 +132,125 @@ TEST(Revolved, KnowsHowItsNormalTurns) {
             ASSERT_NEAR((hit.dndv - dndv).norm(), 0, 5e-3 * (1 + dndv.norm())) << e.name;
         }
     }
+}
+
+// What pbrt-v3 computes of its hyperboloid: ah (x^2 + y^2) - ch z^2 = 1, and what its line says.
+struct PbrtHyperboloid {
+    Vector3d p1, p2;
+    double phiMax, ah, ch;
+
+    PbrtHyperboloid(const Vector3d& a, const Vector3d& b, double phiMax)
+        : p1(b.z() == 0 ? b : a), p2(b.z() == 0 ? a : b), phiMax(phiMax) {
+        const double xy2 = p2.head<2>().squaredNorm(), zz2 = p2.z() * p2.z();
+        Vector3d pp = p1;
+        do {
+            pp += 2 * (p2 - p1);
+            const double ratio = pp.z() * pp.z() / (pp.head<2>().squaredNorm() * zz2);
+            ah = (1 / pp.head<2>().squaredNorm() - ratio) / (1 - xy2 * ratio);
+            ch = (ah * xy2 - 1) / zz2;
+        } while (!std::isfinite(ah));
+    }
+
+    struct At {
+        double t, u, v;
+        Vector3d p, dpdu, dpdv;
+    };
+    std::optional<At> Intersect(const Vector3d& o, const Vector3d& d) const {
+        const Vector3d scale(ah, ah, -ch);
+        const double a = d.cwiseProduct(scale).dot(d), b = 2 * d.cwiseProduct(scale).dot(o);
+        const double c = o.cwiseProduct(scale).dot(o) - 1, root = std::sqrt(b * b - 4 * a * c);
+        const double t0 = (-b - root) / (2 * a), t1 = (-b + root) / (2 * a);
+        for (const double t : {std::min(t0, t1), std::max(t0, t1)}) {
+            const Vector3d p = o + t * d;
+            const double v = (p.z() - p1.z()) / (p2.z() - p1.z());
+            const Vector3d pr = (1 - v) * p1 + v * p2;
+            double phi = std::atan2(p.y(), p.x()) - std::atan2(pr.y(), pr.x());
+            while (phi < 0) phi += 2 * std::numbers::pi;
+            if (t > 0 && v >= 0 && v <= 1 && phi <= phiMax)
+                return At{t,
+                          phi / phiMax,
+                          v,
+                          p,
+                          {-phiMax * p.y(), phiMax * p.x(), 0},
+                          Turned(p2 - p1, phi)};
+        }
+        return {};
+    }
+    // The coefficients of the fundamental forms, with which pbrt-v3 turns the normal.
+    void NormalDerivatives(const At& at, Vector3d* dndu, Vector3d* dndv) const {
+        const Vector3d n = at.dpdu.cross(at.dpdv).normalized();
+        const double e = n.dot(-phiMax * phiMax * Vector3d(at.p.x(), at.p.y(), 0));
+        const double f = n.dot(phiMax * Vector3d(-at.dpdv.y(), at.dpdv.x(), 0));
+        const double E = at.dpdu.dot(at.dpdu), F = at.dpdu.dot(at.dpdv), G = at.dpdv.dot(at.dpdv);
+        const double determinant = E * G - F * F;
+        *dndu = ((f * F - e * G) * at.dpdu + (e * F - f * E) * at.dpdv) / determinant;
+        *dndv = (-f * G * at.dpdu + f * F * at.dpdv) / determinant;
+    }
+};
+
+TEST(Revolved, HyperboloidIsPbrtV3s) {
+    const struct {
+        Vec3f p1, p2;
+        bool isSwept;  // by its line
+    } lines[] = {{{-3.2f, 0.8f, 0.4f}, {-1, -0.5f, -1.25f}, false},
+                 {{0.9f, 0.2f, -0.8f}, {0.3f, 1.1f, 0.5f}, false},
+                 {{0.2f, 0, 0}, {0.02f, 0.17f, 0.6f}, false},
+                 {{1, 0.3f, 0.7f}, {0.2f, 0.6f, 0}, false},  // the ends are swapped
+                 {{0.4f, 0.1f, 1}, {0.9f, 0.3f, 2}, false},  // two sheets
+                 {{1.5f, 0.2f, 0.5f}, {0.7f, 0.4f, 1.5f}, false},
+                 {{0.9f, 0.2f, -0.8f}, {0.2f, 0.9f, 0.8f}, true}};
+    Random random(5);
+    for (const auto& line : lines) {
+        const PbrtHyperboloid pbrt(line.p1.cast<double>(), line.p2.cast<double>(), double(kSweep));
+        const Revolved shape = MakeHyperboloid(line.p1, line.p2, kSweep);
+        ASSERT_TRUE(HasArea(shape));
+        const Bounds3f bounds = shape.WorldBounds();
+        int hits = 0, differ = 0, offLine = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const Vec3f from = 6 * random.Direction();
+            const Vec3f to = line.p1 + random.Float() * (line.p2 - line.p1) +
+                             2 * random.Float() * random.Direction();
+            const Ray ray{from, (to - from).normalized(), kInfinity};
+            const auto theirs = pbrt.Intersect(ray.o.cast<double>(), ray.d.cast<double>());
+            const auto t = Intersect(shape, ray);
+            if (t.has_value() != theirs.has_value() ||
+                (t && std::abs(double(*t) - theirs->t) > 1e-3)) {
+                ++differ;  // at an edge
+                continue;
+            }
+            if (!t) continue;
+            ++hits;
+            SurfaceInteraction hit;
+            Interact(shape, ray, *t, kNeedsNormalDerivatives, &hit);
+            ASSERT_NEAR((hit.p - theirs->p.cast<float>()).norm(), 0, 1e-4);
+            ASSERT_NEAR(hit.uv.x(), theirs->u, 1e-3);
+            ASSERT_NEAR(hit.uv.y(), theirs->v, 1e-3);
+            for (int axis = 0; axis < 3; ++axis) {
+                ASSERT_GT(hit.p[axis], bounds.lower[axis] - 1e-4f);
+                ASSERT_LT(hit.p[axis], bounds.upper[axis] + 1e-4f);
+            }
+            const Vec3f n = theirs->dpdu.cross(theirs->dpdv).normalized().cast<float>();
+            ASSERT_GT(hit.n.dot(n), 0.9999);
+            Vector3d dndu, dndv;
+            pbrt.NormalDerivatives(*theirs, &dndu, &dndv);
+            ASSERT_NEAR((hit.dndu.cast<double>() - dndu).norm(), 0, 1e-2 * (1 + dndu.norm()));
+            ASSERT_NEAR((hit.dndv.cast<double>() - dndv).norm(), 0, 1e-2 * (1 + dndv.norm()));
+            const double v = theirs->v;
+            const Vector3d onLine = ((1 - v) * pbrt.p1 + v * pbrt.p2);
+            offLine += std::abs(onLine.head<2>().norm() - theirs->p.head<2>().norm()) > 1e-3;
+        }
+        EXPECT_GT(hits, 500) << line.p1.transpose();
+        EXPECT_LT(differ, 20) << line.p1.transpose();
+        EXPECT_EQ(offLine == 0, line.isSwept) << line.p1.transpose();
+    }
+}
+
+// A line through the origin sweeps out a cone; pbrt-v3 does not end with it.
+TEST(Revolved, HyperboloidOfALineThroughTheOriginIsACone) {
+    const Revolved shape = MakeHyperboloid({0, 0, 0}, {1, 1, 1}, 2 * kPi);
+    const auto t = Intersect(shape, {{5, 0, 0.5f}, {-1, 0, 0}, kInfinity});
+    ASSERT_TRUE(t);
+    EXPECT_NEAR(*t, 5 - std::sqrt(0.5), 1e-5);
 }
 
 // Rays that leave the outside of a cylinder or cone away from its axis never meet it again.

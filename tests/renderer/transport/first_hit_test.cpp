@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/transport/first_hit.h"
+#include "renderer/transport/path_tracer.h"
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
@@ -41,7 +41,9 @@ FirstHit Find(const Scene& scene, Estimator estimator, bool throughSpecular = fa
               uint32_t index = 0) {
     Sampler sampler(SamplerKind::Random, 7);
     FirstHit hit;
-    RenderSample(scene, estimator, sampler, {0, 0}, index, throughSpecular, &hit);
+    PathOptions options = estimator;
+    options.throughSpecular = throughSpecular;
+    RenderSample(scene, options, sampler, {0, 0}, index, &hit);
     return hit;
 }
 
@@ -190,7 +192,7 @@ TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
     for (int i = 0; i < 16; ++i) {
         Sampler sampler(SamplerKind::Random, 7);
         FirstHit hit;
-        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, false, &hit);
+        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, &hit);
         EXPECT_NEAR(hit.depth, 7, 1e-3f);
     }
 }
@@ -209,7 +211,9 @@ TEST(FirstHit, LeavesTheImageAsItIs) {
             for (uint32_t k = 0; k < 500; ++k) {
                 Sampler a(SamplerKind::Sobol, 3), b(SamplerKind::Sobol, 3);
                 FirstHit hit;
-                const PathSample with = RenderSample(*scene, estimator, a, {0, 0}, k, true, &hit);
+                PathOptions options = estimator;
+                options.throughSpecular = true;
+                const PathSample with = RenderSample(*scene, options, a, {0, 0}, k, &hit);
                 const PathSample without = RenderSample(*scene, estimator, b, {0, 0}, k);
                 for (int c = 0; c < 3; ++c) ASSERT_EQ(with.radiance[c], without.radiance[c]);
             }

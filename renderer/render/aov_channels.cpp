@@ -1,4 +1,4 @@
-#include "renderer/output/aov_channels.h"
+#include "renderer/render/aov_channels.h"
 
 namespace lull {
 

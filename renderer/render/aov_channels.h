@@ -1,8 +1,8 @@
 // Turns the sums of layers into the channels of an EXR.
 #pragma once
 
-#include "renderer/output/aov_film.h"
 #include "renderer/output/image_io.h"
+#include "renderer/render/aov_film.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_film.h"
 
 #include <fmt/format.h>
 

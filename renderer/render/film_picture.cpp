@@ -1,4 +1,4 @@
-#include "renderer/denoise/film_picture.h"
+#include "renderer/render/film_picture.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/output/feature_film.h"
 #include "renderer/output/image_io.h"
+#include "renderer/render/feature_film.h"
 
 namespace lull {
 

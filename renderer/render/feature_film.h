@@ -2,7 +2,7 @@
 // samples.
 #pragma once
 
-#include "renderer/output/aov_film.h"
+#include "renderer/render/aov_film.h"
 
 namespace lull {
 

@@ -1,0 +1,94 @@
+// Estimates the light that arrives at a vertex of a path directly from lights.
+#pragma once
+
+#include "renderer/transport/guided_path.h"
+#include "renderer/transport/path_media.h"
+
+namespace lull {
+
+// Returns the light that sampling light `index` brings to the vertex, weighted against sampling of
+// directions. `pmf` is the probability of having chosen the light.
+template <typename Media, typename Vertex, typename Guiding>
+[[gnu::always_inline]] inline Rgb SampleLight(const PathContext<Media>& context, const Vertex& v,
+                                              const Guiding& guiding, int index, float pmf) {
+    const Vec2f u = context.sampler.Get2D();
+    const auto light = context.scene.lights.Sample(index, v.Position(), u);
+    if (!light || IsBlack(light->L)) return Rgb::Zero();
+    // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
+    // continues the path is sampled from all of them. A light that rays cannot hit keeps
+    // pbrt-v3's weight in both, so that the mean stays the same.
+    const bool asPbrtV3 = context.estimator == Estimator::PbrtV3;
+    const bool hasOwnRay = asPbrtV3 || light->isHidden;
+    const BsdfValue value = !hasOwnRay ? v.Evaluate(light->wi, LobeSet::All)
+                            : asPbrtV3 ? v.Evaluate(light->wi, LobeSet::NonSpecular)
+                                       : v.EvaluateEvenly(light->wi);
+    if (IsBlack(value.f)) return Rgb::Zero();
+    const float weight = light->isDelta ? 1
+                         : hasOwnRay
+                             ? PowerHeuristic(light->pdf, value.pdf)
+                             : PowerHeuristic(light->pdf * pmf, guiding.Pdf(value.pdf, light->wi));
+    const float cosine = v.Cosine(light->wi);
+    const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
+    if constexpr (!Media::kExist) {
+        if (IsBlack(L) || !context.media.Sees(context, v, *light)) return Rgb::Zero();
+        return L;
+    } else {
+        const auto sight = context.media.See(context, v, *light);
+        if (IsBlack(sight.share)) return Rgb::Zero();
+        if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * sight.share;
+        // What no ray can reach keeps pbrt-v3's weight, too.
+        const float evenly = PowerHeuristic(light->pdf, v.EvaluateEvenly(light->wi).pdf);
+        return sight.isOutOfReach.select(
+                   value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
+               sight.share;
+    }
+}
+
+// Returns the light that a direction sampled for it finds on light `index`: the other half of
+// pbrt-v3's direct light. Takes a copy of the context, which so can stay in registers.
+template <typename Media, typename Vertex>
+Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int index, float pmf) {
+    const Vec2f u = context.sampler.Get2D();
+    const Light& light = context.scene.lights[index];
+    const AreaLight* area = std::get_if<AreaLight>(&light);
+    const InfiniteLight* environment = std::get_if<InfiniteLight>(&light);
+    if (!area && !environment) return Rgb::Zero();  // a direction cannot be found by chance
+    if (area && area->isHidden) return Rgb::Zero();
+    const auto sample = v.Sample(u, LobeSet::NonSpecular);
+    if (!sample) return Rgb::Zero();
+    Sighting sighting;
+    Rgb L;
+    float lightPdf;
+    if (environment) {
+        lightPdf = environment->Pdf(sample->wi);
+        if (lightPdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
+            return Rgb::Zero();
+        L = environment->Le(sample->wi);
+    } else {
+        if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
+        const SurfaceInteraction& at = sighting.at;
+        L = area->Le(at.n, -sample->wi, sighting.found);
+        lightPdf = area->Pdf(v.Position(), at.p, at.n);
+        if (lightPdf == 0) return Rgb::Zero();
+    }
+    return sample->f * L * sighting.share *
+           (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
+}
+
+// Samples direct light as the estimator says: chooses one light of those at the vertex, and tells
+// the path how likely each was.
+template <typename Media, typename Vertex, typename Guiding>
+[[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
+                                                    const Vertex& v, const Guiding& guiding,
+                                                    Path* path) {
+    path->choice = v.Choice(context.scene.lights);
+    float pmf;
+    const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
+    if (!(pmf > 0)) return Rgb::Zero();
+    Rgb L = SampleLight(context, v, guiding, index, pmf);
+    if (context.estimator == Estimator::PbrtV3)
+        L += SampleDirectionForLight(context, v, index, pmf);
+    return L;
+}
+
+}  // namespace lull

@@ -1,0 +1,154 @@
+// What the loop over a path does between two vertices with participating media, and without.
+#pragma once
+
+#include "renderer/transport/path_state.h"
+#include "renderer/transport/path_vertex.h"
+
+namespace lull {
+
+// Holds what a ray finds that looks for a light.
+struct Sighting {
+    Hit found;                // the light's surface, if it has one
+    SurfaceInteraction at;    // there
+    Rgb share = Rgb::Ones();  // of its light that gets to where the ray starts, an estimate
+};
+
+// Without media: nothing is there. As with pbrt-v3's path integrator, interfaces block shadow rays.
+struct NoMedia {
+    static constexpr bool kExist = false;
+    using Context = PathContext<NoMedia>;
+
+    explicit NoMedia(const Scene&) {}
+
+    // Traces the ray from a surface point to a light's point. Both ends are moved off their
+    // surfaces; the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that
+    // or rounding turns a grazing ray to the other side of the surface, it would pass through: that
+    // is in shadow.
+    [[gnu::always_inline]] static bool Sees(const Context& context, const SurfaceVertex& v,
+                                            const LightSample& light) {
+        const auto occluded = [&](const Ray& ray) {
+            return context.scene.accelerator.Occluded(ray, context.camera.time);
+        };
+        if (light.isAtInfinity) return !occluded(v.hit.SpawnRay(light.wi));
+        const Vec3f origin = v.OriginTowards(light.wi);
+        const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
+        const Vec3f d = target - origin;
+        return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
+    }
+
+    // Says whether a ray in direction wi leaves the scene.
+    static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
+                            Sighting*) {
+        return !context.scene.accelerator.Occluded(v.hit.SpawnRay(wi), context.camera.time);
+    }
+    // Says whether it meets area light `index`.
+    static bool MeetsLight(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
+                           int index, Sighting* sighting) {
+        const Ray ray = v.hit.SpawnRay(wi);
+        const Scene& scene = context.scene;
+        if (!scene.accelerator.Intersect(ray, &sighting->found, context.camera.time) ||
+            scene.shapes.LightAt(sighting->found) != index)
+            return false;
+        scene.shapes.Interact(ray, sighting->found, kNeedsNothing, &sighting->at);
+        return true;
+    }
+
+    // Says whether paths at their last ray, too, look for light behind such a surface.
+    static constexpr bool LooksBehind(SurfaceNeeds) { return false; }
+    // Carries the ray on behind an interface; returns false where the path ends. Lights behind it
+    // are seen only by rays for which emission counts in full.
+    [[gnu::always_inline]] static bool GoThrough(const SurfaceInteraction& hit, int, bool isLast,
+                                                 Path* path) {
+        if (isLast) return false;
+        path->ray = hit.SpawnRay(path->ray.d);
+        path->pdf = 0;
+        path->wentThrough = true;
+        return true;
+    }
+    // Is told that the path leaves a surface.
+    static void Leave(const SurfaceVertex&, const Vec3f&) {}
+};
+
+// With media, pbrt-v3's volpath: shadow rays go through interfaces.
+class Media {
+  public:
+    static constexpr bool kExist = true;
+    using Context = PathContext<Media>;
+
+    // Starts where the camera is.
+    explicit Media(const Scene& scene) : table(&scene.media), medium(scene.media.ofCamera) {}
+
+    // Samples where the medium scatters the ray before it has gone t.
+    MediumSample Sample(Ray ray, float t, Sampler& sampler) const {
+        ray.tMax = t;
+        return medium == kVacuum ? MediumSample{} : table->Sample(medium, ray, sampler);
+    }
+    float PhaseParameter() const { return table->PhaseParameter(medium); }
+
+    // Says how a vertex sees a sample of a light.
+    struct Sight {
+        Rgb share = Rgb::Zero();  // of the light that gets there, an estimate
+        // The channels in which rays that look for the light end in a medium without an end.
+        Eigen::Array<bool, 3, 1> isOutOfReach = {false, false, false};
+    };
+    // As in pbrt-v3, light from infinity comes from twice the scene's radius away: through a medium
+    // that fills the world it would not come from farther.
+    template <typename Vertex>
+    Sight See(const Context& context, const Vertex& v, const LightSample& light) const {
+        const Vec3f p = v.Position();
+        const Vec3f origin = v.OriginTowards(light.isAtInfinity ? light.wi : Vec3f(light.p - p));
+        const Vec3f target =
+            light.isAtInfinity ? Vec3f(p + context.scene.shapes.bounds.Diagonal().norm() * light.wi)
+                               : OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
+        if (!v.IsSameSide(target - origin, light.wi)) return {};
+        return Look(context, origin, target, Towards(v, light.wi), light.isAtInfinity);
+    }
+
+    // As without media.
+    template <typename Vertex>
+    bool LeavesScene(const Context& context, const Vertex& v, const Vec3f& wi,
+                     Sighting* sighting) const {
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
+               kNothing;
+    }
+    template <typename Vertex>
+    bool MeetsLight(const Context& context, const Vertex& v, const Vec3f& wi, int index,
+                    Sighting* sighting) const {
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
+               index;
+    }
+
+    // What lies behind an interface still belongs to the last vertex, whose shadow rays see it;
+    // rays that count in full end there, as with pbrt-v3.
+    static bool LooksBehind(SurfaceNeeds needs) { return needs & kIsInterface; }
+    bool GoThrough(const SurfaceInteraction& hit, int shape, bool isLast, Path* path) {
+        if (isLast && path->seesLights) return false;
+        medium = table->Beyond(shape, path->ray.d.dot(hit.n) > 0, medium);
+        path->ray = hit.SpawnRay(path->ray.d);
+        path->wentThrough = true;
+        return true;
+    }
+    void Leave(const SurfaceVertex& v, const Vec3f& wi) { medium = Towards(v, wi); }
+
+  private:
+    // What a ray can meet beside area lights.
+    static constexpr int kNothing = -2, kNoLight = -1;
+
+    // Return the medium on the side of a vertex that a direction points to.
+    int Towards(const SurfaceVertex& v, const Vec3f& wi) const {
+        return table->Beyond(v.shape, wi.dot(v.hit.n) > 0, medium);
+    }
+    int Towards(const MediumVertex&, const Vec3f&) const { return medium; }
+
+    // Looks along a segment that starts in medium `from`.
+    static Sight Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
+                      bool isAtInfinity);
+    // Follows a ray that starts in medium `from` through interfaces. Returns the light that it
+    // meets, or one of the above.
+    static int Follow(const Context&, const Ray&, int from, Sighting*);
+
+    const MediumTable* table;
+    int medium;  // that the path's next ray is in
+};
+
+}  // namespace lull

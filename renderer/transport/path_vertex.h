@@ -1,0 +1,65 @@
+// Represents where a path scatters: on a surface, or in a medium. Directions point away from there,
+// unit, world.
+#pragma once
+
+#include "renderer/scene/phase.h"
+#include "renderer/scene/scene.h"
+
+namespace lull {
+
+struct SurfaceVertex {
+    const SurfaceInteraction& hit;
+    const Bsdf& bsdf;
+    int shape;
+
+    const Vec3f& Position() const { return hit.p; }
+    LightChoice Choice(const LightTable& lights) const { return lights.Choice(hit, bsdf); }
+
+    BsdfValue Evaluate(const Vec3f& wi, LobeSet set) const {
+        return bsdf.Evaluate(hit.wo, wi, set);
+    }
+    // Does so without specular lobes, with the density that all others are as likely.
+    BsdfValue EvaluateEvenly(const Vec3f& wi) const {
+        return bsdf.WithoutShares().Evaluate(hit.wo, wi, LobeSet::NonSpecular);
+    }
+    std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet set) const {
+        return bsdf.Sample(hit.wo, u, set);
+    }
+    // Returns what f is multiplied by.
+    float Cosine(const Vec3f& wi) const { return std::abs(wi.dot(hit.ns)); }
+
+    // Returns the point where a ray of direction d, of any length, starts.
+    Vec3f OriginTowards(const Vec3f& d) const {
+        return OffsetRayOrigin(hit.p, hit.pError, hit.n, d);
+    }
+    // Says whether both leave the surface on the same side.
+    bool IsSameSide(const Vec3f& a, const Vec3f& b) const {
+        return (a.dot(hit.n) < 0) == (b.dot(hit.n) < 0);
+    }
+};
+
+// f is the phase function, which is its density as well.
+struct MediumVertex {
+    Vec3f p, wo;
+    float g;
+
+    const Vec3f& Position() const { return p; }
+    LightChoice Choice(const LightTable& lights) const { return lights.Choice(p); }
+
+    BsdfValue Evaluate(const Vec3f& wi, LobeSet) const {
+        const float phase = PhaseHenyeyGreenstein(wo.dot(wi), g);
+        return {Rgb::Constant(phase), phase};
+    }
+    BsdfValue EvaluateEvenly(const Vec3f& wi) const { return Evaluate(wi, LobeSet::All); }
+    std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet) const {
+        const Vec3f wi = SampleHenyeyGreenstein(wo, g, u);
+        const BsdfValue value = Evaluate(wi, LobeSet::All);
+        return BsdfSample{value.f, value.pdf, wi, false, false};
+    }
+    float Cosine(const Vec3f&) const { return 1; }
+
+    Vec3f OriginTowards(const Vec3f&) const { return p; }
+    bool IsSameSide(const Vec3f&, const Vec3f&) const { return true; }
+};
+
+}  // namespace lull
