@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "renderer/base/sampling.h"
+#include "renderer/input/file_contents.h"
 #include "renderer/scene/lens_file.h"
+#include "renderer/scene/reach.h"
 
 namespace lull {
 
@@ -116,6 +118,7 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     if (file.empty()) throw Error(entity.loc, "Camera \"realistic\" needs a \"lensfile\"");
     LensSystem::Settings settings;
     settings.loc = entity.loc;
+    settings.file = Printable(file);
     settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
     const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
     if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
@@ -158,6 +161,29 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     }
 }
 
+// Refuses cameras whose rays would begin, or be aimed at points, where no ray is traced.
+void CheckReach(const Camera& camera, const FilmSettings& film, const FileLoc& loc) {
+    double size = 1;
+    if (camera.projection != Projection::Environment && !camera.lenses) {
+        const Vec2f last =
+            camera.planeOrigin + film.resolution.cast<float>().cwiseProduct(camera.planePerPixel);
+        size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
+        if (camera.lensRadius > 0) size += double(camera.lensRadius) + double(camera.focalDistance);
+    }
+    // At all times the translation is no longer, and what is scaled no larger, than at one of
+    // these.
+    for (const double time : {0., 1.}) {
+        const Mat4d m = camera.motion ? camera.motion->At(time) : camera.worldFromCamera;
+        const double scale = m.topLeftCorner<3, 3>().norm();
+        if (!(m.topRightCorner<3, 1>().norm() + scale * size <= double(kFarthest)))
+            throw Error(loc,
+                        fmt::format("rays of the camera begin, or are aimed, farther than {:g} "
+                                    "from the origin, where none is traced; scale the scene "
+                                    "down",
+                                    kFarthest));
+    }
+}
+
 }  // namespace
 
 Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings,
@@ -188,6 +214,7 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
     camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
+    CheckReach(camera, film, entity.loc);
     // Scales in the transform change the length of directions, not what they point at; remove a
     // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
     camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();

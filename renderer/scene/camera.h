@@ -67,7 +67,8 @@ struct Camera {
 
 // Reads Camera "perspective", "orthographic", "environment" or "realistic", whose exit pupils are
 // found with `threads` threads (0: all). Throws Error for other cameras, a field of view outside
-// (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
+// (0, 180), a transform that cannot be inverted, rays beyond kFarthest, or lenses as LoadLens and
+// LensSystem say.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
 
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
