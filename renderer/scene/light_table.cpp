@@ -37,6 +37,14 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
                                         entity.name));
 }
 
+// Light of a colour outside of sRGB has a negative part, and so would have one that is mistyped.
+void WarnOfNegative(const Rgb& color, const Entity& entity, const std::string& what,
+                    Warnings& warnings) {
+    if ((color < 0).any())
+        warnings.Add(entity.loc, "a light has a negative part, which its pixels will have too",
+                     what + " \"" + entity.name + "\"");
+}
+
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
     if (entity.name != "diffuse" && entity.name != "area")
         throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not modelled; only "
@@ -45,6 +53,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     const Parameters& params = entity.parameters;
     AreaLight light;
     light.L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    WarnOfNegative(light.L, entity, "AreaLightSource", warnings);
     light.twoSided = params.GetBool("twosided", false);
     params.GetInt("samples", 1);
     params.GetInt("nsamples", 1);
@@ -96,6 +105,8 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     for (const LightEntity& entity : description.lights) {
         lights.push_back(MakeLight(description, entity, world.radius, asPbrtV3, warnings));
         entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
+        WarnOfNegative(std::visit([](const auto& light) { return light.Power(); }, lights.back()),
+                       entity, "LightSource", warnings);
         if (std::holds_alternative<InfiniteLight>(lights.back())) infinite.push_back(Count() - 1);
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {

@@ -13,7 +13,7 @@ enum class Estimator { Combined, PbrtV3 };
 
 struct PathSample {
     Rgb radiance;   // filter weight and film scale applied: the pixel is the mean of these
-    bool rejected;  // was NaN, infinite or negative, and counts as black
+    bool rejected;  // was NaN, infinite or of negative luminance, and counts as black
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

@@ -3,6 +3,7 @@
 
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/diffusion_profile.h"
+#include "tests/renderer/output/test_files.h"
 #include "tests/renderer/scene/material_scene.h"
 
 namespace lull::test {
@@ -142,6 +143,26 @@ TEST(Glass, EtaComesBeforeIndex) {
     AddFloat(&m, "eta", 1.7f);
     EXPECT_EQ(b.MakeBsdf(0).Eta(), 1.3f);
     EXPECT_EQ(b.MakeBsdf(1).Eta(), 1.7f);
+}
+
+TEST(IndexOfRefraction, IsRefusedWhereItCannotBeOne) {
+    for (const char* kind : {"glass", "uber", "disney", "hair"})
+        for (const float eta : {-1.f, 0.f, 1e30f, std::nanf("")}) {
+            MaterialScene b;
+            AddFloat(&b.AddMaterial(kind), "eta", eta);
+            const std::string error = ErrorOf([&] { b.Make(); });
+            EXPECT_TRUE(error.starts_with("scene.pbrt:10: \"eta\" of material \"" +
+                                          std::string(kind) + "\" has to lie between"))
+                << error;
+        }
+}
+
+// Texture or not, what is left of light is never more than there was.
+TEST(IndexOfRefraction, IsOneWhereATextureHasNone) {
+    MaterialScene b;
+    b.AddChecks(false, 2, -1);
+    AddTexture(&b.AddMaterial("uber"), "eta", 0, false);
+    EXPECT_EQ(b.MakeBsdf(0).Eta(), 1);
 }
 
 TEST(Glass, IsRoughIfEitherTangentIs) {
