@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "renderer/output/file_io.h"
+#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
 
@@ -247,7 +248,9 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
         WritePixels(pixels, rect, film);
         if (aovs) WriteAovs(pixels, rect, *aovs);
     }
-    WriteFileAtomically(path, root.Image());
+    std::vector<std::byte> bytes = root.Image();
+    Seal(&bytes);
+    WriteFileAtomically(path, bytes);
 } catch (const Error&) {
     throw;
 } catch (const std::runtime_error& e) {
@@ -261,6 +264,7 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
                            std::vector<std::byte>* guide, AovFilm* aovs) try {
+    CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
         throw Error("it is no checkpoint of this version of the program");
