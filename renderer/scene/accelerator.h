@@ -18,8 +18,7 @@ class Accelerator {
     // the accelerator and stay where they are. Throws Error when memory runs out.
     Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads);
 
-    // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1. Rays
-    // longer than ShapeTable::longestRay, and such as are not finite, meet nothing.
+    // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
     bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;
 
     // Says whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.

@@ -221,7 +221,6 @@ Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures,
     rtcSetDeviceErrorFunction(impl.device.get(), ReportEmbreeError, nullptr);
 
     impl.shapeCount = int(shapes.shapes.size());
-    impl.longestRay2 = Sqr(shapes.longestRay);
     for (int i = 0; i < impl.shapeCount; ++i) impl.users.push_back({&shapes, &textures, i});
     for (const Object& object : shapes.objects) {
         impl.objects.push_back(impl.NewScene());

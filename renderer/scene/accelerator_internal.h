@@ -59,7 +59,6 @@ struct Accelerator::Implementation {
     std::vector<std::unique_ptr<MovingUser>> movingUsers;
     EmbreeScene world;
     int shapeCount = 0;
-    float longestRay2 = 0;  // the square of what can be traced
 
     EmbreeScene NewScene();
     // Attaches a shape under its own number, so that a hit names it directly.
@@ -90,16 +89,9 @@ inline RTCRay MakeRay(const Ray& ray, float time) {
     return r;
 }
 
-// Says whether Embree takes the ray. A ray that is not finite it does not.
-inline bool CanTrace(const Ray& ray, float longestRay2) {
-    return ray.o.squaredNorm() + ray.d.squaredNorm() < longestRay2;
-}
-
 // Do what the accelerator is asked for; see there.
 inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray, float time,
                         Hit* hit) {
-    if (!CanTrace(ray, impl.longestRay2)) [[unlikely]]
-        return false;
     RTCRayHit r;
     r.ray = MakeRay(ray, time);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -123,8 +115,6 @@ inline bool FindNearest(const Accelerator::Implementation& impl, const Ray& ray,
 }
 
 inline bool IsOccluded(const Accelerator::Implementation& impl, const Ray& ray, float time) {
-    if (!CanTrace(ray, impl.longestRay2)) [[unlikely]]
-        return false;
     RTCRay r = MakeRay(ray, time);
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(impl.world.get(), &r);

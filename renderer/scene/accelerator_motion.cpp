@@ -18,7 +18,7 @@ bool IntoMoving(const MovingUser& user, const RTCRay& r, RTCRay* inner) {
         IntoInstance(user.shapes->InstanceAt(instance, r.time),
                      {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar});
     *inner = MakeRay(ray, r.time);
-    return CanTrace(ray, Sqr(kLongestRay));
+    return ray.o.squaredNorm() + ray.d.squaredNorm() < Sqr(kLongestRay);
 }
 
 #if RTC_VERSION_MAJOR >= 4

@@ -5,7 +5,6 @@
 #include "renderer/base/sampling.h"
 #include "renderer/input/file_contents.h"
 #include "renderer/scene/lens_file.h"
-#include "renderer/scene/reach.h"
 
 namespace lull {
 
@@ -161,8 +160,9 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     }
 }
 
-// Refuses cameras whose rays would begin, or be aimed at points, where no ray is traced.
-void CheckReach(const Camera& camera, const FilmSettings& film, const FileLoc& loc) {
+}  // namespace
+
+double Farthest(const Camera& camera, const FilmSettings& film) {
     double size = 1;
     if (camera.projection != Projection::Environment && !camera.lenses) {
         const Vec2f last =
@@ -170,21 +170,15 @@ void CheckReach(const Camera& camera, const FilmSettings& film, const FileLoc& l
         size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
         if (camera.lensRadius > 0) size += double(camera.lensRadius) + double(camera.focalDistance);
     }
-    // At all times the translation is no longer, and what is scaled no larger, than at one of
-    // these.
+    // While it moves, it is neither farther away nor larger than at one of the ends.
+    double farthest = 0;
     for (const double time : {0., 1.}) {
         const Mat4d m = camera.motion ? camera.motion->At(time) : camera.worldFromCamera;
         const double scale = m.topLeftCorner<3, 3>().norm();
-        if (!(m.topRightCorner<3, 1>().norm() + scale * size <= double(kFarthest)))
-            throw Error(loc,
-                        fmt::format("rays of the camera begin, or are aimed, farther than {:g} "
-                                    "from the origin, where none is traced; scale the scene "
-                                    "down",
-                                    kFarthest));
+        farthest = std::max(farthest, m.topRightCorner<3, 1>().norm() + scale * size);
     }
+    return farthest;
 }
-
-}  // namespace
 
 Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings,
                   int threads) {
@@ -214,7 +208,6 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
     camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
-    CheckReach(camera, film, entity.loc);
     // Scales in the transform change the length of directions, not what they point at; remove a
     // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
     camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();

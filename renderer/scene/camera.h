@@ -67,9 +67,12 @@ struct Camera {
 
 // Reads Camera "perspective", "orthographic", "environment" or "realistic", whose exit pupils are
 // found with `threads` threads (0: all). Throws Error for other cameras, a field of view outside
-// (0, 180), a transform that cannot be inverted, rays beyond kFarthest, or lenses as LoadLens and
-// LensSystem say.
+// (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
+
+// Bounds how far from the world's origin rays begin, or lie the points that they are aimed at. It
+// may be infinite.
+double Farthest(const Camera&, const FilmSettings&);
 
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
 // is nothing where no matrix projects as the camera does.

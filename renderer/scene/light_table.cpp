@@ -45,6 +45,20 @@ void WarnOfNegative(const Rgb& color, const Entity& entity, const std::string& w
                      what + " \"" + entity.name + "\"");
 }
 
+// Refuses lights to whose place no ray is traced.
+void CheckReach(const Light& light, const LightEntity& entity, float reach) {
+    std::visit(
+        [&]<typename L>(const L& l) {
+            if constexpr (requires { l.p; })
+                if (!(l.p.template cast<double>().norm() <= double(reach)))
+                    throw Error(entity.loc, fmt::format("LightSource \"{}\" lies farther than "
+                                                        "{:.3g} from the origin, where no ray is "
+                                                        "traced; scale the scene down",
+                                                        entity.name, reach));
+        },
+        light);
+}
+
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
     if (entity.name != "diffuse" && entity.name != "area")
         throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not modelled; only "
@@ -104,6 +118,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
         lights.push_back(MakeLight(description, entity, world.radius, asPbrtV3, warnings));
+        CheckReach(lights.back(), entity, shapes.reach);
         entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
         WarnOfNegative(std::visit([](const auto& light) { return light.Power(); }, lights.back()),
                        entity, "LightSource", warnings);

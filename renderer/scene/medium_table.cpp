@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/animated_transform.h"
 #include "renderer/scene/media/presets.h"
+#include "renderer/scene/reach.h"
 
 namespace lull {
 namespace {
@@ -73,6 +75,11 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
         throw Error(entity.loc, fmt::format("medium \"{}\": \"p0\" and \"p1\" have to span a box",
                                             entity.mediumName));
     CheckDepth(entity, grid, worldFromGrid);
+    if (!(Farthest(TransformBox(worldFromGrid, {Vec3f::Zero(), Vec3f::Ones()})) <=
+          double(kFarthest)))
+        throw Error(entity.loc, fmt::format("medium \"{}\" reaches farther than {:g} from the "
+                                            "origin, where no ray is traced; scale the scene down",
+                                            entity.mediumName, kFarthest));
     return grid;
 }
 

@@ -7,10 +7,11 @@ double Farthest(const Bounds3f& box) {
     return box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()).cast<double>().norm();
 }
 
-double LongestRayInto(const Mat4d& transform) {
+double ReachThrough(const Mat4d& transform) {
     const double scale = transform.topLeftCorner<3, 3>().norm();
     const double offset = transform.topRightCorner<3, 1>().norm();
-    return std::min(double(kLongestRay), (double(kLongestRay) - offset) / scale);
+    // The origins of rays are within reach, and shadow rays twice as long.
+    return std::min(double(kFarthest), (double(kLongestRay) - offset) / (4 * scale));
 }
 
 }  // namespace lull

@@ -103,21 +103,19 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
         CheckReach(placed, entity.loc, "the instance");
         bounds.Extend(placed);
     }
-    LimitRays(places);
+    LimitReach(places);
 }
 
-// Embree carries rays into instances at rest itself, and takes them as they come out. Shadow rays
-// are twice as long as the farthest point is away.
-void ShapeTable::LimitRays(std::span<const FileLoc> placesOfInstances) {
-    const double needed = 4 * Farthest(bounds);
+// Embree carries rays into instances at rest itself, and takes them as they come out.
+void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
     for (size_t i = 0; i < instances.size(); ++i) {
         if (instances[i].motion >= 0) continue;
-        const double longest = LongestRayInto(instances[i].instanceFromWorld);
-        if (!(longest > needed))
+        const double through = ReachThrough(instances[i].instanceFromWorld);
+        if (!(through >= Farthest(bounds)))
             throw Error(placesOfInstances[i],
                         "the instance's transform shrinks so much that no ray could be followed "
                         "into it; give the object itself a smaller size");
-        longestRay = std::min(longestRay, float(longest));
+        reach = std::min(reach, float(through));
     }
 }
 

@@ -62,7 +62,9 @@ struct ShapeTable {
     std::vector<Instance> instances;
     std::vector<std::vector<AnimatedTransform>> motions;  // each outermost first
     Bounds3f bounds;                                      // of everything placed, world
-    float longestRay = kLongestRay;                       // that all instances can be asked for
+    // The distance from the origin within which all else has to lie that rays start from or go to,
+    // so that they can be followed into all instances.
+    float reach = kFarthest;
 
     // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
     // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
@@ -94,7 +96,7 @@ struct ShapeTable {
 
   private:
     void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
-    void LimitRays(std::span<const FileLoc> placesOfInstances);
+    void LimitReach(std::span<const FileLoc> placesOfInstances);
     void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
                         SurfaceInteraction*) const;
     // `instance` is null for what stands in the world itself.

@@ -253,7 +253,9 @@ Rgb TracePath(const Scene& scene, Estimator estimator, Sampler& sampler, const R
             firstHit.Advance(*inMedium.t);
             firstHit.MeetMedium(path, path.ray.o + *inMedium.t * path.ray.d);
             if (isLast) break;
-            const Vertex v{.p = path.ray.o + *inMedium.t * path.ray.d,
+            const Vec3f p = path.ray.o + *inMedium.t * path.ray.d;
+            if (!(p.squaredNorm() <= Sqr(scene.shapes.reach))) break;  // no ray starts there
+            const Vertex v{.p = p,
                            .wo = -path.ray.d.normalized(),
                            .medium = medium,
                            .time = time,

@@ -50,6 +50,7 @@ TEST(BadInput, TooDenseForRays) {
     ExpectBadScene("Integrator \"volpath\"\n" +
                        SceneText("MakeNamedMedium \"fog\" \"string type\" \"heterogeneous\"\n"
                                  "\"integer nx\" [2] \"float density\" [0 1e30]\n"
+                                 "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1]\n"
                                  "MediumInterface \"fog\" \"\"\nMaterial \"\"\nShape \"sphere\""),
                    {"scene.pbrt:8", "medium \"fog\" is too dense"});
 }

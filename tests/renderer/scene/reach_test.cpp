@@ -55,29 +55,28 @@ TEST(Reach, RefusesInstancesThatNoRayCanBeFollowedInto) {
                  "far.pbrt:7: the instance's transform shrinks"));
     EXPECT_TRUE(Contains(ErrorIn("", kObject + std::string("Scale 1 1 1e19\nObjectInstance \"a\"")),
                          "far.pbrt:7: the instance reaches farther"));
-    EXPECT_EQ(ErrorIn("", kObject + std::string("Scale 1e-9 1e9 1\nObjectInstance \"a\"")), "");
+    EXPECT_EQ(ErrorIn("", kObject + std::string("Scale 1e-3 1e3 1\nObjectInstance \"a\"")), "");
 }
 
-// What is longer than can be followed everywhere meets nothing, nor does what is no ray at all.
-TEST(Reach, RaysTooLongMeetNothing) {
+TEST(Reach, RefusesLightsTooFarAway) {
+    for (const char* kind : {"point", "spot", "goniometric", "projection"})
+        EXPECT_TRUE(
+            Contains(ErrorIn("", "Translate 0 0 1e18\nLightSource \"" + std::string(kind) + "\""),
+                     "far.pbrt:4: LightSource \"" + std::string(kind) + "\" lies farther"))
+            << kind;
+}
+
+// An instance that is smaller than its object makes rays longer.
+TEST(Reach, IsThatOfAllInstances) {
+    EXPECT_EQ(ReachThrough(Mat4d::Identity() * 1e-3), double(kFarthest));
     const auto scene = MakeScene("WorldBegin\n" + std::string(kObject) +
-                                 "Scale 1e-3 1e-3 1e-3\nObjectInstance \"a\"\nWorldEnd\n");
-    EXPECT_LT(scene->shapes.longestRay, 1e15f);
-    const float nan = std::nanf("");
-    const auto hits = [&](const Vec3f& o, const Vec3f& d) {
-        Hit hit;
-        const Ray ray{o, d, kInfinity};
-        const bool isHit = scene->accelerator.Intersect(ray, &hit);
-        EXPECT_EQ(scene->accelerator.Occluded(ray), isHit);
-        return isHit;
-    };
-    EXPECT_TRUE(hits({0, 0, -5}, Vec3f::UnitZ()));
-    EXPECT_TRUE(hits({0, 0, -1e6f}, Vec3f(0, 0, 1e12f)));
-    EXPECT_FALSE(hits({0, 0, -1e16f}, Vec3f::UnitZ()));
-    EXPECT_FALSE(hits({0, 0, -5}, Vec3f(0, 0, 1e30f)));
-    EXPECT_FALSE(hits({0, 0, -5}, Vec3f(0, 0, kInfinity)));
-    EXPECT_FALSE(hits({0, nan, -5}, Vec3f::UnitZ()));
-    EXPECT_FALSE(hits({0, 0, -5}, Vec3f(0, 0, nan)));
+                                 "Scale 1e-6 1e-6 1e-6\nObjectInstance \"a\"\nWorldEnd\n");
+    EXPECT_LT(scene->shapes.reach, 1e12f);
+    EXPECT_GT(scene->shapes.reach, 1e11f);
+    EXPECT_TRUE(Contains(ErrorIn("LookAt 0 0 1e13 0 0 0 0 1 0\nCamera \"perspective\"",
+                                 kObject + std::string("Scale 1e-6 1e-6 1e-6\nObjectInstance "
+                                                       "\"a\"")),
+                         "far.pbrt:2: rays of the camera"));
 }
 
 // Triangles are what they are at any size: their normals come from products of two lengths, whose
