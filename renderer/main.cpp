@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <new>
+#include <system_error>
 
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
@@ -28,10 +29,12 @@ ExitCode Run(Job* job, const Command& command) {
         return kFailed;
     } catch (const std::bad_alloc&) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
+    } catch (const std::system_error& e) {  // as of what prints, which does not say to where
+        message = HasLostResults() ? "cannot write the results to stdout: " + e.code().message()
+                                   : OneLine(e.what());
     } catch (const std::exception& e) {
         message = OneLine(e.what());
     }
-    if (HasLostResults()) message = "cannot write the results to stdout: " + message;
     job->Fail(message);
     return kFailed;
 }
