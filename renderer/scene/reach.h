@@ -9,7 +9,7 @@ namespace lull {
 
 // All that a scene consists of lies within this distance of the origin, so that no ray that starts
 // there and ends there is longer than kLongestRay.
-constexpr float kFarthest = 1e17f;
+constexpr float kFarthest = 1e12f;
 constexpr float kLongestRay = 1e18f;
 
 // Returns the greatest distance of a point of the box from the origin, also where that is beyond

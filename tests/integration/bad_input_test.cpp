@@ -38,7 +38,7 @@ TEST(BadInput, TooLargeForRays) {
     expect(
         "LookAt 0 0 1.9e18 0 0 0 0 1 0\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n"
         "WorldEnd\n",
-        {"scene.pbrt:2", "1e+17"});
+        {"scene.pbrt:2", "1e+12"});
     expect("Camera \"perspective\" \"float lensradius\" [5e18]\nWorldBegin\nWorldEnd\n",
            {"scene.pbrt:1"});
     expect(SceneText("ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\nScale 1e-19 1 1\n"
