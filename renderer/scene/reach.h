@@ -1,6 +1,6 @@
-// Says how far from the origin a scene may go, for Embree takes no ray with a coordinate of more
-// than 1.84e18. That is made sure of where rays come from, and costs those between surfaces
-// nothing.
+// Says how far from the origin a scene may go. Embree takes no ray with a coordinate of more than
+// 1.84e18, and finds no triangle where products of three lengths are beyond floats. That is made
+// sure of where rays come from, and costs those between surfaces nothing.
 #pragma once
 
 #include "renderer/base/math.h"
