@@ -1,5 +1,7 @@
 // Gives the program scenes and files that are broken: it must say what is wrong and where, with
 // exit code 1, and leave all files as they are.
+#include <algorithm>
+
 #include "tests/integration/run_lull.h"
 
 namespace lull {
@@ -75,7 +77,7 @@ TEST(BadInput, ErrorsOfOtherFormatsAreOneLine) {
                                               name)));
         ExpectFailure(directory, kRender, {"scene.pbrt:7", name});
         const Outcome outcome = RunLull(directory, kRender);
-        EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     }
 }
 

@@ -3,7 +3,6 @@
 
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/diffusion_profile.h"
-#include "tests/renderer/output/test_files.h"
 #include "tests/renderer/scene/material_scene.h"
 
 namespace lull::test {
@@ -150,7 +149,7 @@ TEST(IndexOfRefraction, IsRefusedWhereItCannotBeOne) {
         for (const float eta : {-1.f, 0.f, 1e30f, std::nanf("")}) {
             MaterialScene b;
             AddFloat(&b.AddMaterial(kind), "eta", eta);
-            const std::string error = ErrorOf([&] { b.Make(); });
+            const std::string error = ErrorOf(&b);
             EXPECT_TRUE(error.starts_with("scene.pbrt:10: \"eta\" of material \"" +
                                           std::string(kind) + "\" has to lie between"))
                 << error;
