@@ -1,14 +1,15 @@
 // The command line of lull.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <new>
+#include <system_error>
 
 #include "renderer/base/error.h"
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/talk.h"
 #include "renderer/ranks/job.h"
 
 namespace lull {
@@ -21,13 +22,18 @@ constexpr std::array sharedCommands = {"render", "compare", "bench", "dataset"};
 ExitCode Run(Job* job, const Command& command) {
     std::string message;
     try {
-        return command();
+        const ExitCode code = command();
+        FinishResults();
+        return code;
     } catch (const OtherRankFailed&) {
         return kFailed;
     } catch (const std::bad_alloc&) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
+    } catch (const std::system_error& e) {  // as of what prints, which does not say to where
+        message = HasLostResults() ? "cannot write the results to stdout: " + e.code().message()
+                                   : OneLine(e.what());
     } catch (const std::exception& e) {
-        message = e.what();
+        message = OneLine(e.what());
     }
     job->Fail(message);
     return kFailed;
@@ -55,7 +61,8 @@ ExitCode Main(Job* job, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? kDone : kWrongUsage;
+        const ExitCode code = app.exit(e) == 0 ? kDone : kWrongUsage;
+        return Run(job, [code] { return code; });
     }
     const auto isShared = [&](const char* name) { return app.got_subcommand(name); };
     if (job->Count() > 1 && std::ranges::none_of(sharedCommands, isShared))
@@ -72,7 +79,7 @@ ExitCode Main(int argc, char** argv) {
     try {
         job = std::make_unique<Job>();
     } catch (const Error& e) {
-        fmt::print(stderr, "lull: error: {}\n", e.what());
+        Say("lull: error: {}\n", e.what());
         return kFailed;
     }
     return Main(job.get(), argc, argv);
@@ -82,4 +89,7 @@ ExitCode Main(int argc, char** argv) {
 
 }  // namespace lull
 
-int main(int argc, char** argv) { return lull::Main(argc, argv); }
+int main(int argc, char** argv) {
+    lull::PrepareStreams();
+    return lull::Main(argc, argv);
+}

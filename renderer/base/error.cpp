@@ -1,10 +1,26 @@
 #include "renderer/base/error.h"
 
+#include <utility>
+
 namespace lull {
 
 std::string FileLoc::Prefix() const {
     if (!file) return "";
     return line > 0 ? *file + ":" + std::to_string(line) + ": " : *file + ": ";
+}
+
+std::string OneLine(const std::string& text) {
+    std::string line;
+    bool isBetween = false;
+    for (const char c : text) {
+        if (c == '\n' || c == '\r') {
+            isBetween = true;
+            continue;
+        }
+        if (std::exchange(isBetween, false) && !line.empty()) line += "; ";
+        line += c;
+    }
+    return line;
 }
 
 void Warnings::Add(const FileLoc& loc, const std::string& kind, const std::string& detail) {

@@ -19,6 +19,9 @@ struct FileLoc {
     std::string Prefix() const;
 };
 
+// Returns the text as one line: what libraries say in several has "; " between them.
+std::string OneLine(const std::string& text);
+
 // Signals that the input or the environment is at fault; what() is the one message a user sees,
 // beginning with the location where one is known. main() turns it into exit code 1.
 class Error : public std::runtime_error {

@@ -37,6 +37,21 @@ constexpr T Sqr(T x) {
 // Returns the square root of x, 0 for the small negative values that rounding leaves.
 inline float SafeSqrt(float x) { return std::sqrt(std::max(0.f, x)); }
 
+// Return the length of v and the vector of length 1 in its direction. Products of two lengths, as
+// of which normals are made, have squares beyond floats where scenes are very large or small. The
+// unit vector of none is none.
+inline float LengthOf(const Vec3f& v) {
+    const float square = v.squaredNorm();
+    const bool isExact = square >= std::numeric_limits<float>::min() && square < kInfinity;
+    return isExact ? std::sqrt(square) : float(v.cast<double>().norm());
+}
+inline Vec3f UnitOf(const Vec3f& v) {
+    const float square = v.squaredNorm();
+    if (square >= std::numeric_limits<float>::min() && square < kInfinity) [[likely]]
+        return v / std::sqrt(square);
+    return v.cast<double>().normalized().cast<float>();
+}
+
 inline float Lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
 
 // Bounds the relative error of n float operations: (1 + e)^n - 1 (Higham 2002, section 3.1).

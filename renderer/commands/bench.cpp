@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/interrupt.h"
@@ -157,8 +158,8 @@ class PointCounter {
         ++done;
         if (quiet || (seconds < next && done < count)) return;
         next = seconds + 10;
-        fmt::print(stderr, "lull: compared {} of {} images, {} left\n", done, count,
-                   FormatDuration(seconds / double(done) * double(count - done)));
+        Say("lull: compared {} of {} images, {} left\n", done, count,
+            FormatDuration(seconds / double(done) * double(count - done)));
     }
 
   private:
@@ -224,7 +225,7 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
     if (!session.Learn()) return false;
     if (variant.isGuided && !session.Guidance().isUsed) return true;
     session.Resume();
-    if (!settings.quiet) fmt::print(stderr, "lull: rendering with {}\n", NameOf(variant));
+    if (!settings.quiet) Say("lull: rendering with {}\n", NameOf(variant));
     const RenderResult result = session.Run();
     printer.Finish(result.progress);
     if (result.cancelled) return false;

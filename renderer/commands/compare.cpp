@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/compare_options.h"
 #include "renderer/commands/comparison_table.h"
@@ -25,7 +26,7 @@ namespace {
 void WriteReport(const CompareOptions& options, ComparisonReport report,
                  const std::vector<std::string>& images) {
     if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
-        fmt::print(stderr, "lull: {}\n", note);
+        Say("lull: {}\n", note);
         report.notes.push_back(note);
     }
     const std::string json = options.output + ".compare.json";
@@ -37,7 +38,7 @@ void WriteReport(const CompareOptions& options, ComparisonReport report,
     if (!options.report.empty()) fmt::print("{}\n", options.report);
 }
 
-void CheckOutputs(const CompareOptions& options) {
+void CheckNames(const CompareOptions& options) {
     CheckWritable(options.output + ".compare.json");
     if (!options.report.empty()) CheckWritable(options.report);
 }
@@ -51,7 +52,7 @@ ExitCode CompareFiles(CompareOptions options) {
     if (!options.human.empty() && !IsImageFile(options.human))
         throw Error("--human " + options.human +
                     ": thresholds need a scene; without one, an image");
-    CheckOutputs(options);
+    CheckNames(options);
 
     std::vector<ComparedFile> files;
     if (!options.automatic.empty())
@@ -98,7 +99,7 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
         humanChecksum = human.checksum;
     }
     if (job.Rank() == 0) {
-        CheckOutputs(options);
+        CheckNames(options);
         CheckCheckpoint(settings.checkpoint);
     }
     prepared.scene = CompileScene(settings, &input);
@@ -122,7 +123,7 @@ Verification Verify(const PreparedScene& prepared, const RenderSettings& setting
     how.render.schedule.smallestSide = prepared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = prepared.rules.front().make;
-    if (!settings.quiet) fmt::print(stderr, "lull: the automatic image by itself\n");
+    if (!settings.quiet) Say("lull: the automatic image by itself\n");
     Session session(*prepared.scene, prepared.provenance.crop, how);
     const RenderResult result = session.Run();
     printer.Finish(result.progress);

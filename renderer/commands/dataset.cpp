@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/session_options.h"
@@ -100,8 +101,7 @@ ExitCode RunDataset(const Options& options, Job* job) {
     if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
         job->Begin("nothing");
         job->End();
-        fmt::print(stderr, "lull: {} has all blocks of '{}' already\n", options.output,
-                   options.name);
+        Say("lull: {} has all blocks of '{}' already\n", options.output, options.name);
         return kDone;
     }
 

@@ -5,12 +5,13 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
-#include "renderer/render/film_picture.h"
 #include "renderer/measure/denoised_image.h"
 #include "renderer/output/file_io.h"
 #include "renderer/output/progress.h"
+#include "renderer/render/film_picture.h"
 
 namespace lull {
 
@@ -80,8 +81,7 @@ ExitCode RunDenoise(Options options) {
     const auto start = std::chrono::steady_clock::now();
     const DenoisedImage denoised = DenoiseImage(picture, region, blocks);
     if (!options.quiet)
-        fmt::print(stderr, "denoised in {}; {}\n", FormatDuration(SecondsSince(start)),
-                   TextOf(denoised.blocks));
+        Say("denoised in {}; {}\n", FormatDuration(SecondsSince(start)), TextOf(denoised.blocks));
 
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });

@@ -14,8 +14,8 @@ namespace {
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-extern "C" void OnSignal(int) {
-    if (interrupted.exchange(true)) _exit(130);
+extern "C" void OnSignal(int signal) {
+    if (interrupted.exchange(true) && signal != SIGHUP) _exit(130);
 }
 
 }  // namespace
@@ -27,6 +27,9 @@ void CatchInterrupts() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    struct sigaction before = {};
+    sigaction(SIGHUP, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 bool Interrupted() { return interrupted.load(std::memory_order_relaxed); }

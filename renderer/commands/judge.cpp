@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "renderer/base/memory.h"
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
@@ -22,8 +23,8 @@ namespace {
 void WriteStudy(const JudgeSettings& settings, const Study& study) {
     WriteFileAtomically(settings.output, MakeStudyPage(study, settings.study));
     if (!settings.render.quiet)
-        fmt::print(stderr, "lull: {} blocks at {} levels: {} spp\n", study.blocks.size(),
-                   study.levels.size(), fmt::join(study.levels, ", "));
+        Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
+            fmt::join(study.levels, ", "));
     fmt::print("{}\n", settings.output);
 }
 

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/judge_options.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/collected_page.h"
@@ -14,11 +15,11 @@ namespace {
 
 void Tell(const Collected& collected) {
     for (const RefusedAnswers& refused : collected.refused)
-        fmt::print(stderr, "lull: {}: {}; left out\n", refused.file, refused.reason);
+        Say("lull: {}: {}; left out\n", refused.file, refused.reason);
     for (const JudgedObserver& observer : collected.observers)
         if (!observer.leftOut.empty())
-            fmt::print(stderr, "lull: {}: {} {}; left out\n", observer.answers.file,
-                       observer.answers.observer, observer.leftOut);
+            Say("lull: {}: {} {}; left out\n", observer.answers.file, observer.answers.observer,
+                observer.leftOut);
 }
 
 }  // namespace
@@ -50,9 +51,9 @@ void CollectAnswers(const JudgeSettings& settings) {
         WriteFileAtomically(settings.report, MakeCollectedPage(collected, study));
     if (!settings.render.quiet)
         for (const CollectedViewpoint& v : collected.viewpoints)
-            fmt::print(stderr, "lull: {}: {} observer{}, agreement {}\n", v.name, v.observers,
-                       v.observers == 1 ? "" : "s",
-                       v.agreement ? fmt::format("{:.2f}", *v.agreement) : "not known");
+            Say("lull: {}: {} observer{}, agreement {}\n", v.name, v.observers,
+                v.observers == 1 ? "" : "s",
+                v.agreement ? fmt::format("{:.2f}", *v.agreement) : "not known");
     for (const std::string& file : {settings.output, details, observers}) fmt::print("{}\n", file);
     if (!settings.report.empty()) fmt::print("{}\n", settings.report);
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "renderer/base/memory.h"
+#include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
 
 namespace lull {
@@ -48,7 +49,7 @@ std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::s
                 "leave it out");
     return std::make_unique<Display>(
         ParseDisplayAddress(options.display), name, region,
-        [](const std::string& message) { fmt::print(stderr, "\nlull: warning: {}\n", message); });
+        [](const std::string& message) { Say("\nlull: warning: {}\n", message); });
 }
 
 }  // namespace lull

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/choice_option.h"
@@ -15,12 +16,12 @@
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/session_options.h"
-#include "renderer/render/film_picture.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"
 #include "renderer/ranks/job.h"
 #include "renderer/render/block_denoiser.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/render/half_buffer.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
@@ -135,29 +136,27 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
 
 void PrintSummary(const RenderResult& result, const Film& film, int cap) {
     const Savings savings = ComputeSavings(result, cap);
-    fmt::print(stderr, "{}{} of {} blocks stopped, median {} spp; {} samples in {}",
-               result.cancelled ? "interrupted: "
-               : result.timeUp  ? "the time is up: "
-                                : "",
-               result.progress.stoppedBlocks, result.progress.blocks, result.progress.medianSpp,
-               FormatCount(double(savings.samples)), FormatDuration(result.progress.seconds));
+    Say("{}{} of {} blocks stopped, median {} spp; {} samples in {}",
+        result.cancelled ? "interrupted: "
+        : result.timeUp  ? "the time is up: "
+                         : "",
+        result.progress.stoppedBlocks, result.progress.blocks, result.progress.medianSpp,
+        FormatCount(double(savings.samples)), FormatDuration(result.progress.seconds));
     if (!result.cancelled && savings.samples < savings.samplesAtCap)
-        fmt::print(stderr, "; against {} spp everywhere {:.1f}% fewer samples, {:.1f}% less time",
-                   cap, 100 * savings.SampleShare(), 100 * savings.SecondShare());
-    fmt::print(stderr, "\n");
+        Say("; against {} spp everywhere {:.1f}% fewer samples, {:.1f}% less time", cap,
+            100 * savings.SampleShare(), 100 * savings.SecondShare());
+    Say("\n");
     if (const int64_t rejected = film.RejectedCount())
-        fmt::print(stderr,
-                   "lull: warning: {} samples were not finite or negative: taken as black\n",
-                   rejected);
+        Say("lull: warning: {} samples were not finite or negative: taken as black\n", rejected);
 }
 
 // Says how much ranks of different speed had to do in the end.
 void PrintShares(const std::vector<double>& shares) {
     const auto [least, most] = std::ranges::minmax(shares);
     if (most - least < 0.01) return;
-    fmt::print(stderr, "shares of the ranks at the end, in percent:");
-    for (const double share : shares) fmt::print(stderr, " {:.0f}", 100 * share);
-    fmt::print(stderr, "\n");
+    Say("shares of the ranks at the end, in percent:");
+    for (const double share : shares) Say(" {:.0f}", 100 * share);
+    Say("\n");
 }
 
 // Says what was missing when the time was up.
@@ -165,19 +164,17 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     if (noisy.empty()) return;
-    fmt::print(stderr, "not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
+    Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
-        fmt::print(stderr, "  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n",
-                   noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise,
-                   block.spp, noisy[i].neededSpp,
-                   FormatDuration(NeededSeconds({noisy[i]}, result)));
+        Say("  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n", noisy[i].block,
+            block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
+            noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
     }
     if (noisy.size() > shown)
-        fmt::print(stderr, "  and {} more, of {:.2f} or less\n", noisy.size() - shown,
-                   noisy[shown].noise);
-    fmt::print(stderr, "about {} more would have been enough for all\n",
-               FormatDuration(NeededSeconds(noisy, result)));
+        Say("  and {} more, of {:.2f} or less\n", noisy.size() - shown, noisy[shown].noise);
+    Say("about {} more would have been enough for all\n",
+        FormatDuration(NeededSeconds(noisy, result)));
 }
 
 void PrintFiles(const RenderFiles& files, const RenderResult& result) {
@@ -259,8 +256,7 @@ DenoisedImage MakeDenoised(const NoisyPicture& picture, const PixelRect& region,
     const auto start = std::chrono::steady_clock::now();
     DenoisedImage image = DenoiseImage(picture, region, blocks);
     if (!quiet)
-        fmt::print(stderr, "denoised in {}; {}\n", FormatDuration(SecondsSince(start)),
-                   TextOf(image.blocks));
+        Say("denoised in {}; {}\n", FormatDuration(SecondsSince(start)), TextOf(image.blocks));
     return image;
 }
 
@@ -311,7 +307,7 @@ ExitCode RunRender(Options options, Job* job) {
     session.Resume();
     CatchInterrupts();
     if (!session.Learn()) {
-        fmt::print(stderr, "interrupted while learning\n");
+        Say("interrupted while learning\n");
         return kInterrupted;
     }
     provenance.guideFigures = session.Guidance();

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "renderer/base/memory.h"
+#include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
@@ -128,7 +129,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
 }
 
 Warnings MakePrintedWarnings() {
-    return Warnings([](const std::string& message) { fmt::print(stderr, "lull: {}\n", message); });
+    return Warnings([](const std::string& message) { Say("lull: {}\n", message); });
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
@@ -41,18 +42,17 @@ class SearchPrinter {
         }
         const double left = SecondsLeft(all, taken);
         if (style == ProgressStyle::Json)
-            fmt::print(stderr,
-                       R"({{"combination":{},"combinations":{},"remainingSeconds":{:.1f}}})"
-                       "\n",
-                       done + 1, costs.size(), left);
+            Say(R"({{"combination":{},"combinations":{},"remainingSeconds":{:.1f}}})"
+                "\n",
+                done + 1, costs.size(), left);
         else
-            fmt::print(stderr, "{}{}/{}  {}  {} left{}", style == ProgressStyle::Line ? "\r" : "",
-                       std::min(done + 1, costs.size()), costs.size(), progress.trial.name,
-                       FormatDuration(left), style == ProgressStyle::Line ? "\x1b[K" : "\n");
+            Say("{}{}/{}  {}  {} left{}", style == ProgressStyle::Line ? "\r" : "",
+                std::min(done + 1, costs.size()), costs.size(), progress.trial.name,
+                FormatDuration(left), style == ProgressStyle::Line ? "\x1b[K" : "\n");
         std::fflush(stderr);
     }
     void Finish() const {
-        if (style == ProgressStyle::Line) fmt::print(stderr, "\n");
+        if (style == ProgressStyle::Line) Say("\n");
     }
 
   private:
@@ -115,7 +115,7 @@ ExitCode RunSearch(const TrainOptions& options) {
                                        .isCancelled = Interrupted});
     printer.Finish();
     if (outcome.cancelled) {
-        fmt::print(stderr, "lull: interrupted; --resume goes on from {}.checkpoint\n", options.csv);
+        Say("lull: interrupted; --resume goes on from {}.checkpoint\n", options.csv);
         return kInterrupted;
     }
     std::filesystem::remove(options.csv + ".checkpoint");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "renderer/base/error.h"
+#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
@@ -29,11 +30,11 @@ void ShowProgress(size_t done, size_t all, const std::string& name, double secon
     if (!isatty(STDERR_FILENO)) return;
     const std::string left =
         done == 0 ? "" : ", about " + FormatDuration(seconds / double(done) * double(all - done));
-    fmt::print(stderr, "\r\x1b[Klull: {} of {} done{}: {}", done, all, left + " left", name);
+    Say("\r\x1b[Klull: {} of {} done{}: {}", done, all, left + " left", name);
 }
 
 void ClearProgress() {
-    if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+    if (isatty(STDERR_FILENO)) Say("\r\x1b[K");
 }
 
 void PrintRow(const HardCase& hardCase, const HardCaseResult& result, bool markdown) {

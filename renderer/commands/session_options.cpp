@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
 #include "renderer/ranks/job.h"
@@ -39,9 +40,7 @@ SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sa
     options.film.grid = GridOf(settings.schedule);
     options.onResume = PrintTalk;
     if (!settings.quiet && !settings.jsonProgress) options.onLearning = PrintTalk;
-    options.onWarning = [](const std::string& message) {
-        fmt::print(stderr, "\nlull: warning: {}\n", message);
-    };
+    options.onWarning = [](const std::string& message) { Say("\nlull: warning: {}\n", message); };
     if (job) ShareAmongRanks(job, &options);
     return options;
 }

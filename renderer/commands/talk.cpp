@@ -1,12 +1,36 @@
 #include "renderer/commands/talk.h"
 
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "renderer/base/error.h"
+#include "renderer/base/say.h"
 #include "renderer/output/file_io.h"
 
 namespace lull {
 
-void PrintTalk(const std::string& message) { fmt::print(stderr, "lull: {}\n", message); }
+void PrepareStreams() {
+    std::signal(SIGPIPE, SIG_IGN);
+    // What is opened gets the lowest number that is free. Only that for errors takes what is
+    // written: results that go nowhere are an error.
+    constexpr std::pair<int, int> kStreams[] = {{0, O_RDONLY}, {1, O_RDONLY}, {2, O_WRONLY}};
+    for (const auto& [stream, mode] : kStreams)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", mode) < 0) return;
+}
+
+bool HasLostResults() { return std::ferror(stdout) != 0; }
+
+void FinishResults() {
+    if (std::fflush(stdout) == 0 && !HasLostResults()) return;
+    throw Error(std::string("cannot write the results to stdout: ") + std::strerror(errno));
+}
+
+void PrintTalk(const std::string& message) { Say("lull: {}\n", message); }
 
 void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
     WriteFileAtomically(path, bytes);

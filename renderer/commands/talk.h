@@ -7,6 +7,15 @@
 
 namespace lull {
 
+// Readies the three streams of the program: writing to a pipe that nobody reads is an error and not
+// the end, and one that is closed is /dev/null, so that no file of results takes its place.
+void PrepareStreams();
+
+// Writes out what was printed to stdout. Throws Error where it, or anything before, could not be.
+void FinishResults();
+// Says whether something that was printed to stdout is lost.
+bool HasLostResults();
+
 // Prints a message as a line of its own on stderr, after the program's name.
 void PrintTalk(const std::string& message);
 

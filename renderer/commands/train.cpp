@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
 #include "renderer/commands/interrupt.h"
@@ -24,8 +25,7 @@ TrainingEvents PrintTo(TrainingPrinter* printer, const BlockSplit& split, bool q
                 [=, &split](const TrainingSamples& samples, const TrainingProgress& progress) {
                     const auto noisy = std::ranges::count(samples.noisy, char(1));
                     if (!quiet)
-                        fmt::print(
-                            stderr, "lull: {}{} windows of {} blocks to train on, {:.1f}% noisy\n",
+                        Say("lull: {}{} windows of {} blocks to train on, {:.1f}% noisy\n",
                             split.name.empty() ? "" : split.name + ": ", samples.Count(),
                             split.training.size(), 100.0 * double(noisy) / double(samples.Count()));
                     printer->Begin(split.name, progress);
@@ -59,7 +59,7 @@ ExitCode RunTrain(const TrainOptions& options) {
                  [&](const BlockSplit& split) { return PrintTo(&printer, split, options.quiet); });
     if (!result) {
         if (!options.quiet && !checkpoint.Path().empty())
-            fmt::print(stderr, "lull: interrupted; --resume goes on from {}\n", checkpoint.Path());
+            Say("lull: interrupted; --resume goes on from {}\n", checkpoint.Path());
         return kInterrupted;
     }
     const JudgeOptions judge{.grid = plan.settings.n};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 
 namespace lull {
@@ -26,28 +27,28 @@ void TrainingPrinter::Print(const TrainingProgress& p) {
     const double left = rate > 0 ? double(p.allSamples - p.samples) / rate : 0;
     nextReport = seconds + (style == ProgressStyle::Plain ? 30 : 0.25);
     if (style == ProgressStyle::Json) {
-        fmt::print(stream,
-                   R"({{"training":"{}","epoch":{},"epochs":{},"samples":{},"allSamples":{},)"
-                   R"("loss":{:.6f},"auc":{:.6f},"samplesPerSecond":{:.1f},)"
-                   R"("remainingSeconds":{:.1f}}})"
-                   "\n",
-                   name, p.epoch, p.epochs, p.samples, p.allSamples, p.loss, p.auc, rate, left);
+        SayTo(stream,
+              R"({{"training":"{}","epoch":{},"epochs":{},"samples":{},"allSamples":{},)"
+              R"("loss":{:.6f},"auc":{:.6f},"samplesPerSecond":{:.1f},)"
+              R"("remainingSeconds":{:.1f}}})"
+              "\n",
+              name, p.epoch, p.epochs, p.samples, p.allSamples, p.loss, p.auc, rate, left);
     } else {
         const std::string text =
             fmt::format("{}{}epoch {}/{}  loss {:.4f}  AUC {:.3f}  {} samples/s  {} left", name,
                         name.empty() ? "" : "  ", p.epoch, p.epochs, p.loss, p.auc,
                         FormatCount(rate), FormatDuration(left));
         if (style == ProgressStyle::Line)
-            fmt::print(stream, "\r{}\x1b[K", text);
+            SayTo(stream, "\r{}\x1b[K", text);
         else
-            fmt::print(stream, "{}\n", text);
+            SayTo(stream, "{}\n", text);
     }
     std::fflush(stream);
 }
 
 void TrainingPrinter::Finish(const TrainingProgress& progress) {
     Print(progress);
-    if (style == ProgressStyle::Line) fmt::print(stream, "\n");
+    if (style == ProgressStyle::Line) SayTo(stream, "\n");
     std::fflush(stream);
 }
 

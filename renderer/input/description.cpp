@@ -122,6 +122,31 @@ bool IntegratorSeesMedia(const std::string& name) {
     return name == "volpath" || name == "bdpt" || name == "mlt";
 }
 
+std::vector<std::string> FilesOf(const Description& d) {
+    std::vector<std::string> files = d.sources;
+    const auto add = [&](const Entity& entity) {
+        for (const Parameter& parameter : entity.parameters.All())
+            if (const auto* texts = std::get_if<std::vector<std::string>>(&parameter.values))
+                for (const std::string& text : *texts) {
+                    const std::string path = ResolvePath(d, text);
+                    std::error_code error;
+                    if (!text.empty() && std::filesystem::is_regular_file(path, error))
+                        files.push_back(path);
+                }
+    };
+    const auto addAll = [&](const auto& entities) {
+        for (const Entity& entity : entities) add(entity);
+    };
+    add(d.camera);
+    addAll(d.textures);
+    addAll(d.materials);
+    addAll(d.lights);
+    addAll(d.shapes);
+    for (const ObjectEntity& object : d.objects) addAll(object.shapes);
+    addAll(d.media);
+    return files;
+}
+
 std::string ResolvePath(const Description& description, const std::string& file) {
     if (file.empty() || description.directory.empty()) return file;
     // An absolute path replaces the directory.

@@ -173,11 +173,16 @@ struct Description {
     std::vector<Motion> motions;
     std::vector<EmbeddedImage> images;
 
-    std::string directory;  // of the scene's file; relative file names start there
+    std::string directory;             // of the scene's file; relative file names start there
+    std::vector<std::string> sources;  // the files that this was read from
 };
 
 // Says whether the integrator of that name shows participating media: pbrt-v3's path does not.
 bool IntegratorSeesMedia(const std::string& name);
+
+// Returns the files that the scene consists of: those that the description was read from, and those
+// that its parameters name, as far as there are such.
+std::vector<std::string> FilesOf(const Description& description);
 
 // Returns `file` as named in a parameter, made relative to the description's directory.
 std::string ResolvePath(const Description& description, const std::string& file);

@@ -145,6 +145,10 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
             bounds.Extend(Transformed(p.worldFromMesh, mesh.bounds));
         AddShapes(document, std::move(mesh), byMesh[i], &description);
     }
+    description.sources = {file};
+    for (const tinygltf::Buffer& buffer : document.model.buffers)
+        if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
+            description.sources.push_back(ResolvePath(description, buffer.uri));
     for (const GltfNode& node : nodes) AddLight(document, node, &description, warnings);
     SetView(document, nodes, bounds, options, &description);
 

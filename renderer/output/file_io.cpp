@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "renderer/base/error.h"
 
@@ -22,14 +24,16 @@ namespace file_io {
 // Owns a descriptor and, while `temporary` is not empty, the file of that name.
 struct OutputFile {
     int fd = -1;
+    int lock = -1;  // another descriptor of the same file, which keeps it locked
     fs::path temporary;
 
     OutputFile() = default;
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile() {
-        if (fd >= 0) close(fd);
         if (!temporary.empty()) unlink(temporary.c_str());
+        for (const int open : {fd, lock})
+            if (open >= 0) close(open);
     }
 };
 
@@ -53,21 +57,61 @@ using file_io::OutputFile, file_io::Target;
     Fail(path, std::strerror(error));
 }
 
-// Creates a new file beside `target`, hidden and with its extension, so that whoever watches the
-// directory does not take it for a result.
+// Returns the name of a file beside `target`, hidden and with its extension, so that whoever
+// watches the directory does not take it for a result. The stem is cut short so that a name that is
+// just allowed leads to one that is, too.
+fs::path BesideTarget(const fs::path& target, const std::string& tag) {
+    return target.parent_path() / fmt::format(".{}.{}{}", target.stem().string().substr(0, 128),
+                                              tag, target.extension().string().substr(0, 32));
+}
+
+// Creates the file; returns false, with errno, where there is one or it cannot be created.
+bool Create(const fs::path& name, OutputFile* file) {
+    file->fd = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file->fd >= 0) file->temporary = name;
+    return file->fd >= 0;
+}
+
+// Creates the file and locks it. Where somebody is faster to do so, it is theirs to remove.
+bool CreateLocked(const fs::path& name, OutputFile* file) {
+    if (!Create(name, file)) return false;
+    file->lock = dup(file->fd);  // a lock is given up with the last descriptor
+    if (file->lock >= 0 && flock(file->fd, LOCK_EX | LOCK_NB) == 0) return true;
+    if (errno != EWOULDBLOCK) unlink(name.c_str());
+    for (int* open : {&file->fd, &file->lock})
+        if (*open >= 0) close(std::exchange(*open, -1));
+    file->temporary.clear();
+    errno = EWOULDBLOCK;
+    return false;
+}
+
+// Removes what a writer that was killed has left; returns false where somebody is writing to it, or
+// that cannot be known.
+bool RemoveLeftover(const fs::path& name) {
+    OutputFile old;
+    old.fd = open(name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (old.fd < 0) return errno == ENOENT;
+    if (flock(old.fd, LOCK_EX | LOCK_NB) != 0) return false;
+    // What was locked may have been given its final name in the meantime.
+    struct stat locked, named;
+    if (fstat(old.fd, &locked) != 0) return false;
+    if (lstat(name.c_str(), &named) != 0) return errno == ENOENT;
+    if (locked.st_ino != named.st_ino || locked.st_dev != named.st_dev) return true;
+    return unlink(name.c_str()) == 0;
+}
+
+// Creates a new file beside `target`. It has always the same name, so that what is left where
+// writers are killed does not grow; where another writer has that, or the file system knows no
+// locks, one of its own.
 void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
+    const fs::path common = BesideTarget(target, "tmp");
+    for (int attempt = 0; attempt < 10; ++attempt) {
+        if (CreateLocked(common, file)) return;
+        if (errno != EEXIST || !RemoveLeftover(common)) break;
+    }
     static std::atomic<unsigned> serial = 0;  // tells apart the writers of one process
     for (int attempt = 0; attempt < 100; ++attempt) {
-        // The stem is cut short so that a name that is just allowed leads to one that is, too.
-        const std::string name =
-            fmt::format(".{}.{}-{}{}", target.stem().string().substr(0, 128), getpid(), serial++,
-                        target.extension().string().substr(0, 32));
-        const fs::path candidate = target.parent_path() / name;
-        file->fd = open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file->fd >= 0) {
-            file->temporary = candidate;
-            return;
-        }
+        if (Create(BesideTarget(target, fmt::format("{}-{}", getpid(), serial++)), file)) return;
         if (errno != EEXIST) break;
     }
     FailWithErrno(path);
@@ -172,6 +216,7 @@ void AtomicFile::Commit() {
     Close(path, &file);
     if (rename(file.temporary.c_str(), state->target.path.c_str()) != 0) FailWithErrno(path);
     file.temporary.clear();
+    if (file.lock >= 0) close(std::exchange(file.lock, -1));
     SyncDirectory(state->target.path.parent_path());
 }
 

@@ -24,7 +24,7 @@ constexpr size_t kAlwaysAllowed = size_t(64) << 20;
 constexpr size_t kSignature = 8;  // tells PNG and EXR from the rest
 
 [[noreturn]] void FailToRead(const std::string& path, const std::string& reason) {
-    throw Error(fmt::format("cannot read image \"{}\": {}", path, reason));
+    throw Error(OneLine(fmt::format("cannot read image \"{}\": {}", path, reason)));
 }
 
 // Refuses what no honest file holds before any memory is taken for it.

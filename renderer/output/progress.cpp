@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/base/say.h"
+
 namespace lull {
 
 namespace {
@@ -106,12 +108,12 @@ void ProgressPrinter::Print(const RenderProgress& p) {
     rate.Add(p);
     const double r = rate.SamplesPerSecond();
     if (style == ProgressStyle::Json) {
-        fmt::print(stream, "{}\n", ProgressJson(p, r, adaptive));
+        SayTo(stream, "{}\n", ProgressJson(p, r, adaptive));
     } else if (style == ProgressStyle::Line) {
         // Return to the start of the line and, at its end, erase what was there before.
-        fmt::print(stream, "\r{}\x1b[K", ProgressText(p, r, adaptive));
+        SayTo(stream, "\r{}\x1b[K", ProgressText(p, r, adaptive));
     } else if (p.seconds >= nextPlainLine) {
-        fmt::print(stream, "{}\n", ProgressText(p, r, adaptive));
+        SayTo(stream, "{}\n", ProgressText(p, r, adaptive));
         nextPlainLine = p.seconds + 30;
     }
     std::fflush(stream);
@@ -120,7 +122,7 @@ void ProgressPrinter::Print(const RenderProgress& p) {
 void ProgressPrinter::Finish(const RenderProgress& p) {
     nextPlainLine = 0;
     Print(p);
-    if (style == ProgressStyle::Line) fmt::print(stream, "\n");
+    if (style == ProgressStyle::Line) SayTo(stream, "\n");
     std::fflush(stream);
 }
 

@@ -13,10 +13,11 @@ double LightnessSlope(double y) {
 
 // Returns the standard error in lightness of a pixel whose mean luminance is `mean`.
 float Noise(const AovPixel& pixel, double mean, double count) {
-    if (count < 2) return kInfinity;
+    constexpr float kUnknown = 100;  // from black to white
+    if (count < 2) return kUnknown;
     const double variance = std::max(0., pixel.squares / count - mean * mean) / (count - 1);
     const double noise = LightnessSlope(mean) * std::sqrt(variance);
-    return noise < std::numeric_limits<float>::max() ? float(noise) : kInfinity;
+    return float(std::min(noise, double(std::numeric_limits<float>::max())));
 }
 
 // Makes a channel of `value(pixel, i)`.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/output/file_io.h"
+#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
 
@@ -199,7 +200,9 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
         WritePixels(pixels, rect, film);
         WriteLayers(layers, rect, &pixels);
     }
-    WriteFileAtomically(path, root.Image());
+    std::vector<std::byte> bytes = root.Image();
+    Seal(&bytes);
+    WriteFileAtomically(path, bytes);
 } catch (const Error&) {
     throw;
 } catch (const std::runtime_error& e) {
@@ -208,6 +211,7 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
                            const Layers& layers, std::vector<std::byte>* guide) try {
+    CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
         throw Error("it is no checkpoint of this version of the program");

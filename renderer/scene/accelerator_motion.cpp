@@ -11,13 +11,14 @@ void MovingBounds(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = PaddedBounds(user.bounds[args->timeStep]);
 }
 
-// Returns the ray as the instance sees it at the ray's time.
-RTCRay IntoMoving(const MovingUser& user, const RTCRay& r) {
+// Finds the ray as the instance sees it at the ray's time; false where it cannot be traced there.
+bool IntoMoving(const MovingUser& user, const RTCRay& r, RTCRay* inner) {
     const Instance& instance = user.shapes->instances[user.instance];
     const Ray ray =
         IntoInstance(user.shapes->InstanceAt(instance, r.time),
                      {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar});
-    return MakeRay(ray, r.time);
+    *inner = MakeRay(ray, r.time);
+    return ray.o.squaredNorm() + ray.d.squaredNorm() < Sqr(kLongestRay);
 }
 
 #if RTC_VERSION_MAJOR >= 4
@@ -51,7 +52,7 @@ void IntersectMoving(const RTCIntersectFunctionNArguments* args) {
     auto* outer = reinterpret_cast<RTCRayHit*>(args->rayhit);
     const auto& user = *static_cast<const MovingUser*>(args->geometryUserPtr);
     RTCRayHit inner;
-    inner.ray = IntoMoving(user, outer->ray);
+    if (!IntoMoving(user, outer->ray, &inner.ray)) return;
     inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     args->context->instID[0] = args->geomID;
     Intersect(user.object, args->context, &inner);
@@ -66,7 +67,8 @@ void OccludedMoving(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[0]) return;
     auto* outer = reinterpret_cast<RTCRay*>(args->ray);
     const auto& user = *static_cast<const MovingUser*>(args->geometryUserPtr);
-    RTCRay inner = IntoMoving(user, *outer);
+    RTCRay inner;
+    if (!IntoMoving(user, *outer, &inner)) return;
     args->context->instID[0] = args->geomID;
     FindOcclusion(user.object, args->context, &inner);
     args->context->instID[0] = RTC_INVALID_GEOMETRY_ID;

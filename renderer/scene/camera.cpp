@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/base/sampling.h"
+#include "renderer/input/file_contents.h"
 #include "renderer/scene/lens_file.h"
 
 namespace lull {
@@ -118,6 +119,7 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     if (file.empty()) throw Error(entity.loc, "Camera \"realistic\" needs a \"lensfile\"");
     LensSystem::Settings settings;
     settings.loc = entity.loc;
+    settings.file = Printable(file);
     settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
     const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
     if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
@@ -161,6 +163,24 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
 }
 
 }  // namespace
+
+double Farthest(const Camera& camera, const FilmSettings& film) {
+    double size = 1;
+    if (camera.projection != Projection::Environment && !camera.lenses) {
+        const Vec2f last =
+            camera.planeOrigin + film.resolution.cast<float>().cwiseProduct(camera.planePerPixel);
+        size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
+        if (camera.lensRadius > 0) size += double(camera.lensRadius) + double(camera.focalDistance);
+    }
+    // While it moves, it is neither farther away nor larger than at one of the ends.
+    double farthest = 0;
+    for (const double time : {0., 1.}) {
+        const Mat4d m = camera.motion ? camera.motion->At(time) : camera.worldFromCamera;
+        const double scale = m.topLeftCorner<3, 3>().norm();
+        farthest = std::max(farthest, m.topRightCorner<3, 1>().norm() + scale * size);
+    }
+    return farthest;
+}
 
 Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings,
                   int threads) {

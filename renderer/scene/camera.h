@@ -75,6 +75,10 @@ struct Camera {
 // (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
 
+// Bounds how far from the world's origin rays begin, or lie the points that they are aimed at. It
+// may be infinite.
+double Farthest(const Camera&, const FilmSettings&);
+
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
 // is nothing if no matrix projects as the camera does.
 Mat4d WorldToCamera(const Camera&);

@@ -55,6 +55,14 @@ void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& 
         params.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
 }
 
+// Refuses cameras whose rays Embree would not take.
+void CheckCamera(const Scene& scene, const FileLoc& loc) {
+    if (!(Farthest(scene.camera, scene.film) <= double(scene.shapes.reach)))
+        throw Error(loc, fmt::format("rays of the camera begin, or are aimed, farther than {:.3g} "
+                                     "from the origin, where none is traced; scale the scene down",
+                                     scene.shapes.reach));
+}
+
 }  // namespace
 
 std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
@@ -77,6 +85,7 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     });
     scene->shapeSeconds = Timed([&] {
         scene->shapes = ShapeTable(description, scene->textures, options.substitute, warnings);
+        CheckCamera(*scene, description.camera.loc);
         scene->lights = LightTable(description, scene->shapes, scene->textures,
                                    options.lightsAsPbrtV3, warnings);
     });

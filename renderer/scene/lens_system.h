@@ -27,7 +27,8 @@ class LensSystem {
         float focusDistance;                    // from the film, metres; positive
         bool simpleWeighting;                   // see Generate
         float exposureTime;                     // seconds, at least 0
-        FileLoc loc;                            // for messages
+        FileLoc loc;                            // for messages, as is the next
+        std::string file = {};                  // that the interfaces were read from
     };
 
     // Moves the lenses to focus at the distance, by the thick-lens approximation, and bounds the

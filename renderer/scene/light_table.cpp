@@ -37,6 +37,28 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
                                         entity.name));
 }
 
+// Light of a colour outside of sRGB has a negative part, and so would have one that is mistyped.
+void WarnOfNegative(const Rgb& color, const Entity& entity, const std::string& what,
+                    Warnings& warnings) {
+    if ((color < 0).any())
+        warnings.Add(entity.loc, "a light has a negative part, which its pixels will have too",
+                     what + " \"" + entity.name + "\"");
+}
+
+// Refuses lights to whose place no ray is traced.
+void CheckReach(const Light& light, const LightEntity& entity, float reach) {
+    std::visit(
+        [&]<typename L>(const L& l) {
+            if constexpr (requires { l.p; })
+                if (!(l.p.template cast<double>().norm() <= double(reach)))
+                    throw Error(entity.loc, fmt::format("LightSource \"{}\" lies farther than "
+                                                        "{:.3g} from the origin, where no ray is "
+                                                        "traced; scale the scene down",
+                                                        entity.name, reach));
+        },
+        light);
+}
+
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
     if (entity.name != "diffuse" && entity.name != "area")
         throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not modelled; only "
@@ -45,6 +67,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     const Parameters& params = entity.parameters;
     AreaLight light;
     light.L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    WarnOfNegative(light.L, entity, "AreaLightSource", warnings);
     light.twoSided = params.GetBool("twosided", false);
     params.GetInt("samples", 1);
     params.GetInt("nsamples", 1);
@@ -95,7 +118,10 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
         lights.push_back(MakeLight(description, entity, world.radius, asPbrtV3, warnings));
+        CheckReach(lights.back(), entity, shapes.reach);
         entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
+        WarnOfNegative(std::visit([](const auto& light) { return light.Power(); }, lights.back()),
+                       entity, "LightSource", warnings);
         if (std::holds_alternative<InfiniteLight>(lights.back())) infinite.push_back(Count() - 1);
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {

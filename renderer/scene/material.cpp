@@ -132,6 +132,16 @@ std::optional<NormalMap> ReadNormalMap(const MaterialReader& in) {
                      parameters.GetInt("normaluv", 0) == 1};
 }
 
+}  // namespace
+
+std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) {
+    if (!index.IsConstant() || IsIndexOfRefraction(index.constant)) return "";
+    return fmt::format("\"eta\" of material \"{}\" has to lie between 0.01 and 100; it is {}",
+                       in.entity.name, index.constant);
+}
+
+namespace {
+
 // Throws what is wrong, or warns of it where a matte material may stand in.
 void Refuse(const MaterialEntity& entity, const std::string& problem, bool substitute,
             Warnings& warnings) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/animated_transform.h"
 #include "renderer/scene/media/presets.h"
+#include "renderer/scene/reach.h"
 
 namespace lull {
 namespace {
@@ -18,6 +20,19 @@ void CheckCoefficient(const MediumEntity& entity, const char* name, const Rgb& v
         throw Error(entity.loc, fmt::format("\"{}\" of medium \"{}\" has to be finite and at least "
                                             "0",
                                             name, entity.mediumName));
+}
+
+// A ray is stopped to look at the density as often, on the mean, as its length times the greatest
+// extinction says, be there anything in its way or not.
+void CheckDepth(const MediumEntity& entity, const GridMedium& grid, const Mat4d& worldFromGrid) {
+    constexpr double kDeepest = 1e7;
+    const double longest = worldFromGrid.topLeftCorner<3, 3>().norm();
+    const double deepest = double(grid.sigmaT * grid.maxDensity) * longest;
+    if (!(deepest <= kDeepest))
+        throw Error(entity.loc,
+                    fmt::format("medium \"{}\" is too dense to be traced: its greatest extinction "
+                                "times its length is {:.3g}, which has to be {:g} at most",
+                                entity.mediumName, deepest, kDeepest));
 }
 
 GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& sigmaS, float g) {
@@ -54,10 +69,17 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
     Mat4d worldFromGrid = Mat4d::Identity();
     worldFromGrid.topLeftCorner<3, 3>() = (p1 - p0).cast<double>().asDiagonal();
     worldFromGrid.topRightCorner<3, 1>() = p0.cast<double>();
-    grid.gridFromWorld = Mat4d(entity.worldFromMedium * worldFromGrid).inverse();
+    worldFromGrid = Mat4d(entity.worldFromMedium * worldFromGrid);
+    grid.gridFromWorld = worldFromGrid.inverse();
     if (!grid.gridFromWorld.allFinite())
         throw Error(entity.loc, fmt::format("medium \"{}\": \"p0\" and \"p1\" have to span a box",
                                             entity.mediumName));
+    CheckDepth(entity, grid, worldFromGrid);
+    if (!(Farthest(TransformBox(worldFromGrid, {Vec3f::Zero(), Vec3f::Ones()})) <=
+          double(kFarthest)))
+        throw Error(entity.loc, fmt::format("medium \"{}\" reaches farther than {:g} from the "
+                                            "origin, where no ray is traced; scale the scene down",
+                                            entity.mediumName, kFarthest));
     return grid;
 }
 

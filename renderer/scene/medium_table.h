@@ -27,7 +27,8 @@ struct MediumTable {
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
-    // or infinite coefficients and extinction that differs between channels of a grid.
+    // or infinite coefficients, extinction that differs between channels of a grid, and grids so
+    // dense that rays could not be traced through them.
     MediumTable(const Description&, Warnings&);
 
     // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;

@@ -22,6 +22,15 @@ Bounds3f ShapeBounds(const Shape& shape) {
         shape.geometry);
 }
 
+// Refuses what no ray reaches. `what` is the grammatical subject.
+void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& what) {
+    if (!(Farthest(bounds) <= double(kFarthest)))
+        throw Error(loc,
+                    fmt::format("{} reaches farther than {:g} from the origin, where no ray is "
+                                "traced; scale the scene down",
+                                what, kFarthest));
+}
+
 // Carries an interaction from the space of an object into the world.
 void Place(const Instance& instance, SurfaceInteraction* hit) {
     // The transform itself is rounded to float where rays go through it, so its error counts with
@@ -58,19 +67,23 @@ uint32_t Shape::PrimitiveCount() const {
 
 ShapeTable::ShapeTable(const Description& description, const TextureTable& textures,
                        bool substitute, Warnings& warnings) {
+    // Returns the bounds of the new shape.
     const auto add = [&](const ShapeEntity& entity) {
         shapes.push_back(MakeShape(description, entity, textures, substitute, warnings));
+        const Bounds3f b = ShapeBounds(shapes.back());
+        CheckReach(b, entity.loc, "Shape \"" + entity.name + "\"");
+        return b;
     };
-    for (const ShapeEntity& entity : description.shapes) add(entity);
+    for (const ShapeEntity& entity : description.shapes) bounds.Extend(add(entity));
     worldShapeCount = int(shapes.size());
     std::vector<Bounds3f> objectBounds;
     for (const ObjectEntity& object : description.objects) {
         objects.push_back({int(shapes.size()), int(object.shapes.size())});
-        for (const ShapeEntity& entity : object.shapes) add(entity);
-        objectBounds.push_back(ObjectBounds(int(objects.size()) - 1));
+        objectBounds.emplace_back();
+        for (const ShapeEntity& entity : object.shapes) objectBounds.back().Extend(add(entity));
     }
 
-    for (int i = 0; i < worldShapeCount; ++i) bounds.Extend(ShapeBounds(shapes[i]));
+    std::vector<FileLoc> places;
     const Shutter shutter = ReadShutter(description.camera);
     for (const InstanceEntity& entity : description.instances) {
         const Bounds3f& b = objectBounds[entity.object];
@@ -81,10 +94,28 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
         if (!instance.instanceFromWorld.allFinite())
             throw Error(entity.loc, "the instance's transform cannot be inverted");
         instances.push_back(instance);
+        places.push_back(entity.loc);
+        Bounds3f placed;
         if (instance.motion < 0)
-            bounds.Extend(TransformBox(instance.worldFromInstance, b));
+            placed = TransformBox(instance.worldFromInstance, b);
         else
-            for (const Bounds3f& box : BoundMotion(motions[instance.motion], b)) bounds.Extend(box);
+            for (const Bounds3f& box : BoundMotion(motions[instance.motion], b)) placed.Extend(box);
+        CheckReach(placed, entity.loc, "the instance");
+        bounds.Extend(placed);
+    }
+    LimitReach(places);
+}
+
+// Embree carries rays into instances at rest itself, and takes them as they come out.
+void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
+    for (size_t i = 0; i < instances.size(); ++i) {
+        if (instances[i].motion >= 0) continue;
+        const double through = ReachThrough(instances[i].instanceFromWorld);
+        if (!(through >= Farthest(bounds)))
+            throw Error(placesOfInstances[i],
+                        "the instance's transform shrinks so much that no ray could be followed "
+                        "into it; give the object itself a smaller size");
+        reach = std::min(reach, float(through));
     }
 }
 

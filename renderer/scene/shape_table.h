@@ -6,6 +6,7 @@
 
 #include "renderer/scene/animated_transform.h"
 #include "renderer/scene/material.h"
+#include "renderer/scene/reach.h"
 #include "renderer/scene/shapes/curves.h"
 #include "renderer/scene/shapes/mesh.h"
 #include "renderer/scene/shapes/quadric.h"
@@ -61,10 +62,14 @@ struct ShapeTable {
     std::vector<Instance> instances;
     std::vector<std::vector<AnimatedTransform>> motions;  // each outermost first
     Bounds3f bounds;                                      // of everything placed, world
+    // The distance from the origin within which all else has to lie that rays start from or go to,
+    // so that they can be followed into all instances.
+    float reach = kFarthest;
 
     // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
     // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
-    // Zero-area triangles are dropped with a counted warning. Lights are given to shapes later.
+    // Zero-area triangles are dropped with a counted warning, and what lies beyond kFarthest is an
+    // Error. Lights are given to shapes later.
     ShapeTable(const Description&, const TextureTable&, bool substitute, Warnings&);
     ShapeTable() = default;
 
@@ -91,6 +96,7 @@ struct ShapeTable {
 
   private:
     void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
+    void LimitReach(std::span<const FileLoc> placesOfInstances);
     void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
                         SurfaceInteraction*) const;
     // `instance` is null for what stands in the world itself.

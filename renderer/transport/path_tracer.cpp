@@ -68,8 +68,9 @@ template <typename Media, typename Guiding, typename Recorder>
             path.beta *= inMedium.weight;
             if (IsBlack(path.beta)) break;
             if (inMedium.t) {
-                const MediumVertex v{path.ray.o + *inMedium.t * path.ray.d,
-                                     -path.ray.d.normalized(), context.media.PhaseParameter()};
+                const Vec3f p = path.ray.o + *inMedium.t * path.ray.d;
+                if (!(p.squaredNorm() <= Sqr(scene.shapes.reach))) break;  // no ray starts there
+                const MediumVertex v{p, -path.ray.d.normalized(), context.media.PhaseParameter()};
                 firstHit.Advance(*inMedium.t);
                 scene.lights.Prefetch(v.p);
                 firstHit.MeetMedium(path, v.p);

@@ -33,7 +33,7 @@ struct PathOptions {
 
 struct PathSample {
     Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
-    bool rejected;     // was NaN, infinite or negative, and counts as black
+    bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
     int vertices = 0;  // that the path had beside the camera; counted of guided paths alone
 };
 

@@ -29,7 +29,7 @@ struct Probe {
 };
 
 std::optional<Probe> ChooseProbe(const SubsurfaceProfile& profile, const Frame& frame,
-                                 const Vec3f& p, float u, const Vec2f& v) {
+                                 const Vec3f& p, float u, const Vec2f& v, float reach) {
     const Vec3f* axes[3];  // the probe is along the last one
     if (u < 0.5f) {
         axes[0] = &frame.s, axes[1] = &frame.t, axes[2] = &frame.n;
@@ -43,9 +43,10 @@ std::optional<Probe> ChooseProbe(const SubsurfaceProfile& profile, const Frame& 
     }
     const int channel = std::min(int(3 * u), 2);
     const auto r = profile.Sample(channel, v.x());
-    // Light further away than that is left out, as in pbrt-v3.
+    // Light further away than that is left out, as in pbrt-v3; and where no ray is traced.
     const auto most = profile.Sample(channel, 0.999f);
     if (!r || !most || !(*r < *most)) return {};
+    if (!(*most <= reach)) return {};
     const float phi = 2 * kPi * v.y(), half = std::sqrt(Sqr(*most) - Sqr(*r));
     const Vec3f middle = p + *r * (std::cos(phi) * *axes[0] + std::sin(phi) * *axes[1]);
     return Probe{middle - half * *axes[2], middle + half * *axes[2], 3 * u - float(channel)};
@@ -57,7 +58,8 @@ std::optional<SubsurfaceExit> SampleSubsurface(const Scene& scene, Sampler& samp
                                                const SurfaceInteraction& hit, const Bsdf& bsdf,
                                                const SubsurfaceProfile& profile, float time) {
     const float u = sampler.Get1D();
-    const auto probe = ChooseProbe(profile, bsdf.Shading(), hit.p, u, sampler.Get2D());
+    const auto probe =
+        ChooseProbe(profile, bsdf.Shading(), hit.p, u, sampler.Get2D(), scene.shapes.reach);
     if (!probe) return {};
 
     // Choose one of all hits of this material with even chances: each new one takes the place of

@@ -1,13 +1,23 @@
 // Writes tables of comma-separated values.
 #pragma once
 
+#include <cstdlib>
 #include <string>
 
 namespace lull {
 
+// Says whether a spreadsheet would take a text for a formula, and do what it says.
+inline bool IsFormula(const std::string& text) {
+    if (text.empty() || std::string("=+-@\t\r").find(text[0]) == std::string::npos) return false;
+    char* end;
+    std::strtod(text.c_str(), &end);
+    return *end != 0 || end == text.c_str();
+}
+
 // Returns a text as a field: in quotation marks where a comma, a quotation mark or the end of a
-// line would break the line.
+// line would break the line, and after an apostrophe where it would be a formula.
 inline std::string CsvField(const std::string& text) {
+    if (IsFormula(text)) return CsvField('\'' + text);
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

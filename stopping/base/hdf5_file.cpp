@@ -3,6 +3,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
@@ -54,6 +56,17 @@ std::vector<int64_t> ShapeOf(hid_t space) {
     return {shape.begin(), shape.end()};
 }
 
+// Fails where a file says that an array is in it which is larger than what deflate could make of
+// all of it: no memory is taken for what cannot be there.
+void CheckSize(hid_t data, size_t count, size_t elementSize, const std::string& what) {
+    constexpr double kMostCompressed = 1100;
+    const Handle file(H5Iget_file_id(data), H5Fclose, what);
+    hsize_t size = 0;
+    Check(H5Fget_filesize(file, &size), what);
+    if (double(count) * double(elementSize) > kMostCompressed * double(size))
+        Fail(what + ": it is damaged, and would be larger than the file");
+}
+
 size_t Count(hid_t space) {
     return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
 }
@@ -102,6 +115,10 @@ void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t spa
 
 Hdf5Group Hdf5Group::Open(const std::string& path) {
     BeQuiet();
+    // The library does not say why it cannot.
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (!file) Fail(std::string("open it: ") + std::strerror(errno));
+    std::fclose(file);
     return Hdf5Group(
         Share(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it as HDF5"));
 }
@@ -275,6 +292,7 @@ std::vector<T> Hdf5Group::Array(const std::string& path, std::span<const int64_t
     }
     if (H5Tget_class(type) != ElementType<T>::kClass)
         Fail(what + ": it holds no " + ElementType<T>::kName);
+    CheckSize(data, Count(space), sizeof(T), what);
     std::vector<T> values(Count(space));
     Check(H5Dread(data, ElementType<T>::Memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
           what);

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "stopping/base/checksum.h"
 #include "stopping/base/csv.h"
 #include "stopping/base/state.h"
 #include "stopping/network/model_inputs.h"
@@ -178,12 +179,13 @@ std::vector<std::byte> SaveResults(const std::string& data, std::span<const Sear
         for (const Figure& figure : figures) writer.Put(result.*figure.value);
         writer.Put(result.seconds);
     }
+    Seal(&writer.bytes);
     return std::move(writer.bytes);
 }
 
 std::vector<SearchResult> RestoreResults(std::span<const std::byte> bytes,
                                          const std::string& data) {
-    StateReader reader(bytes);
+    StateReader reader(CheckSeal(bytes));
     // Every element takes at least a byte of what is left.
     const auto getCount = [&] {
         const uint64_t count = reader.Get<uint64_t>();

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "stopping/base/checksum.h"
 #include "stopping/base/state.h"
 
 namespace lull {
@@ -16,17 +17,19 @@ constexpr uint32_t checkpointTag = 0x3143524c;  // "LRC1"
 
 }  // namespace
 
-void TrainingCheckpoint::Read() {
+void TrainingCheckpoint::Read() try {
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error(path + ": there is no checkpoint to resume from");
+    if (!file) throw std::runtime_error("there is no checkpoint to resume from");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    StateReader reader(std::as_bytes(std::span(text)));
+    StateReader reader(CheckSeal(std::as_bytes(std::span(text))));
     reader.Expect(checkpointTag);
     while (reader.Left() > 0) {
         const uint64_t size = reader.Get<uint64_t>();
-        if (size > reader.Left()) throw std::runtime_error(path + ": the checkpoint is cut short");
+        if (size > reader.Left()) throw std::runtime_error("the checkpoint is cut short");
         reader.GetAll(std::span(states.emplace_back(size)));
     }
+} catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
 }
 
 void TrainingCheckpoint::Set(size_t training, std::vector<std::byte> state) {
@@ -52,6 +55,7 @@ void TrainingCheckpoint::Write() {
     StateWriter writer;
     writer.Put(checkpointTag);
     for (const std::vector<std::byte>& state : states) writer.PutVector(state);
+    Seal(&writer.bytes);
     try {
         write(path, writer.bytes);
     } catch (const std::runtime_error& error) {

@@ -1,5 +1,7 @@
 // Gives the program scenes and files that are broken: it must say what is wrong and where, with
 // exit code 1, and leave all files as they are.
+#include <algorithm>
+
 #include "tests/integration/run_lull.h"
 
 namespace lull {
@@ -26,6 +28,68 @@ void ExpectBadMesh(const std::string& ply, const std::vector<std::string>& parts
     directory.Write("mesh.ply", ply);
     directory.Write("scene.pbrt", SceneText("Shape \"plymesh\" \"string filename\" \"mesh.ply\""));
     ExpectFailure(directory, kRender, parts);
+}
+
+// Rays that Embree takes for invalid, which builds with assertions end the program for.
+TEST(BadInput, TooLargeForRays) {
+    const TemporaryDirectory directory;
+    const auto expect = [&](const std::string& text, const std::vector<std::string>& parts) {
+        directory.Write("scene.pbrt", text);
+        ExpectFailure(directory, kRender, parts);
+    };
+    expect(
+        "LookAt 0 0 1.9e18 0 0 0 0 1 0\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n"
+        "WorldEnd\n",
+        {"scene.pbrt:2", "1e+12"});
+    expect("Camera \"perspective\" \"float lensradius\" [5e18]\nWorldBegin\nWorldEnd\n",
+           {"scene.pbrt:1"});
+    expect(SceneText("ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\nScale 1e-19 1 1\n"
+                     "ObjectInstance \"a\""),
+           {"scene.pbrt:11", "shrinks"});
+}
+
+TEST(BadInput, TooDenseForRays) {
+    ExpectBadScene("Integrator \"volpath\"\n" +
+                       SceneText("MakeNamedMedium \"fog\" \"string type\" \"heterogeneous\"\n"
+                                 "\"integer nx\" [2] \"float density\" [0 1e30]\n"
+                                 "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1]\n"
+                                 "MediumInterface \"fog\" \"\"\nMaterial \"\"\nShape \"sphere\""),
+                   {"scene.pbrt:8", "medium \"fog\" is too dense"});
+}
+
+TEST(BadInput, IndexOfRefractionBelowZero) {
+    ExpectBadScene(SceneText("Material \"uber\" \"float eta\" [-1]\nShape \"sphere\""),
+                   {"scene.pbrt:7", "\"eta\" of material \"uber\"", "-1"});
+}
+
+// What OpenImageIO says comes in several lines.
+TEST(BadInput, ErrorsOfOtherFormatsAreOneLine) {
+    const TemporaryDirectory directory;
+    directory.Write("t.tif", std::string("II*\0\x08\0\0\0\xff\xff", 10) + std::string(60, 'x'));
+    directory.Write("t.gif", "GIF89a" + std::string(30, 'x'));
+    directory.Write("t.webp", "RIFF\x10xxxWEBPVP8 " + std::string(30, 'x'));
+    directory.Write("t.jp2", std::string("\0\0\0\x0cjP  \r\n\x87\n", 12) + std::string(60, 'x'));
+    for (const char* name : {"t.tif", "t.gif", "t.webp", "t.jp2"}) {
+        directory.Write("scene.pbrt",
+                        SceneText(fmt::format("Texture \"t\" \"spectrum\" \"imagemap\" \"string "
+                                              "filename\" \"{}\"\nMaterial \"matte\" \"texture "
+                                              "Kd\" \"t\"\nShape \"sphere\"",
+                                              name)));
+        ExpectFailure(directory, kRender, {"scene.pbrt:7", name});
+        const Outcome outcome = RunLull(directory, kRender);
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+}
+
+TEST(BadInput, LensFilesAreNamed) {
+    const TemporaryDirectory directory;
+    for (const char* lens : {"1 2 3", "1 2 x 4", "1 1e10 1 1", "1e-3 1 1 1e-30"}) {
+        directory.Write("lens.dat", lens);
+        directory.Write("scene.pbrt",
+                        "Camera \"realistic\" \"string lensfile\" \"lens.dat\"\nWorldBegin\n"
+                        "Shape \"sphere\"\nWorldEnd\n");
+        ExpectFailure(directory, kRender, {"lens.dat"});
+    }
 }
 
 TEST(BadInput, MissingScene) {

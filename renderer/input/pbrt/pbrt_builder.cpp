@@ -37,6 +37,7 @@ Description PbrtBuilder::Finish(const FileLoc& end) {
     if (stage == Stage::World)
         throw Error(end, "the file ends without WorldEnd for the WorldBegin of line " +
                              std::to_string(worldBegin.line));
+    description.sources = lexer.Files();
     return std::move(description);
 }
 

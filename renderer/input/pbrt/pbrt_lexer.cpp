@@ -93,6 +93,12 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     sources.push_back(std::move(source));
 }
 
+std::vector<std::string> PbrtLexer::Files() const {
+    std::vector<std::string> files;
+    for (const auto& [file, count] : inclusions) files.push_back(file);
+    return files;
+}
+
 FileLoc PbrtLexer::Loc() const { return {sources.back().name, sources.back().line}; }
 
 bool PbrtLexer::SkipSpace() {

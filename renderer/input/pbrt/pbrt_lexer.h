@@ -33,6 +33,8 @@ class PbrtLexer {
     // Continues with `file` and returns at its end. Throws Error at `loc` if it is open already
     // (recursion), cannot be read, or if repeated inclusion has added up to absurd amounts of text.
     void Include(const std::string& file, const FileLoc& loc);
+    // Returns the files that were read.
+    std::vector<std::string> Files() const;
 
     Token Take();
     const Token& Peek();
@@ -67,8 +69,8 @@ class PbrtLexer {
     template <typename T>
     T ParseNumber();
 
-    std::vector<Source> sources;  // the last is read
-    std::map<std::string, int> inclusions;
+    std::vector<Source> sources;            // the last is read
+    std::map<std::string, int> inclusions;  // of all files, by their canonical names
     size_t repeatedBytes = 0;
     Token peeked;
     bool hasPeeked = false;

@@ -31,7 +31,7 @@ int Disney::MaxLobes() const {
 void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     using Part = DisneyDiffuse::Part;
     const Rgb c = in.Color(color);
-    const float metal = in(metallic), index = in(eta), through = in(specTrans);
+    const float metal = in(metallic), index = in.Index(eta), through = in(specTrans);
     const float roughness = in(rough), transmitted = in(diffTrans) / 2;
     const float diffuse = (1 - metal) * (1 - through);
     const float luminance = Luminance(c);
@@ -87,7 +87,7 @@ std::optional<SubsurfaceProfile> Disney::Profile(const MaterialInputs& in) const
     const Rgb distance = in.Color(scatterDistance);
     const float diffuse = (1 - in(metallic)) * (1 - in(specTrans));
     if (!(diffuse > 0) || IsBlack(distance)) return {};
-    return SubsurfaceProfile(BurleyProfile(diffuse * in.Color(color), distance), in(eta));
+    return SubsurfaceProfile(BurleyProfile(diffuse * in.Color(color), distance), in.Index(eta));
 }
 
 }  // namespace lull

@@ -16,6 +16,7 @@ struct Disney {
     FloatTexture flatness, diffTrans;  // of thin surfaces
 
     explicit Disney(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     SurfaceNeeds ExtraNeeds() const {
         return thin || IsAlwaysBlack(scatterDistance) ? kNeedsNothing

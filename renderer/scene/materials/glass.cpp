@@ -9,7 +9,7 @@ Glass::Glass(const MaterialReader& in)
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)) {}
 
 void Glass::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    AddDielectricLobes(in.Color(kr), in.Color(kt), in(eta), roughness, in, bsdf);
+    AddDielectricLobes(in.Color(kr), in.Color(kt), in.Index(eta), roughness, in, bsdf);
 }
 
 void AddDielectricLobes(const Rgb& r, const Rgb& t, float eta, const Roughness& roughness,

@@ -13,6 +13,7 @@ struct Glass {
     Roughness roughness;  // 0 both ways: smooth
 
     explicit Glass(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 

@@ -26,7 +26,7 @@ Hair::Hair(const MaterialReader& in)
 }
 
 void Hair::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const float n = in(betaN), index = in(eta);
+    const float n = in(betaN), index = in.Index(eta);
     Rgb absorption;
     if (sigmaA)
         absorption = in.Color(*sigmaA);

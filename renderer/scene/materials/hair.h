@@ -14,6 +14,7 @@ struct Hair {
     FloatTexture eta, betaM, betaN, alpha;
 
     explicit Hair(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 

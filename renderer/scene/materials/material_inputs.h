@@ -49,6 +49,13 @@ struct MaterialReader {
     }
 };
 
+// Says whether a number can be an index of refraction. Light that goes in and out of what is beyond
+// these, and is not all reflected, would count up to 1e4 times.
+inline bool IsIndexOfRefraction(float index) { return index >= 0.01f && index <= 100; }
+
+// Says what is wrong with an index of refraction that is the same everywhere, "" if nothing.
+std::string ProblemOfIndex(const MaterialReader&, const FloatTexture& index);
+
 // Holds what lobes are made from at a hit point. `materials` is the whole table, for mixtures.
 // `hit` is null if a material without ExtraNeeds is turned into lobes once and for all.
 struct MaterialInputs {
@@ -61,6 +68,11 @@ struct MaterialInputs {
     // Textures may give any colour; for scattering negative values count as 0.
     Rgb Color(const SpectrumTexture& t) const { return Raw(t).max(0.f); }
     Rgb Raw(const SpectrumTexture& t) const { return textures.Evaluate(t, context); }
+    // Where a texture has no index of refraction, there is nothing to refract at.
+    float Index(const FloatTexture& t) const {
+        const float index = (*this)(t);
+        return IsIndexOfRefraction(index) ? index : 1;
+    }
 };
 
 // Says whether a colour is known to be black everywhere, so that its lobe never appears.

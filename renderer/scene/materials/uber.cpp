@@ -29,7 +29,7 @@ int Uber::MaxLobes() const {
 }
 
 void Uber::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const float index = in(eta);
+    const float index = in.Index(eta);
     const Rgb op = in.Color(opacity), through = (1 - op).max(0.f);
     if (IsBlack(through))
         bsdf->SetEta(index);

@@ -13,6 +13,7 @@ struct Uber {
     Roughness roughness;
 
     explicit Uber(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 

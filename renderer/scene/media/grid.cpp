@@ -26,6 +26,14 @@ struct Crossing {
     Vec3f operator()(float t) const { return o + t * d; }
 };
 
+// Returns the next collision after t, by a step that is exponentially distributed. Far from the
+// ray's origin a step can be shorter than floats are apart; it then goes to the next float, so that
+// each way has an end.
+float NextCollision(float t, float majorant, Sampler& sampler) {
+    const float next = t - std::log1p(-sampler.Get1D()) / majorant;
+    return next > t ? next : NextFloatTowards(1, t);
+}
+
 }  // namespace
 
 float GridMedium::Density(const Vec3f& p) const {
@@ -54,7 +62,7 @@ float GridMedium::Transmittance(const Ray& worldRay, Sampler& sampler) const {
     const Crossing crossing(gridFromWorld, worldRay);
     float transmittance = 1;
     for (float t = crossing.tMin;;) {
-        t -= std::log1p(-sampler.Get1D()) / majorant;
+        t = NextCollision(t, majorant, sampler);
         if (!(t < crossing.tMax)) return transmittance;
         transmittance *= 1 - std::max(0.f, Density(crossing(t)) / maxDensity);
         if (transmittance < 0.1f) {
@@ -70,7 +78,7 @@ MediumSample GridMedium::Sample(const Ray& worldRay, Sampler& sampler) const {
     if (!(majorant > 0)) return {};
     const Crossing crossing(gridFromWorld, worldRay);
     for (float t = crossing.tMin;;) {
-        t -= std::log1p(-sampler.Get1D()) / majorant;
+        t = NextCollision(t, majorant, sampler);
         if (!(t < crossing.tMax)) return {};
         if (Density(crossing(t)) > sampler.Get1D() * maxDensity) return {.t = t, .weight = albedo};
     }

@@ -44,7 +44,7 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
         hit->dpdv = (duv02[0] * dp12 - duv12[0] * dp02) / determinant;
     }
     if (degenerate || hit->dpdu.cross(hit->dpdv).squaredNorm() == 0)
-        CoordinateSystem(dp02.cross(dp12).normalized(), &hit->dpdu, &hit->dpdv);
+        CoordinateSystem(UnitOf(dp02.cross(dp12)), &hit->dpdu, &hit->dpdv);
     hit->dndu = hit->dndv = Vec3f::Zero();
     hit->surfaceDpdu = hit->dpdu;
     hit->surfaceDpdv = hit->dpdv;
@@ -100,7 +100,7 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
     hit->pError = Gamma(7) * p0.cwiseAbs().cwiseMax(p1.cwiseAbs()).cwiseMax(p2.cwiseAbs());
     const Eigen::Array3f inside = KeepInside({b0, b1, b2}, p0, p1, p2, hit->pError);
     hit->p = inside[0] * p0 + inside[1] * p1 + inside[2] * p2;
-    hit->n = (p0 - p2).cross(p1 - p2).normalized();
+    hit->n = UnitOf((p0 - p2).cross(p1 - p2));
     if (flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
     if (!n.empty()) {
@@ -146,13 +146,13 @@ std::array<float, 4> Mesh::Color(uint32_t triangle, float b1, float b2) const {
 
 float Mesh::Area(uint32_t triangle) const {
     const auto& v = triangles[triangle];
-    return 0.5f * (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]).norm();
+    return 0.5f * LengthOf((p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]));
 }
 
 TriangleSampler Mesh::Sampler(uint32_t triangle) const {
     const auto& v = triangles[triangle];
     const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
-    const float twiceArea = cross.norm();
+    const float twiceArea = LengthOf(cross);
     Vec3f normal = cross / twiceArea;
     if (!n.empty())
         normal = FaceForward(normal, n[v[0]] + n[v[1]] + n[v[2]]);

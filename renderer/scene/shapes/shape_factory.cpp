@@ -125,8 +125,8 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     mesh.triangles = std::move(data.triangles);
     std::erase_if(mesh.triangles, [&](const auto& v) {
         const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
-        const float area2 = (p1 - p0).cross(p2 - p0).squaredNorm();
-        if (area2 > 0 && std::isfinite(area2)) return false;
+        const float twiceArea = LengthOf((p1 - p0).cross(p2 - p0));
+        if (std::isfinite(twiceArea) && std::isfinite(2 / twiceArea)) return false;
         warnings.Add(entity.loc, "zero-area triangle left out");
         return true;
     });

@@ -8,6 +8,7 @@
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
+#include "renderer/base/say.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
@@ -138,6 +139,31 @@ TEST(FileLoc, FormatsItsPrefix) {
     EXPECT_EQ(LocAt(0).Prefix(), "scene.pbrt: ");
     EXPECT_EQ(FileLoc().Prefix(), "");
     EXPECT_STREQ(Error(LocAt(7), "broken").what(), "scene.pbrt:7: broken");
+}
+
+TEST(OneLine, JoinsWhatLibrariesSayInSeveral) {
+    EXPECT_EQ(OneLine("one"), "one");
+    EXPECT_EQ(OneLine("one\ntwo\r\n\nthree\n"), "one; two; three");
+    EXPECT_EQ(OneLine("\n"), "");
+}
+
+TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {
+    for (const float scale : {1e-30f, 1e-20f, 1.f, 1e20f, 1e30f}) {
+        const Vec3f v = scale * Vec3f(2, -3, 6);
+        EXPECT_NEAR(LengthOf(v) / scale, 7, 1e-5);
+        EXPECT_NEAR((UnitOf(v) - Vec3f(2, -3, 6) / 7).norm(), 0, 1e-6);
+    }
+    EXPECT_EQ(LengthOf(Vec3f::Zero()), 0);
+    EXPECT_EQ(UnitOf(Vec3f::Zero()), Vec3f::Zero());
+}
+
+TEST(Say, GoesOnWhereNothingCanBeWritten) {
+    std::FILE* full = std::fopen("/dev/full", "w");
+    if (!full) GTEST_SKIP() << "there is no /dev/full";
+    std::setbuf(full, nullptr);
+    EXPECT_NO_THROW(SayTo(full, "{} of {}\n", 1, 2));
+    EXPECT_TRUE(std::ferror(full));
+    std::fclose(full);
 }
 
 TEST(Warnings, ShowsTheFirstOfAKindAndCountsAll) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <csignal>
 #include <thread>
@@ -116,6 +117,40 @@ TEST(WriteFileAtomically, TakesManyWritersAtOnce) {
     for (std::thread& writer : writers) writer.join();
     const std::string text = ReadBytes(path);
     EXPECT_EQ(text, std::string(100000, text.at(0)));
+    EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+// Five that are killed leave no more than one, and the next that writes leaves nothing.
+TEST(AtomicFile, RemovesWhatKilledWritersLeave) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.Write("x.exr", "old");
+    for (int i = 0; i < 5; ++i) {
+        const pid_t writer = fork();
+        if (writer == 0) {
+            AtomicFile file(path);
+            file.WriteAt(0, std::as_bytes(std::span(path)));
+            _exit(0);
+        }
+        ASSERT_GT(writer, 0);
+        waitpid(writer, nullptr, 0);
+        EXPECT_EQ(directory.CountFiles(), 2);
+        EXPECT_EQ(ReadBytes(path), "old");
+    }
+    WriteFileAtomically(path, "new");
+    EXPECT_EQ(ReadBytes(path), "new");
+    EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+TEST(AtomicFile, DoesNotDisturbAnother) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("x.exr");
+    AtomicFile first(path);
+    first.WriteAt(0, std::as_bytes(std::span("first", 5)));
+    EXPECT_NO_THROW(CheckWritable(path));
+    WriteFileAtomically(path, "second");
+    EXPECT_EQ(ReadBytes(path), "second");
+    first.Commit();
+    EXPECT_EQ(ReadBytes(path), "first");
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 

@@ -49,6 +49,8 @@ TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }
     EXPECT_EQ(EmbeddedFile("no such file"), "");
+    EXPECT_TRUE(
+        Contains(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
     for (const char* reaching :
          {"src=\"http", "href=\"http", "@import", "url(", "fetch(", "import("})
         EXPECT_EQ(page.find(reaching), std::string::npos) << reaching;

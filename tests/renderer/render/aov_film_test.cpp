@@ -96,8 +96,9 @@ TEST(AovFilm, WeighsAsThePixelFilterDoes) {
 TEST(AovFilm, KnowsOfPixelsThatMetNothing) {
     OnePixel pixel("albedo,normal,depth,position,object,material,noise");
     EXPECT_EQ(pixel.Value("albedo.R"), 0);  // not even a sample
-    EXPECT_EQ(pixel.Value("noise"), kInfinity);
+    EXPECT_EQ(pixel.Value("noise"), 100);
     pixel.Add({});
+    EXPECT_EQ(pixel.Value("noise"), 100);
     pixel.Add({});
     EXPECT_EQ(pixel.Value("Z"), kAovFarAway);
     EXPECT_EQ(pixel.Value("P.X"), 0);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <random>
 
 #include "stopping/base/state.h"
 #include "tests/renderer/output/test_files.h"
@@ -197,6 +198,14 @@ TEST(Checkpoint, RefusesDamagedFiles) {
             ReadCheckpoint(directory.Write("cut", bytes.substr(0, length)), kIdentity, &film),
             Error)
             << length;
+    std::mt19937 random(1);
+    for (int i = 0; i < 300; ++i) {
+        std::string flipped = bytes;
+        flipped[random() % bytes.size()] ^= char(1 << random() % 8);
+        const std::string damaged = directory.Write("flipped", flipped);
+        EXPECT_TRUE(Contains(ErrorOf([&] { ReadCheckpoint(damaged, kIdentity, &film); }),
+                             damaged + ": it is "));
+    }
     // Another image's pixels do not fit.
     Film smaller({{0, 0}, {40, 97}});
     EXPECT_THROW(ReadCheckpoint(path, kIdentity, &smaller), Error);

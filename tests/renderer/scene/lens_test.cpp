@@ -115,7 +115,7 @@ TEST(RealisticCamera, MayLetNothingPass) {
     }
     EXPECT_EQ(dark, 1000);
     EXPECT_TRUE(Contains(CameraError(kLens, {FloatParameter("aperturediameter", {0})}),
-                         "scene.pbrt:3: no light passes the lenses"));
+                         "scene.pbrt:3: no light passes the lenses of '"));
 }
 
 TEST(RealisticCamera, RefusesNonsense) {

@@ -144,6 +144,26 @@ TEST(Glass, EtaComesBeforeIndex) {
     EXPECT_EQ(b.MakeBsdf(1).Eta(), 1.7f);
 }
 
+TEST(IndexOfRefraction, IsRefusedWhereItCannotBeOne) {
+    for (const char* kind : {"glass", "uber", "disney", "hair"})
+        for (const float eta : {-1.f, 0.f, 1e30f, std::nanf("")}) {
+            MaterialScene b;
+            AddFloat(&b.AddMaterial(kind), "eta", eta);
+            const std::string error = ErrorOf(&b);
+            EXPECT_TRUE(error.starts_with("scene.pbrt:10: \"eta\" of material \"" +
+                                          std::string(kind) + "\" has to lie between"))
+                << error;
+        }
+}
+
+// Texture or not, what is left of light is never more than there was.
+TEST(IndexOfRefraction, IsOneWhereATextureHasNone) {
+    MaterialScene b;
+    b.AddChecks(false, 2, -1);
+    AddTexture(&b.AddMaterial("uber"), "eta", 0, false);
+    EXPECT_EQ(b.MakeBsdf(0).Eta(), 1);
+}
+
 TEST(Glass, IsRoughIfEitherTangentIs) {
     MaterialScene b;
     AddFloat(&b.AddMaterial("glass"), "vroughness", 0.1f);

@@ -152,6 +152,20 @@ TEST(GridMedium, MayBeEmptyOrDense) {
     }
 }
 
+// Where floats lie farther apart than collisions, and hardly any of these is one: half of the box
+// is empty.
+TEST(GridMedium, HasAnEndHoweverFarAway) {
+    const MediumTable table =
+        MakeTable("heterogeneous", GridParameters({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1e6f}));
+    Sampler sampler(SamplerKind::Random, 4);
+    for (int i = 0; i < 10; ++i) {
+        sampler.StartSample({0, 0}, uint32_t(i));
+        const Ray ray{Vec3f(-0.5f, 0.25f, -1e6f), Vec3f::UnitZ(), kInfinity};
+        EXPECT_FALSE(table.Sample(0, ray, sampler).t);
+        EXPECT_TRUE((table.Transmittance(0, ray, sampler) == 1).all());
+    }
+}
+
 TEST(MediumTable, KnowsPresetsAndDefaults) {
     const MediumTable milk = MakeTable("homogeneous", {});
     const auto& m = std::get<HomogeneousMedium>(milk.media[0]);
@@ -173,6 +187,12 @@ TEST(MediumTable, RefusesNonsense) {
         EXPECT_TRUE(Contains(error("homogeneous", {FloatParameter("g", {g})}), "\"g\""));
     EXPECT_TRUE(Contains(error("heterogeneous", {}), "has to be the same in red"));
     EXPECT_TRUE(Contains(error("heterogeneous", GridParameters({1, 2})), "2 values"));
+    for (const float densest : {1e8f, 1e30f}) {
+        std::vector<float> density(12, 0.f);
+        density[0] = densest;
+        EXPECT_TRUE(Contains(error("heterogeneous", GridParameters(density)),
+                             "scene.pbrt:3: medium \"m\" is too dense to be traced"));
+    }
     std::vector<float> bad(12, 1.f);
     bad[5] = -1;
     EXPECT_TRUE(Contains(error("heterogeneous", GridParameters(bad)), "density"));

@@ -17,6 +17,15 @@ TEST(CsvField, QuotesWhatWouldBreakTheLine) {
     EXPECT_EQ(CsvField(""), "");
 }
 
+TEST(CsvField, LeavesNoFormula) {
+    EXPECT_EQ(CsvField("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+    EXPECT_EQ(CsvField("@SUM(1,2)"), "\"'@SUM(1,2)\"");
+    EXPECT_EQ(CsvField("+1+A1"), "'+1+A1");
+    EXPECT_EQ(CsvField("-"), "'-");
+    EXPECT_EQ(CsvField("-1.5"), "-1.5");
+    EXPECT_EQ(CsvField("a=b"), "a=b");
+}
+
 TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
     std::vector<ObserverAnswers> answers;
     for (const ExampleAnswers& example :

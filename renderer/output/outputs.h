@@ -1,0 +1,18 @@
+// Keeps results from replacing each other, or what they are made from.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace lull {
+
+// Is a file as a user knows it: `role` says what it is, "--report" or "a file of the scene".
+struct NamedFile {
+    std::string role, path;
+};
+
+// Throws Error if an output would be the same file as another one or as an input, by whatever name
+// or link. Empty paths stand for none, and devices are no files.
+void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs);
+
+}  // namespace lull
