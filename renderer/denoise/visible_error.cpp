@@ -1,6 +1,8 @@
 #include "renderer/denoise/visible_error.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/svd_entropy.h"
@@ -47,6 +49,43 @@ struct Sums {
     }
 };
 
+// Holds mean squares of visible errors, with the variance of the first.
+struct Squares {
+    double estimate = 0, variance = 0, least = 0;
+
+    double Root(double deviations) const {
+        return std::sqrt(std::max(estimate + deviations * std::sqrt(variance), least));
+    }
+};
+
+Squares SquaresOf(const Sums& sums) {
+    const double seen = sums.Seen() / sums.count;
+    return {seen * sums.squared, seen * seen * sums.variance, seen * sums.least};
+}
+
+Squares MeanOf(std::span<const Squares> all) {
+    Squares mean;
+    const double n = double(all.size());
+    for (const Squares& s : all) {
+        mean.estimate += s.estimate / n;
+        mean.variance += s.variance / (n * n);
+        mean.least += s.least / n;
+    }
+    return mean;
+}
+
+// Returns a bound of the mean of root mean squares: the mean over groups of sub-blocks of the root
+// of each group's mean square, which is not below it. Within a group doubts average out, between
+// groups they add up; groups of like doubts keep what one sub-block does not know from all others.
+double UpperBound(std::vector<Squares>* all, size_t groups) {
+    std::ranges::stable_sort(*all, {}, &Squares::variance);
+    const size_t size = all->size() / groups;
+    double sum = 0;
+    for (size_t i = 0; i < groups; ++i)
+        sum += MeanOf(std::span(*all).subspan(i * size, size)).Root(kUpper);
+    return sum / double(groups);
+}
+
 }  // namespace
 
 EstimatedError MeasureError(const DenoisedPicture& denoised) {
@@ -74,24 +113,21 @@ EstimatedError MeasureError(const DenoisedPicture& denoised) {
 
 VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, int x1, int y1) {
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
-    double squared = 0, variance = 0, least = 0;
+    std::vector<Squares> all;
+    VisibleError result;
     for (size_t v = 0; v < kSide; ++v)
         for (size_t u = 0; u < kSide; ++u) {
             Sums sums;
             for (int y = y0 + ys[v]; y < y0 + ys[v + 1]; ++y)
                 for (int x = x0 + xs[u]; x < x0 + xs[u + 1]; ++x)
                     sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
-            const double seen = sums.Seen() / sums.count;
-            squared += seen * sums.squared;
-            variance += seen * seen * sums.variance;
-            least += seen * sums.least;
+            all.push_back(SquaresOf(sums));
+            result.estimate += all.back().Root(0) / (kSide * kSide);
+            result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    constexpr double count = kSide * kSide;
-    const double floor = least / count;
-    VisibleError result;
-    result.least = std::sqrt(floor);
-    result.estimate = std::sqrt(std::max(floor, squared / count));
-    result.upper = std::sqrt(std::max(floor, (squared + kUpper * std::sqrt(variance)) / count));
+    result.upper = std::min(UpperBound(&all, 1), UpperBound(&all, kSide));
+    // Chance is never below 0 in the mean of roots, and averages out in the other.
+    result.estimate = std::min({result.estimate, MeanOf(all).Root(0), result.upper});
     return result;
 }
 

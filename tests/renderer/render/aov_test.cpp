@@ -33,7 +33,7 @@ struct Rendered {
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
         };
-        options.layers = {&aovs, SampleWithHit};
+        options.layers = {.aovs = &aovs, .source = SampleWithHit};
     }
     void Run(const RenderState* interrupted = nullptr) {
         result = Render(SyntheticSample, options, &film, interrupted);

@@ -112,7 +112,7 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
             state = &before->state;
         }
         const SampleSource source = sourceOf(rank);
-        if (withLayers) options.layers = {layers.get(), WithHits(source)};
+        if (withLayers) options.layers = {.aovs = layers.get(), .source = WithHits(source)};
         RenderResult result = Render(source, options, film.get(), state);
         if (rank > 0) return;
         shared.film = std::move(film);

@@ -39,7 +39,7 @@ WorldEnd
     return Compile(d, options, warnings);
 }
 
-const PixelRect kRegion = {{0, 0}, {32, 24}};
+const PixelRect kBoxRegion = {{0, 0}, {32, 24}};
 
 SessionOptions OptionsFor(const std::string& checkpoint) {
     SessionOptions options;
@@ -69,7 +69,7 @@ struct Said {
 
 TEST(Session, GoesOnFromWhereverItWasInterrupted) {
     const auto scene = MakeBox();
-    Session whole(*scene, kRegion, OptionsFor(""));
+    Session whole(*scene, kBoxRegion, OptionsFor(""));
     ASSERT_TRUE(whole.Learn());
     ASSERT_FALSE(whole.Run().cancelled);
     ASSERT_TRUE(whole.Guidance().isUsed);
@@ -86,7 +86,7 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
             options.checkpoint.keepsGuide = keepsGuide;
             options.render.isCancelled = [&] { return left-- <= 0; };
             said.Hear(&options);
-            Session session(*scene, kRegion, options);
+            Session session(*scene, kBoxRegion, options);
             session.Resume();
             resumed += said.resume == std::vector<std::string>{"going on from " + file};
             if (!session.Learn()) {
@@ -112,11 +112,11 @@ TEST(Session, RefusesCheckpointsOfOtherLayers) {
     SessionOptions options = OptionsFor(directory.File("c.h5"));
     options.guide.mode = GuideMode::Off;
     options.render.checkpointAtEnd = true;
-    Session(*scene, kRegion, options).Run();
-    Session same(*scene, kRegion, options);
+    Session(*scene, kBoxRegion, options).Run();
+    Session same(*scene, kBoxRegion, options);
     EXPECT_NO_THROW(same.Resume());
     options.aovs.depth = false;
-    Session other(*scene, kRegion, options);
+    Session other(*scene, kBoxRegion, options);
     EXPECT_THROW(other.Resume(), Error);
 }
 
@@ -129,7 +129,7 @@ TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     options.guide.mode = GuideMode::Off;
     options.checkpoint.interval = 1e-6;
     said.Hear(&options);
-    Session session(*scene, kRegion, options);
+    Session session(*scene, kBoxRegion, options);
     session.Resume();
     EXPECT_FALSE(session.Run().cancelled);
     ASSERT_EQ(said.resume.size(), 1u);
@@ -157,14 +157,14 @@ TEST(Session, HeedsTheClock) {
     SessionOptions options = OptionsFor("");
     options.render.makeCriterion = nullptr;
     options.clock = [&] { return 60 - 0.01 * ++asked; };
-    Session session(*scene, kRegion, options);
+    Session session(*scene, kBoxRegion, options);
     ASSERT_TRUE(session.Learn());
     const RenderResult result = session.Run();
     ASSERT_TRUE(session.Options().secondsLeft);
     EXPECT_LT(session.Options().secondsLeft(), options.clock());
     EXPECT_FALSE(result.timeUp);
     asked = 100000;
-    Session late(*scene, kRegion, options);
+    Session late(*scene, kBoxRegion, options);
     ASSERT_TRUE(late.Learn());
     EXPECT_TRUE(late.Run().timeUp);
 }
