@@ -47,10 +47,9 @@ void CheckFiles(const CompareOptions& options, const std::vector<std::string>& r
         for (const char* extension : {".exr", ".png"})
             outputs.push_back({"-o", fmt::format("{}.{}{}", options.output, image, extension)});
     if (!rendered.empty()) outputs.push_back({"-o", options.output + ".thresholds.csv"});
-    for (const auto& [role, file] : {std::pair("--automatic", options.automatic),
-                                     {"--human", options.human},
-                                     {"--reference", options.reference}})
-        inputs.push_back({role, file});
+    inputs.push_back({"--automatic", options.automatic});
+    inputs.push_back({"--human", options.human});
+    inputs.push_back({"--reference", options.reference});
     AddFileOfRule("thresholds:" + options.human, &inputs);
     AddFileOfRule(options.rule, &inputs);
     CheckOutputs(outputs, inputs);
