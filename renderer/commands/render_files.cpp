@@ -62,11 +62,11 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         results.Write(files.ranges,
                       [&](const std::string& file) { WriteRanges(file, provenance, result); });
     if (files.report.ends_with(".html"))
-        results.WriteText(files.report,
-                          MakeRenderPage(provenance, result, film, histories, warnings.Counts()));
+        results.WriteText(files.report, MakeRenderPage(provenance, result, film, histories,
+                                                       warnings.Counts(), denoised));
     else if (!files.report.empty())
-        results.WriteText(files.report,
-                          MakeReport(provenance, result, film.RejectedCount(), warnings.Counts()));
+        results.WriteText(files.report, MakeReport(provenance, result, film.RejectedCount(),
+                                                   warnings.Counts(), denoised));
     return results;
 }
 
