@@ -299,6 +299,10 @@ ExitCode RunRender(Options options, Job* job) {
     how.render.makeCriterion = MakeCriteria(factory, IsHtml(options.report), &histories);
     how.render.trend = factory.trend;
     how.render.display = display.get();
+    if (clock)
+        how.render.onProgress = WarnOfFirstPass(
+            region.Area() * std::min(settings.schedule.passLength, settings.schedule.cap),
+            std::move(how.render.onProgress));
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);
