@@ -101,10 +101,10 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     const Bounds3f& bounds = scene->shapes.bounds;
     if (bounds.IsEmpty()) warnings.Add({}, "the scene has no shapes");
     if (const float size = bounds.Diagonal().norm();
-        scene->shapes.TriangleCount() > 0 && size < kSmallest)
+        scene->shapes.TriangleCount() > 0 && size < kSmallestScene)
         warnings.Add({}, "the scene is too small for its light to be right",
                      fmt::format("it is {:g} across, which should be {:g} or more; scale it up",
-                                 size, kSmallest));
+                                 size, kSmallestScene));
     return scene;
 }
 
