@@ -60,8 +60,8 @@ void ResultFiles::RemoveOld(const std::string& path) {
 void ResultFiles::Check() const {
     if (failures.empty()) return;
     std::string text = failures;
-    if (!rescued.empty()) text += fmt::format("; {} is in {} instead", rescued, folder);
-    if (!lost.empty()) text += fmt::format("; {} is lost", lost);
+    if (!rescued.empty()) text += fmt::format("; in {1} instead: {0}", rescued, folder);
+    if (!lost.empty()) text += fmt::format("; lost: {}", lost);
     throw Error(text);
 }
 
