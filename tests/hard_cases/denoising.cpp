@@ -81,7 +81,7 @@ HardCaseResult Gradient(const HardCaseOptions& o) {
 
 HardCaseResult SingleFireflies(const HardCaseOptions& o) {
     std::vector<HardCaseResult> results;
-    for (const float brightness : {10.f, 1e3f, 1e6f}) {
+    for (const float brightness : {10.f, 100.f, 1e6f}) {
         NoisyPicture noisy = HiddenPicture([](int, int) { return 0.4; }, 0.05, o.seed).noisy;
         for (int c = 0; c < 3; ++c) noisy.colour.a.Row(c, 50)[60] = brightness;
         const DenoisedPicture denoised = Denoise(noisy);
