@@ -108,6 +108,8 @@ EstimatedError MeasureError(const DenoisedPicture& denoised) {
         error.squared.values[i] = scale * (squared - square(x - y) / 4);
         error.deviation.values[i] = scale * square(deviation);
     }
+    // The variance of a few samples is itself noisy, which would count twice in its square.
+    error.deviation = BoxMean(std::move(error.deviation), kSmoothRadius);
     return error;
 }
 
