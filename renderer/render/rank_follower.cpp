@@ -1,54 +1,66 @@
 // All ranks but the first: render their tiles, and do as they are told.
-#include "renderer/render/rank_executor_internal.h"
+#include "renderer/render/rank_internal.h"
 
 namespace lull {
 
 namespace {
 
-class Follower final : public RankExecutor {
+class Follower {
   public:
     Follower(const SampleSource& source, const RenderOptions& options, Film* film,
              tbb::task_arena* arena)
-        : RankExecutor(source, options, film, nullptr, {}, arena) {
-        pausing = true;  // until rank 0 has said where blocks are
+        : options(options),
+          film(film),
+          rank(source, options, film, nullptr, arena,
+               {.onPassEnd = [this](int block) { SendPart(block); },
+                .completeView = {},
+                .onDecided = {},
+                .onException = {}}) {
+        executor.pausing = true;  // until rank 0 has said where blocks are
     }
 
     RenderResult Follow() {
-        bool told = false;
-        while (!ended) {
-            Exchange();
-            if (told || !IsCancelled()) continue;
-            Post(0, Pack(RankWord::Interrupted));
-            if (share.rank == 1) AskForLife({0});  // one is enough to say so
-            told = true;
-        }
-        Quiesce();
-        return Result();
+        return rank.Guarded([&] { return RunAll(); });
     }
 
   private:
-    void Handle(int, RankWord word, StateReader& reader) override {
+    RenderResult RunAll() {
+        bool told = false;
+        while (!ended) {
+            channel.Exchange(
+                [this](int, RankWord word, StateReader& reader) { Handle(word, reader); });
+            if (told || !executor.IsCancelled()) continue;
+            channel.Post(0, Pack(RankWord::Interrupted));
+            if (channel.Rank() == 1) channel.AskForLife({0});  // one is enough to say so
+            told = true;
+        }
+        executor.Quiesce();
+        return executor.Result();
+    }
+
+    void Handle(RankWord word, StateReader& reader) {
         if (word == RankWord::Answer) {
             const AnswerMessage answer = GetAnswer(reader);
             needs.at(size_t(answer.block)) = answer.need;
-            const int ready = Decide(answer.block, {answer.stop, answer.noise});
-            if (!pausing) Enqueue([this, ready] { Spawn(ready); });
+            const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
+            if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
         } else if (word == RankWord::Start) {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, NewTilesOfRank(block, share.rank, before), film, options.layers);
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), film, options.layers);
         } else if (word == RankWord::TimeUp) {
-            CallTime();
+            schedule.CallTime();
         } else if (word == RankWord::Pause) {
-            Quiesce();
-            Post(0, Pack(RankWord::Quiet));
+            executor.Quiesce();
+            channel.Post(0, Pack(RankWord::Quiet));
         } else if (word == RankWord::Collect) {
-            if (reader.Get<uint8_t>()) UndoPasses();
+            if (reader.Get<uint8_t>())
+                for (const int block : executor.Undo()) touched[size_t(block)] = true;
             SendPixels();
         } else if (word == RankWord::Resume || word == RankWord::Begin) {
-            pausing = false;
-            EnqueueTiles();
+            executor.pausing = false;
+            rank.EnqueueReady();
         } else if (word == RankWord::End) {
             ended = true;
         }
@@ -56,43 +68,43 @@ class Follower final : public RankExecutor {
 
     // Goes on from where rank 0 says, as soon as the sums have come. It has those of all pixels.
     void Begin(StartMessage start) {
-        if (start.blocks.size() != schedule.Blocks().size())
+        if (start.blocks.size() != schedule.Unlocked().Blocks().size())
             throw std::runtime_error("the ranks have different blocks");
-        before = begun ? share.deal : std::vector<int>();
+        before = begun ? schedule.Share().deal : std::vector<int>();
         begun = true;
-        Restart(start.blocks, {share.rank, std::move(start.deal)});
+        schedule.Restart(start.blocks, {channel.Rank(), std::move(start.deal)});
+        executor.ledger.TakeEffort();
         needs = std::move(start.needs);
         touched.assign(needs.size(), false);
     }
 
-    void OnPassEnd(int block) override {
-        const std::vector<PixelRect> tiles = TilesOfRank(block, share.rank);
-        const Effort taken = TakeEffort();
-        PartMessage part{block, taken.samples, 0, taken.seconds,
-                         MeansOf(tiles, needs[size_t(block)], *film)};
-        {
-            std::lock_guard lock(mutex);
-            part.seconds = std::exchange(results[size_t(block)].seconds, 0);
-        }
+    void SendPart(int block) {
+        const std::vector<PixelRect> tiles = schedule.TilesOfRank(block, channel.Rank());
+        const TileEffort taken = rank.TakeEffort();
+        const PartMessage part{block, taken.samples, executor.ledger.TakeSeconds(block),
+                               taken.seconds, MeansOf(tiles, needs[size_t(block)], *film)};
         touched[size_t(block)] = true;
-        Post(0, Pack(part));
-    }
-
-    void UndoPasses() {
-        for (const int block : undo.UndoAll(film, options.layers)) touched[size_t(block)] = true;
+        channel.Post(0, Pack(part));
     }
 
     // Sends what has changed since the last time, or may have.
     void SendPixels() {
         for (int i = 0; i < int(touched.size()); ++i) {
-            const bool isUnderWay = !schedule.Blocks()[size_t(i)].stopped;
+            const bool isUnderWay = !schedule.BlockAt(i).stopped;
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
-            const std::vector<PixelRect> tiles = TilesOfRank(i, share.rank);
-            if (!tiles.empty()) Post(0, PackPixels(i, tiles, *film, options.layers));
+            const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
+            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *film, options.layers));
         }
-        Post(0, Pack(RankWord::Collected));
+        channel.Post(0, Pack(RankWord::Collected));
     }
+
+    const RenderOptions& options;
+    Film* film;
+    Rank rank;
+    Executor& executor = rank.executor;
+    LiveSchedule& schedule = executor.schedule;
+    RankChannel& channel = rank.channel;
 
     std::vector<ViewNeed> needs;
     std::vector<char> touched;  // blocks that had a pass since their pixels were sent
@@ -108,8 +120,7 @@ RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given,
     options.makeCriterion = nullptr;
     options.onProgress = nullptr;
     options.onCheckpoint = nullptr;
-    Follower follower(source, options, film, arena);
-    return follower.Guarded([&] { return follower.Follow(); });
+    return Follower(source, options, film, arena).Follow();
 }
 
 }  // namespace lull

@@ -3,87 +3,104 @@
 #include <numeric>
 
 #include "renderer/render/rank_deal.h"
-#include "renderer/render/rank_executor_internal.h"
+#include "renderer/render/rank_internal.h"
 
 namespace lull {
 
 namespace {
 
-constexpr double leastGain = 1.1;    // of dealing out tiles anew, so that it is worth a pause
-constexpr double longestPause = 20;  // times as long as a pause was is it until the next
+constexpr double leastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
+constexpr double leastRun = 20;    // until the next pause: times what the last one took
 
-class Leader final : public RankExecutor {
+class Leader {
   public:
     Leader(const SampleSource& source, const RenderOptions& options, Film* film,
            const RenderState* interrupted, tbb::task_arena* arena)
-        : RankExecutor(source, options, film, interrupted,
-                       StartsOf(interrupted, bool(options.secondsLeft), *film), arena),
+        : options(options),
+          film(film),
+          rank(source, options, film, interrupted, arena,
+               {.onPassEnd = [this](int block) { EndPass(block); },
+                .completeView = [this](int block, FilmView* view) { CompleteView(block, view); },
+                .onDecided = [this](int block, const BlockAnswer& a) { TellAnswer(block, a); },
+                .onException = {}}),
           speeds(options.peers->Count()),
-          nextDeal(secondsBefore + options.dealInterval) {
+          nextDeal(executor.ledger.Seconds() + options.dealInterval) {
         ForgetParts();
     }
 
     RenderResult Lead() {
-        SendStart({});
-        nextCheckpoint = Seconds() + options.checkpointInterval;
-        for (;;) {
-            pausing = false;
-            EnqueueTiles();
-            RunUntilPause();
-            const double pause = Seconds();
-            const bool undo = timeCalled && IsOver() && !IsCancelled();
-            Gather(undo);
-            const bool over = IsOver() && (undo || !timeCalled || IsCancelled());
-            if (over || Seconds() >= nextCheckpoint) WriteCheckpoint();
-            if (over) break;
-            if (deal.empty() || timeCalled)
-                PostToAll(Pack(RankWord::Resume));
-            else
-                Deal();
-            nextDeal =
-                Seconds() + std::max(options.dealInterval, longestPause * (Seconds() - pause));
-        }
-        PostToAll(Pack(RankWord::End));
-        Exchange();  // sends the last word
-        peers.Flush();
-        RenderResult result = Result();
-        for (int rank = 0; rank < ranks; ++rank)
-            result.shares.push_back(double(std::ranges::count(share.deal, rank)) /
-                                    double(share.deal.size()));
-        return result;
+        return rank.Guarded([&] { return RunAll(); });
     }
 
   private:
+    RenderResult RunAll() {
+        SendStart({});
+        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+        for (;;) {
+            executor.pausing = false;
+            rank.EnqueueReady();
+            RunUntilPause();
+            const double pause = Seconds();
+            const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
+            Gather(undo);
+            const bool over =
+                IsOver() && (undo || !schedule.TimeCalled() || executor.IsCancelled());
+            if (over || Seconds() >= executor.nextCheckpoint) WriteCheckpoint();
+            if (over) break;
+            if (deal.empty() || schedule.TimeCalled())
+                channel.PostToAll(Pack(RankWord::Resume));
+            else
+                Deal();
+            nextDeal = Seconds() + std::max(options.dealInterval, leastRun * (Seconds() - pause));
+        }
+        channel.PostToAll(Pack(RankWord::End));
+        Exchange();  // sends the last word
+        channel.Flush();
+        RenderResult result = executor.Result();
+        const std::vector<int>& dealt = schedule.Share().deal;
+        for (int other = 0; other < channel.Count(); ++other)
+            result.shares.push_back(double(std::ranges::count(dealt, other)) /
+                                    double(dealt.size()));
+        return result;
+    }
+
+    double Seconds() const { return executor.ledger.Seconds(); }
+    void Exchange() {
+        channel.Exchange(
+            [this](int from, RankWord word, StateReader& reader) { Handle(from, word, reader); });
+    }
+
     void WriteCheckpoint() {
-        if (options.onCheckpoint && (!schedule.Done() || options.checkpointAtEnd))
-            options.onCheckpoint(State());
-        nextCheckpoint = Seconds() + options.checkpointInterval;
+        executor.WriteCheckpoint();
+        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
     void Deal() {
-        const std::vector<int> before = share.deal;
-        Restart(Starts(), {0, std::exchange(deal, {})});
+        const std::vector<int> before = schedule.Share().deal;
+        const auto& blocks = executor.ledger.Blocks(schedule.Unlocked());
+        schedule.Restart(StartsOf(blocks, options, *film), {0, std::exchange(deal, {})});
+        executor.ledger.TakeEffort();
         ForgetParts();
         SendStart(before);
         speeds.Forget();
     }
 
     void ForgetParts() {
-        parts.assign(schedule.Blocks().size(), {});
+        parts.assign(schedule.Unlocked().Blocks().size(), {});
         missing.clear();
         for (int i = 0; i < int(parts.size()); ++i) missing.push_back(PartCount(i));
     }
 
     // Decides on another deal, where it gains enough.
     void ThinkOfDeal() {
-        if (Seconds() < nextDeal || timeCalled) return;
+        if (Seconds() < nextDeal || schedule.TimeCalled()) return;
         std::lock_guard lock(partsMutex);
         const std::vector<double> known = speeds.Speeds(options.dealInterval / 10);
         if (known.empty()) return;
-        if (GainOfDealing(known, share.deal) >= leastGain) {
+        if (GainOfDealing(known, schedule.Share().deal) >= leastGain) {
             deal = DealBySpeed(known);
-            pausing = true;
+            executor.pausing = true;
         }
         speeds.Forget();
         nextDeal = Seconds() + options.dealInterval;
@@ -93,22 +110,22 @@ class Leader final : public RankExecutor {
     // those that they did not have by the deal before.
     void SendStart(const std::vector<int>& before) {
         StartMessage message;
-        message.deal = share.deal;
-        const std::span<const Block> blocks = schedule.Blocks();
+        message.deal = schedule.Share().deal;
+        const std::span<const Block> blocks = schedule.Unlocked().Blocks();
         for (int i = 0; i < int(blocks.size()); ++i) {
             const Block& block = blocks[size_t(i)];
             message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
-                                      hasClock && schedule.MustEnd(i)});
+                                      schedule.HasClock() && schedule.Unlocked().MustEnd(i)});
             message.needs.push_back(block.stopped ? ViewNeed::Nothing
-                                                  : NeedAt(i, NextSpp(block.spp)));
+                                                  : executor.judge.NeedAt(i, NextSpp(block.spp)));
         }
-        PostToAll(Pack(message));
-        for (int rank = 1; rank < ranks && samples > 0; ++rank)
+        channel.PostToAll(Pack(message));
+        for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
             for (int i = 0; i < int(blocks.size()); ++i) {
-                const std::vector<PixelRect> tiles = NewTilesOfRank(i, rank, before);
-                if (!tiles.empty()) Post(rank, PackPixels(i, tiles, *film, options.layers));
+                const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
+                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, options.layers));
             }
-        PostToAll(Pack(RankWord::Begin));
+        channel.PostToAll(Pack(RankWord::Begin));
     }
 
     int NextSpp(int spp) const {
@@ -117,89 +134,81 @@ class Leader final : public RankExecutor {
 
     int PartCount(int block) const {
         int count = 0;
-        for (int rank = 0; rank < ranks; ++rank) count += !TilesOfRank(block, rank).empty();
+        for (int other = 0; other < channel.Count(); ++other)
+            count += !schedule.TilesOfRank(block, other).empty();
         return count;
     }
 
-    bool IsOver() {
-        std::lock_guard lock(mutex);
-        return schedule.Done() || IsCancelled() || (timeCalled && !schedule.MustGoOn());
-    }
+    bool IsOver() { return executor.IsCancelled() || schedule.IsOver(); }
 
     void RunUntilPause() {
-        while (!pausing && !IsOver()) {
+        while (!executor.pausing && !IsOver()) {
             Exchange();
-            if (hasClock && !timeCalled && !(options.secondsLeft() > 0)) {
-                CallTime();
-                PostToAll(Pack(RankWord::TimeUp));
+            if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
+                schedule.CallTime();
+                channel.PostToAll(Pack(RankWord::TimeUp));
             }
-            if (options.onCheckpoint && Seconds() >= nextCheckpoint && HasGoneOn()) pausing = true;
+            if (options.onCheckpoint && Seconds() >= executor.nextCheckpoint && HasGoneOn())
+                executor.pausing = true;
             ThinkOfDeal();
-            ReportProgress();
+            executor.ledger.Report(&schedule);
         }
     }
 
     // Says whether there are new samples, so that the shortest interval leads to an end.
-    bool HasGoneOn() {
-        std::lock_guard lock(mutex);
-        return samples > samplesGathered;
-    }
+    bool HasGoneOn() { return executor.ledger.Samples() > samplesGathered; }
 
     // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
         quiet = collected = 0;  // now: a rank that is idle answers before Exchange() returns
-        PostToAll(Pack(RankWord::Pause));
+        channel.PostToAll(Pack(RankWord::Pause));
         Exchange();  // sends it
-        Quiesce();
+        executor.Quiesce();
         Await(quiet);
-        Quiesce();  // decisions on what has arrived
-        if (undo) Undo();
-        PostToAll(PackCollect(undo));
+        executor.Quiesce();  // decisions on what has arrived
+        if (undo) executor.Undo();
+        channel.PostToAll(PackCollect(undo));
         Await(collected);
-        samples = samplesGathered = film->SampleCount();
+        samplesGathered = film->SampleCount();
+        executor.ledger.SetSamples(samplesGathered);
     }
 
     // Waits until all others have said a word. Who cancels a render may do so because one of them
     // has died, so that it is asked then.
     void Await(const int& heard) {
-        while (heard < ranks - 1) {
-            if (IsCancelled() && !std::exchange(hasAsked, true)) {
-                std::vector<int> others(size_t(ranks) - 1);
+        while (heard < channel.Count() - 1) {
+            if (executor.IsCancelled() && !std::exchange(hasAsked, true)) {
+                std::vector<int> others(size_t(channel.Count()) - 1);
                 std::iota(others.begin(), others.end(), 1);
-                AskForLife(others);
+                channel.AskForLife(others);
             }
             Exchange();
         }
     }
 
-    void Handle(int from, RankWord word, StateReader& reader) override {
+    void Handle(int from, RankWord word, StateReader& reader) {
         if (word == RankWord::Part) {
             TakePart(from, GetPart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
-            GetPixels(reader, TilesOfRank(block, from), film, options.layers);
+            GetPixels(reader, schedule.TilesOfRank(block, from), film, options.layers);
         } else if (word == RankWord::Quiet) {
             ++quiet;
         } else if (word == RankWord::Collected) {
             ++collected;
         } else if (word == RankWord::Interrupted) {
-            peerInterrupted = true;
+            executor.peerInterrupted = true;
         }
     }
 
     void TakePart(int from, PartMessage part) {
-        {
-            std::lock_guard lock(mutex);
-            results[size_t(part.block)].seconds += part.seconds;
-            samples += part.samples;
-        }
+        executor.ledger.AddPart(part.block, part.seconds, part.samples);
         {
             std::lock_guard lock(partsMutex);
             speeds.Add(from, part.samples, part.busySeconds);
             parts[size_t(part.block)].emplace_back(from, std::move(part.values));
         }
-        if (IsLastPart(part.block))
-            Enqueue([this, block = part.block] { Spawn(DecideBlock(block)); });
+        if (IsLastPart(part.block)) rank.Enqueue([this, block = part.block] { Decide(block); });
     }
 
     bool IsLastPart(int block) {
@@ -209,29 +218,39 @@ class Leader final : public RankExecutor {
         return true;
     }
 
-    void OnPassEnd(int block) override {
-        const Effort own = TakeEffort();
+    void Decide(int block) { executor.tasks.Spawn(executor.DecideBlock(block)); }
+
+    void EndPass(int block) {
+        const TileEffort own = rank.TakeEffort();
         {
             std::lock_guard lock(partsMutex);
             speeds.Add(0, own.samples, own.seconds);
         }
-        if (IsLastPart(block)) Spawn(DecideBlock(block));
+        if (IsLastPart(block)) Decide(block);
     }
 
-    void CompleteView(int block, FilmView* view) override {
-        for (const auto& [rank, values] : parts[size_t(block)])
-            PutMeans(values, TilesOfRank(block, rank), schedule.Blocks()[size_t(block)].pixels,
+    void CompleteView(int block, FilmView* view) {
+        for (const auto& [from, values] : parts[size_t(block)])
+            PutMeans(values, schedule.TilesOfRank(block, from), schedule.BlockAt(block).pixels,
                      view);
     }
 
-    void OnDecided(int block, const Judgement& judgement) override {
+    void TellAnswer(int block, const BlockAnswer& answer) {
         parts[size_t(block)].clear();
-        const ViewNeed need =
-            judgement.stop ? ViewNeed::Nothing : NeedAt(block, NextSpp(schedule.PassEnd(block)));
-        PostToAll(Pack(AnswerMessage{block, judgement.stop, judgement.noise, need}));
+        const int next = NextSpp(schedule.Unlocked().PassEnd(block));
+        const ViewNeed need = answer.stop ? ViewNeed::Nothing : executor.judge.NeedAt(block, next);
+        channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 
-    std::mutex partsMutex;  // guards what follows, but for decisions, which have a block's parts
+    const RenderOptions& options;
+    Film* film;
+    Rank rank;
+    Executor& executor = rank.executor;
+    LiveSchedule& schedule = executor.schedule;
+    RankChannel& channel = rank.channel;
+
+    std::mutex partsMutex;  // guards what follows, but for decisions, which have a
+                            // block's parts
     // Of each block, what other ranks have sent of its pass, and how many ranks have still to end
     // theirs.
     std::vector<std::vector<std::pair<int, std::vector<float>>>> parts;
@@ -249,8 +268,7 @@ class Leader final : public RankExecutor {
 
 RenderResult LeadRanks(const SampleSource& source, const RenderOptions& options, Film* film,
                        const RenderState* interrupted, tbb::task_arena* arena) {
-    Leader leader(source, options, film, interrupted, arena);
-    return leader.Guarded([&] { return leader.Lead(); });
+    return Leader(source, options, film, interrupted, arena).Lead();
 }
 
 }  // namespace lull
