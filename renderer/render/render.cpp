@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "renderer/render/executor_internal.h"
-#include "renderer/render/rank_internal.h"
+#include "renderer/render/ranks/rank.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "renderer/render/peers.h"
-#include "renderer/render/rank_messages_internal.h"
+#include "renderer/render/ranks/messages.h"
 
 namespace lull {
 

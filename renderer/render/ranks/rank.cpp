@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "renderer/render/rank_deal.h"
-#include "renderer/render/rank_internal.h"
+#include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/rank.h"
 
 namespace lull {
 

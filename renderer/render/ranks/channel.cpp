@@ -1,4 +1,4 @@
-#include "renderer/render/rank_channel_internal.h"
+#include "renderer/render/ranks/channel.h"
 
 #include <algorithm>
 

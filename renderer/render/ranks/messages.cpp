@@ -1,4 +1,4 @@
-#include "renderer/render/rank_messages_internal.h"
+#include "renderer/render/ranks/messages.h"
 #include "renderer/render/undo.h"
 
 namespace lull {

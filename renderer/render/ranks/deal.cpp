@@ -1,4 +1,4 @@
-#include "renderer/render/rank_deal.h"
+#include "renderer/render/ranks/deal.h"
 
 #include <algorithm>
 #include <numeric>

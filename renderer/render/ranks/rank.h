@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/render/executor_internal.h"
-#include "renderer/render/rank_channel_internal.h"
+#include "renderer/render/ranks/channel.h"
 
 namespace lull {
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "renderer/render/peers.h"
-#include "renderer/render/rank_deal.h"
+#include "renderer/render/ranks/deal.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

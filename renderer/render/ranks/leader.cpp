@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "renderer/render/rank_deal.h"
-#include "renderer/render/rank_internal.h"
+#include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/rank.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "renderer/ranks/job.h"
+#include "renderer/mpi/job.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "renderer/base/error.h"
-#include "renderer/ranks/mpi_calls.h"
+#include "renderer/mpi/mpi_calls.h"
 
 namespace lull {
 

@@ -1,5 +1,5 @@
 // All ranks but the first: render their tiles, and do as they are told.
-#include "renderer/render/rank_internal.h"
+#include "renderer/render/ranks/rank.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "renderer/ranks/mpi_calls.h"
+#include "renderer/mpi/mpi_calls.h"
 
 #include <algorithm>
 #include <chrono>
