@@ -7,7 +7,7 @@
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/output/image_io.h"
-#include "renderer/scene/lens_file.h"
+#include "renderer/scene/cameras/lens_file.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
 #include "renderer/scene/shape_table.h"

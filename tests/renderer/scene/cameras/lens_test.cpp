@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/scene/camera.h"
-#include "renderer/scene/lens_file.h"
+#include "renderer/scene/cameras/camera.h"
+#include "renderer/scene/cameras/lens_file.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/output/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"

@@ -1,4 +1,4 @@
-#include "renderer/scene/lens_file.h"
+#include "renderer/scene/cameras/lens_file.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #include "renderer/input/description.h"
 #include "renderer/scene/animated_transform.h"
+#include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/film_settings.h"
-#include "renderer/scene/lens_system.h"
 
 namespace lull {
 

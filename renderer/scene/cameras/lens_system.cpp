@@ -1,4 +1,4 @@
-#include "renderer/scene/lens_system.h"
+#include "renderer/scene/cameras/lens_system.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/camera.h"
+#include "renderer/scene/cameras/camera.h"
 
 #include <gtest/gtest.h>
 

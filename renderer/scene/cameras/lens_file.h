@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "renderer/base/error.h"
-#include "renderer/scene/lens_system.h"
+#include "renderer/scene/cameras/lens_system.h"
 
 namespace lull {
 

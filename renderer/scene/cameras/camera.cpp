@@ -1,10 +1,10 @@
-#include "renderer/scene/camera.h"
+#include "renderer/scene/cameras/camera.h"
 
 #include <fmt/format.h>
 
 #include "renderer/base/sampling.h"
 #include "renderer/input/file_contents.h"
-#include "renderer/scene/lens_file.h"
+#include "renderer/scene/cameras/lens_file.h"
 
 namespace lull {
 
