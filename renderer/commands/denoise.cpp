@@ -69,6 +69,10 @@ ExitCode RunDenoise(Options options) {
     const std::string png = path(options.output).replace_extension(".png").string();
     CheckWritable(options.output);
     CheckWritable(png);
+    std::error_code missing;
+    if (std::filesystem::equivalent(options.input, options.half, missing))
+        throw Error("--half " + options.half + ": it is the same file as " + options.input +
+                    "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
     const NoisyPicture picture =
         options.half.empty() ? ReadPicture(exr, options.input)
@@ -111,11 +115,8 @@ void AddDenoiseCommand(CLI::App& app, Command* command) {
     CLI::App* denoise = app.add_subcommand(
         "denoise", "Takes the noise out of a picture, and says how wrong it may still be.");
     auto options = std::make_shared<Options>();
-    denoise->add_option("IN", options->input, "The picture, an EXR")
-        ->required()
-        ->check(CLI::ExistingFile);
+    denoise->add_option("IN", options->input, "The picture, an EXR")->required();
     denoise->add_option("--half", options->half, "An EXR of other samples of the same picture")
-        ->check(CLI::ExistingFile)
         ->type_name("B.exr");
     denoise->add_option("-o,--output", options->output, "Image to write [IN.denoised.exr]")
         ->check([](const std::string& file) {

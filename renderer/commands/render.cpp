@@ -36,8 +36,9 @@ struct Options {
     GuideOptions guide;
     HalfBuffer halfBuffer = HalfBuffer::Auto;
     std::string output, report;  // empty: as the scene says; none
-    std::string rule;            // empty: the default
-    int spp = 0;                 // 0: as the rule says
+    std::optional<std::string> stop;
+    std::string rule;  // what --stop, --spp and --denoise come to
+    int spp = 0;       // 0: as the rule says
     AovSet aovs;
     bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
@@ -76,7 +77,7 @@ void AddOptions(CLI::App& app, Options* o) {
             return HasImageExtension(file) ? "" : file + " ends neither in .exr nor in .png";
         })
         ->type_name("OUT.exr");
-    auto* stop = app.add_option("--stop", o->rule,
+    auto* stop = app.add_option("--stop", o->stop,
                                 "When blocks stop; see below [learned; with --denoise: denoised]")
                      ->type_name("RULE");
     AddCautionOption(app, &o->render.caution);
@@ -261,8 +262,9 @@ DenoisedImage MakeDenoised(const NoisyPicture& picture, const PixelRect& region,
 }
 
 ExitCode RunRender(Options options, Job* job) {
-    if (options.spp > 0) options.rule = fmt::format("fixed:{}", options.spp);
-    if (options.rule.empty()) options.rule = options.denoise ? denoisedRuleName : defaultRule;
+    options.rule = options.spp > 0
+                       ? fmt::format("fixed:{}", options.spp)
+                       : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
     RenderSettings& settings = options.render;
     const bool leads = job->Rank() == 0;  // prints, and has to do with files
     const std::function<double()> clock = StartClock(options.clock);

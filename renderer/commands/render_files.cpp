@@ -58,11 +58,11 @@ void WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         WriteThresholdsOf(files.thresholds, provenance.scene, ThresholdsOf(provenance, result));
     if (!result.cancelled && !files.ranges.empty()) WriteRanges(files.ranges, provenance, result);
     if (files.report.ends_with(".html"))
-        WriteFileAtomically(files.report,
-                            MakeRenderPage(provenance, result, film, histories, warnings.Counts()));
+        WriteFileAtomically(files.report, MakeRenderPage(provenance, result, film, histories,
+                                                         warnings.Counts(), denoised));
     else if (!files.report.empty())
-        WriteFileAtomically(
-            files.report, MakeReport(provenance, result, film.RejectedCount(), warnings.Counts()));
+        WriteFileAtomically(files.report, MakeReport(provenance, result, film.RejectedCount(),
+                                                     warnings.Counts(), denoised));
 }
 
 }  // namespace lull

@@ -8,6 +8,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
+#include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -84,6 +85,8 @@ std::string ModelFolder() {
 CriterionFactory ReadRule(const std::string& option, const std::string& rule,
                           const RenderSettings& settings, const PixelRect& region,
                           std::map<std::string, SignalMeasure> measures) try {
+    if (rule.starts_with(denoisedRuleName) && measures.empty())
+        throw Error(option + " " + rule + ": blocks are denoised by `lull render --denoise` alone");
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),

@@ -135,7 +135,7 @@ Planes StandardError(const EstimatedError& error) {
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)
-        result.values[i] = std::sqrt(std::max(result.values[i], squared.values[i]));
+        result.values[i] = std::sqrt(std::max({0.f, result.values[i], squared.values[i]}));
     return result;
 }
 

@@ -136,7 +136,7 @@ Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
 }
 
 Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_t rejectedSamples,
-                const std::map<std::string, int>& warnings) {
+                const std::map<std::string, int>& warnings, const DenoisedImage* denoised) {
     Json report;
     report["provenance"] = ProvenanceJson(provenance);
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
@@ -144,6 +144,10 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     for (const BlockResult& block : result.blocks)
         report["blocks"].push_back(
             BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
+    if (denoised)
+        for (size_t i = 0; i < result.blocks.size(); ++i)
+            report["blocks"][i]["visibleError"] = {{"estimate", denoised->blocks[i].estimate},
+                                                   {"upper", denoised->blocks[i].upper}};
     if (result.timeUp) AddShortfall(provenance, result, &report);
     report["warnings"] = warnings;
     return report;
@@ -154,8 +158,9 @@ std::string Dump(const Json& json) {
 }
 
 std::string MakeReport(const Provenance& provenance, const RenderResult& result,
-                       int64_t rejectedSamples, const std::map<std::string, int>& warnings) {
-    return Dump(ReportJson(provenance, result, rejectedSamples, warnings));
+                       int64_t rejectedSamples, const std::map<std::string, int>& warnings,
+                       const DenoisedImage* denoised) {
+    return Dump(ReportJson(provenance, result, rejectedSamples, warnings, denoised));
 }
 
 }  // namespace lull

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "renderer/measure/denoised_image.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 
@@ -26,8 +27,9 @@ struct Savings {
 
 Savings ComputeSavings(const RenderResult&, int cap);
 
-// Returns the report as a JSON text. `warnings` are counts by kind.
+// Returns the report as a JSON text. `warnings` are counts by kind; `denoised` is null where the
+// image is the mean of the samples.
 std::string MakeReport(const Provenance&, const RenderResult&, int64_t rejectedSamples,
-                       const std::map<std::string, int>& warnings);
+                       const std::map<std::string, int>& warnings, const DenoisedImage* denoised);
 
 }  // namespace lull

@@ -15,7 +15,7 @@ Json ProvenanceJson(const Provenance&);
 Json DecisionsJson(const std::vector<DecisionRecord>&);
 // Returns what MakeReport() writes.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
-                const std::map<std::string, int>& warnings);
+                const std::map<std::string, int>& warnings, const DenoisedImage*);
 
 // Returns the text; bytes of file names that are not UTF-8 are replaced.
 std::string Dump(const Json&);

@@ -44,6 +44,13 @@ std::vector<float> Shrink(std::span<const float> values, int width, int height, 
     return means;
 }
 
+// Shows the estimated errors of pixels.
+std::string ErrorUri(const DenoisedImage& denoised) {
+    std::vector<float> shares;
+    for (const float error : denoised.error) shares.push_back(std::min(1.f, error / 2));
+    return MapUri(shares, denoised.image.width, denoised.image.height);
+}
+
 }  // namespace
 
 std::string Base64(std::span<const std::byte> bytes) {
@@ -149,12 +156,14 @@ void NotePictureScale(int width, int height, Json* page) {
 
 std::string MakeRenderPage(const Provenance& provenance, const RenderResult& result,
                            const Film& film, const std::vector<BlockHistory>& histories,
-                           const std::map<std::string, int>& warnings) {
-    Json page = ReportJson(provenance, result, film.RejectedCount(), warnings);
+                           const std::map<std::string, int>& warnings,
+                           const DenoisedImage* denoised) {
+    Json page = ReportJson(provenance, result, film.RejectedCount(), warnings, denoised);
+    const std::string samples = PictureUri(PagePicture(film));
     Json image = {{"name", "image"},
-                  {"label", "image (" + provenance.criterion + ")"},
+                  {"label", (denoised ? "denoised (" : "image (") + provenance.criterion + ")"},
                   {"rule", provenance.criterion},
-                  {"src", PictureUri(PagePicture(film))},
+                  {"src", denoised ? PictureUri(denoised->image) : samples},
                   {"blocks", Json::array()}};
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         const BlockResult& block = result.blocks[i];
@@ -173,6 +182,14 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     page["width"] = film.Region().Width();
     page["height"] = film.Region().Height();
     page["images"] = {std::move(image)};
+    if (denoised) {
+        page["images"].push_back(
+            {{"name", "samples"}, {"label", "mean of the samples"}, {"src", samples}});
+        page["images"].push_back(
+            {{"name", "error"},
+             {"label", "error that is left (yellow: 2 in lightness, of 0 to 100)"},
+             {"src", ErrorUri(*denoised)}});
+    }
     return MakePage(page);
 }
 

@@ -36,9 +36,11 @@ void NotePictureScale(int width, int height, Json* page);
 
 Json CurvesJson(const BlockCurves&);
 
-// Returns the page for a render. `histories` have the curves of the blocks, or are empty.
+// Returns the page for a render. `histories` have the curves of the blocks, or are empty;
+// `denoised`, shown before the mean of the samples, may be null.
 std::string MakeRenderPage(const Provenance&, const RenderResult&, const Film&,
                            const std::vector<BlockHistory>& histories,
-                           const std::map<std::string, int>& warnings);
+                           const std::map<std::string, int>& warnings,
+                           const DenoisedImage* denoised);
 
 }  // namespace lull

@@ -31,6 +31,7 @@ function showBlock(data, i) {
   if (block.people) rows.push(["people, 80 of 100 times", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", {stopped: "its rule stopped it", cap: "it went to the cap", interrupted: "interrupted", time: "the time was up"}[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
+  if (block.visibleError) rows.push(["visible error, denoised", `about ${block.visibleError.estimate.toFixed(2)}, probably at most ${block.visibleError.upper.toFixed(2)}`]);
   if (isNumber(block.neededSeconds)) rows.push(["seconds of processors it would have needed", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", ["", ...images.map(m => m.name)], rows));
 

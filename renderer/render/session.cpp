@@ -1,6 +1,7 @@
 #include "renderer/render/session.h"
 
 #include <fmt/format.h>
+#include <tbb/info.h>
 
 #include <filesystem>
 
@@ -126,10 +127,12 @@ RenderResult Session::Run(const RenderFunction& render) {
     RenderOptions& o = options.render;
     SetSources();
     KeepCheckpoints();
-    if (options.clock)
-        o.secondsLeft = [clock = options.clock, reserve = SecondsToWrite(region.Area())] {
-            return clock() - reserve;
-        };
+    if (options.clock) {
+        double reserve = SecondsToWrite(region.Area());
+        const int threads = o.threads > 0 ? o.threads : tbb::info::default_concurrency();
+        if (options.features) reserve += SecondsToDenoise(region.Area(), threads);
+        o.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
+    }
     if (o.display && interrupted) o.display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
     RenderResult result = render(source, o, &film, interrupted ? &*interrupted : nullptr);

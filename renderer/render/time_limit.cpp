@@ -80,4 +80,6 @@ std::time_t NextTimeOfDay(const std::string& text, std::time_t now) {
 
 double SecondsToWrite(int64_t pixels) { return 0.1 + 1e-6 * double(pixels); }
 
+double SecondsToDenoise(int64_t pixels, int threads) { return 25e-6 * double(pixels) / threads; }
+
 }  // namespace lull

@@ -15,8 +15,9 @@ double ParseDuration(const std::string& text);
 // Throws std::invalid_argument for anything else.
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
-// Returns the seconds to leave for the files of an image: twice what they take of a
-// core that nobody shares (renderer/docs/rendering.md).
+// Return the seconds to leave for the files of an image: twice what they take of a core that nobody
+// shares (renderer/docs/rendering.md); and for what denoises it on so many threads.
 double SecondsToWrite(int64_t pixels);
+double SecondsToDenoise(int64_t pixels, int threads);
 
 }  // namespace lull

@@ -51,8 +51,8 @@ TEST(MakeReport, HoldsBlocksTotalsAndProvenance) {
     provenance.seed = 0xffffffffffffffffull;
     provenance.criterion = "dammertz:0.02";
     provenance.schedule.cap = 100;
-    const auto report =
-        nlohmann::json::parse(MakeReport(provenance, TwoBlocks(), 3, {{"zero-area triangle", 7}}));
+    const auto report = nlohmann::json::parse(
+        MakeReport(provenance, TwoBlocks(), 3, {{"zero-area triangle", 7}}, nullptr));
     EXPECT_EQ(report["provenance"]["seed"], 0xffffffffffffffffull);
     EXPECT_EQ(report["provenance"]["sampler"], "sobol");
     EXPECT_EQ(report["provenance"]["estimator"], "combined");

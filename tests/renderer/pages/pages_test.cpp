@@ -197,7 +197,7 @@ TEST(PagePicture, IsOfMeansWhereTheImageIsLarge) {
     EXPECT_EQ(std::vector(picture.values.end() - 3, picture.values.end()),
               std::vector<float>({5, 6, 7}));
     RenderResult result;
-    const Json data = DataOf(MakeRenderPage({}, result, film, {}, {}));
+    const Json data = DataOf(MakeRenderPage({}, result, film, {}, {}, nullptr));
     EXPECT_EQ(data["width"], 2901);
     EXPECT_NE(data["notes"][0].get<std::string>().find("2x2"), std::string::npos);
 }
@@ -214,13 +214,23 @@ TEST(MakeRenderPage, HasCurvesAndDecisions) {
     provenance.criterion = "lnoise:2";
     provenance.schedule.cap = 100;
     const Film film({{4, 4}, {8, 8}});
-    const Json data = DataOf(MakeRenderPage(provenance, result, film, histories, {{"odd", 2}}));
+    const Json data =
+        DataOf(MakeRenderPage(provenance, result, film, histories, {{"odd", 2}}, nullptr));
     EXPECT_EQ(data["kind"], "render");
     EXPECT_EQ(data["blocks"][0]["x"], 0);
     EXPECT_EQ(data["blocks"][0]["curves"]["noise"][0], 1.5);
     EXPECT_EQ(data["blocks"][0]["decisions"]["value"][0], 1);
     EXPECT_EQ(data["images"][0]["blocks"][0]["spp"], 20);
     EXPECT_EQ(data["warnings"]["odd"], 2);
+    EXPECT_EQ(data["images"].size(), 1);
+
+    const DenoisedImage denoised{{4, 4, std::vector<float>(48, .5f)},
+                                 std::vector<float>(16, .3f),
+                                 {{.estimate = .25, .upper = .5, .least = .125}}};
+    const Json clean = DataOf(MakeRenderPage(provenance, result, film, histories, {}, &denoised));
+    EXPECT_EQ(clean["images"].size(), 3);
+    EXPECT_EQ(clean["images"][0]["label"], "denoised (lnoise:2)");
+    EXPECT_EQ(clean["blocks"][0]["visibleError"]["upper"], .5);
 }
 
 }  // namespace

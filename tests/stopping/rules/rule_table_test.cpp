@@ -13,7 +13,9 @@
 namespace lull {
 namespace {
 
-const RuleContext kInstalled = {.models = LULL_SOURCE_DIR "/stopping/models"};
+const RuleContext kInstalled = {
+    .models = LULL_SOURCE_DIR "/stopping/models",
+    .measures = {{"denoised", [](const BlockView&, const BlockInfo&) { return Signals{}; }}}};
 
 // Returns the text of a rule with an argument that it takes; empty for one that reads a file.
 std::string Example(const Rule& rule) {
@@ -32,7 +34,8 @@ TEST(RuleTable, IsWhatRulesDo) {
         const auto criterion = factory.make({});
         for (const int spp : {20, 60, 100, 400, 10000})
             EXPECT_LE(criterion->Need(spp), rule.need) << text;
-        const RuleContext careful{.models = kInstalled.models, .caution = 2};
+        RuleContext careful = kInstalled;
+        careful.caution = 2;
         bool refused = false;
         try {
             MakeCriterionFactory(text, careful);

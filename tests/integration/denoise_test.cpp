@@ -1,0 +1,119 @@
+// Denoises renders: by the render itself, afterwards, and those of others.
+#include <map>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_and_signal.h"
+
+namespace lull {
+namespace {
+
+constexpr const char* kBall =
+    "Material \"matte\" \"rgb Kd\" [.7 .5 .3]\n"
+    "Shape \"sphere\"\n"
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [30 25 20] Translate 0 2 0\n"
+    "Shape \"sphere\" \"float radius\" .1 AttributeEnd\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
+    "  \"point P\" [-5 -1 -5  5 -1 -5  5 -1 5  -5 -1 5]";
+constexpr const char* kDenoiseBox =
+    "LULL render scene.pbrt --resolution 96x80 --block 48 --denoise --stop denoised:0.7 --cap 400 ";
+
+struct BoxDirectory : TemporaryDirectory {
+    BoxDirectory() { Write("scene.pbrt", SceneText(kBall)); }
+};
+
+using Channels = std::map<std::string, std::vector<float>>;
+Channels ChannelsOf(const TemporaryDirectory& directory, const std::string& name) {
+    Channels channels;
+    for (const ExrChannel& c : ReadExr(directory.File(name)).channels) channels[c.name] = c.values;
+    return channels;
+}
+
+bool Succeeds(const TemporaryDirectory& directory, const std::string& command) {
+    const Outcome outcome = RunShell(directory, command);
+    EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.err;
+    return outcome.exitCode == 0;
+}
+
+TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
+    const BoxDirectory directory;
+    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o clean.exr --report clean.json"));
+    const Channels clean = ChannelsOf(directory, "clean.exr");
+    ASSERT_TRUE(clean.contains("noisy.R") && clean.contains("error"));
+    for (const std::string name : {"R", "G", "B"}) {
+        EXPECT_NE(clean.at(name), clean.at("noisy." + name));
+        for (const float v : clean.at(name)) EXPECT_TRUE(v >= 0 && std::isfinite(v));
+    }
+    for (const float e : clean.at("error")) EXPECT_TRUE(e >= 0 && std::isfinite(e));
+
+    // The mean of the samples is that of a render that knows nothing of all this.
+    ASSERT_TRUE(Succeeds(directory,
+                         "LULL render scene.pbrt --resolution 96x80 --block 48 "
+                         "--stop thresholds:clean.thresholds.csv -o plain.exr"));
+    const Channels plain = ChannelsOf(directory, "plain.exr");
+    for (const std::string name : {"R", "G", "B"})
+        EXPECT_EQ(clean.at("noisy." + name), plain.at(name));
+    EXPECT_EQ(clean.at("spp"), plain.at("spp"));
+}
+
+TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {
+    const BoxDirectory directory;
+    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o whole.exr --threads 1"));
+    const Channels whole = ChannelsOf(directory, "whole.exr");
+    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o three.exr --threads 3"));
+    EXPECT_EQ(ChannelsOf(directory, "three.exr"), whole);
+
+    const std::string parts =
+        std::string(kDenoiseBox) + "-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1 ";
+    const Outcome interrupted = RunAndSignal(directory, parts, SIGTERM, "c.h5");
+    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
+    // What is interrupted is denoised as far as it has come.
+    EXPECT_TRUE(ChannelsOf(directory, "parts.exr").contains("noisy.R"));
+    ASSERT_TRUE(Succeeds(directory, parts + "--resume"));
+    EXPECT_EQ(ChannelsOf(directory, "parts.exr"), whole);
+}
+
+TEST(DenoiseCommand, GivesWhatTheRenderGives) {
+    const BoxDirectory directory;
+    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o image.exr --denoise-layers"));
+    ASSERT_TRUE(Succeeds(directory, "LULL denoise image.exr -o again.exr"));
+    const Channels image = ChannelsOf(directory, "image.exr"),
+                   again = ChannelsOf(directory, "again.exr");
+    for (const std::string name : {"R", "G", "B"}) {
+        const std::vector<float>&a = image.at(name), &b = again.at(name);
+        for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 2e-3f * (0.05f + a[i]));
+    }
+    EXPECT_EQ(image.at("noisy.G"), again.at("noisy.G"));
+}
+
+TEST(DenoiseCommand, TakesTwoRendersOfOthers) {
+    const BoxDirectory directory;
+    for (const char* seed : {"1", "2", "3"})
+        ASSERT_TRUE(
+            Succeeds(directory, fmt::format("LULL render scene.pbrt --resolution 96x80 --spp {} "
+                                            "--seed {} --aov albedo,normal,depth -o {}.exr",
+                                            *seed == '3' ? 1000 : 16, seed, seed)));
+    ASSERT_TRUE(Succeeds(directory, "LULL denoise 1.exr --half 2.exr -o clean.exr"));
+    const Channels clean = ChannelsOf(directory, "clean.exr"),
+                   truth = ChannelsOf(directory, "3.exr");
+    double before = 0, after = 0;
+    for (size_t i = 0; i < truth.at("G").size(); ++i) {
+        before += Sqr(double(clean.at("noisy.G")[i]) - double(truth.at("G")[i]));
+        after += Sqr(double(clean.at("G")[i]) - double(truth.at("G")[i]));
+    }
+    EXPECT_LT(after, before / 3);
+}
+
+TEST(DenoiseCommand, SaysWhatIsMissing) {
+    const BoxDirectory directory;
+    ASSERT_TRUE(Succeeds(directory, "LULL render scene.pbrt --spp 20 -o a.exr"));
+    ASSERT_TRUE(Succeeds(directory, "LULL render scene.pbrt --spp 20 --resolution 30x30 -o b.exr"));
+    ExpectFailure(directory, "denoise a.exr -o out.exr", {"a.exr", "--denoise-layers"});
+    ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr", {"b.exr", "30x30"});
+    ExpectFailure(directory, "denoise scene.pbrt -o out.exr", {"scene.pbrt"});
+    ExpectFailure(directory, "denoise missing.exr -o out.exr", {"missing.exr"});
+    ExpectFailure(directory, "denoise a.exr --half a.exr -o out.exr", {"a.exr", "same"});
+    ExpectFailure(directory, "render scene.pbrt -o out.exr --stop denoised", {"--denoise"});
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,128 @@
+"""Renders scenes by the default rule, plain and denoised, and says what both took and how wrong they are.
+
+    python3 denoising.py FOLDER NAME=SCENE.pbrt[@X0,X1,Y0,Y1] ... [--lull ../../build/release/renderer/lull]
+
+Images are kept in FOLDER: what is there is not rendered again. The truth is the mean of two renders of
+half of --truth spp each, whose difference is its noise, which is subtracted from visible errors but not
+from FLIP and SSIM.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+
+import numpy as np
+import OpenImageIO as oiio
+
+from seconds import Seconds  # PYTHONPATH=../side_by_side
+
+WEIGHTS = np.array([0.212671, 0.715160, 0.072169])
+SIDE = 20  # pixels of a sub-block: 10 x 10 of them in a block
+
+
+def read(path):
+    return np.asarray(oiio.ImageBuf(path).get_pixels(oiio.FLOAT), np.float64)[:, :, :3]
+
+
+def write(path, rgb):
+    buffer = oiio.ImageBuf(oiio.ImageSpec(rgb.shape[1], rgb.shape[0], 3, oiio.FLOAT))
+    buffer.set_pixels(oiio.ROI(), rgb.astype(np.float32))
+    buffer.write(path)
+
+
+def lightness(rgb):
+    y = np.clip(rgb @ WEIGHTS, 0, 1)
+    return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
+
+
+def sub_blocks(values):
+    h, w = values.shape[0] // SIDE, values.shape[1] // SIDE
+    return values[:h * SIDE, :w * SIDE].reshape(h, SIDE, w, SIDE).mean((1, 3))
+
+
+def slope(y):
+    y = np.clip(y, 1e-4, 1)
+    return np.where(y > 216 / 24389, 116 / 3 * y ** (-2 / 3), 24389 / 27)
+
+
+def seen(truth):
+    """What an observer sees of a difference in lightness: less by flare and by detail."""
+    mean = sub_blocks(truth)
+    detail = np.sqrt(np.maximum(sub_blocks(truth ** 2) - mean ** 2, 0))
+    y = np.where(mean > 8, ((mean + 16) / 116) ** 3, mean * 27 / 24389)
+    flare = 0.05
+    return slope((y + flare) / (1 + flare)) / (1 + flare) / slope(y) / (1 + detail / 40)
+
+
+def visible_error(rgb, halves):
+    a, b = map(lightness, halves)
+    truth = lightness((halves[0] + halves[1]) / 2)
+    squared = sub_blocks((lightness(rgb) - truth) ** 2 - (a - b) ** 2 / 4)
+    return float(np.mean(np.sqrt(np.maximum(squared, 0)) * seen(truth)))
+
+
+class Scene:
+    def __init__(self, text, o):
+        self.name, rest = text.split('=')
+        self.scene, _, self.crop = rest.partition('@')
+        self.o = o
+        self.seconds = Seconds(os.path.join(o.folder, self.name + '.seconds.json'))
+
+    def file(self, name):
+        return os.path.join(self.o.folder, f'{self.name}.{name}')
+
+    def render(self, name, *how):
+        crop = ['--crop', self.crop] if self.crop else []
+        self.seconds.run(name, [self.o.lull, 'render', self.scene, '--resolution', self.o.resolution, *crop, '--quiet',
+                                '-o', self.file(name + '.exr'), '--report', self.file(name + '.json'), *how])
+
+    def spp(self, name):
+        report = json.load(open(self.file(name + '.json')))
+        return report['totals']['samples'] / sum(b['width'] * b['height'] for b in report['blocks'])
+
+    def judge(self, name, truth):
+        out = self.file(name)
+        subprocess.run([self.o.lull, 'compare', '--reference', truth, '--automatic', self.file(name + '.exr'), '-o', out],
+                       check=True, capture_output=True)
+        figures = json.load(open(out + '.compare.json'))
+        return next(i for i in figures['images'] if i['name'] == 'automatic')['figures']
+
+    def row(self):
+        half = str(self.o.truth // 2)
+        self.render('start', '--spp', '1')
+        self.render('denoised', '--denoise', '--seed', '1')
+        self.render('plain', '--seed', '1')
+        self.render('a', '--spp', half, '--seed', '3')
+        self.render('b', '--spp', half, '--seed', '4')
+        halves = [read(self.file(n + '.exr')) for n in 'ab']
+        truth = self.file('truth.exr')
+        write(truth, (halves[0] + halves[1]) / 2)
+        seconds = {n: self.seconds[n] - self.seconds['start'] for n in ('plain', 'denoised')}
+        cells = [self.name]
+        for name in 'plain', 'denoised':
+            f = self.judge(name, truth)
+            cells += [f'{self.spp(name):.0f}', f'{seconds[name]:.1f}', f'{visible_error(read(self.file(name + ".exr")), halves):.2f}',
+                      f'{f["rmseLightness"]:.2f}', f'{f["flip"]:.3f}', f'{f["ssim"]:.3f}']
+        print('| ' + ' | '.join(cells + [f'{seconds["plain"] / seconds["denoised"]:.1f}']) + ' |', flush=True)
+        return seconds['plain'] / seconds['denoised']
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('folder')
+    parser.add_argument('scenes', nargs='+')
+    parser.add_argument('--lull', default='lull')
+    parser.add_argument('--resolution', default='400x400')
+    parser.add_argument('--truth', type=int, default=4096)
+    o = parser.parse_args()
+    os.makedirs(o.folder, exist_ok=True)
+    columns = ['spp', 's', 'visible', 'RMSE of L', 'FLIP', 'SSIM']
+    print('| scene | ' + ' | '.join(f'{c}, {n}' for n in ('plain', 'denoised') for c in columns) + ' | times faster |')
+    print('|---' * 14 + '|')
+    gains = [Scene(text, o).row() for text in o.scenes]
+    print(f'geometric mean: {np.exp(np.mean(np.log(gains))):.1f} times faster')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,118 @@
+// What a render keeps for the denoiser: sums by halves, through checkpoints and files, to the bit.
+#include "renderer/render/film_picture.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/base/error.h"
+#include "renderer/render/layers.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
+
+PathSample SampleWithFeatures(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    const PathSample sample = SyntheticSample(sampler, pixel, index);
+    *hit = SyntheticHit(sampler, pixel, index);
+    return sample;
+}
+
+struct FeatureRender {
+    Film film{kPictureRegion};
+    FeatureFilm features{kPictureRegion};
+
+    explicit FeatureRender(int threads, int spp = 36) {
+        RenderOptions options;
+        options.schedule = {.blockSize = 30, .passLength = 6, .cap = spp};
+        options.threads = threads;
+        options.makeCriterion = [](const BlockInfo&) {
+            return std::make_unique<ScriptedCriterion>(1000);
+        };
+        options.layers = {.features = &features, .source = SampleWithFeatures};
+        Render(SyntheticSample, options, &film);
+    }
+};
+
+bool SameFeatures(const FeatureFilm& a, const FeatureFilm& b) {
+    for (int y = kPictureRegion.min.y(); y < kPictureRegion.max.y(); ++y)
+        for (int x = kPictureRegion.min.x(); x < kPictureRegion.max.x(); ++x)
+            if (!(a.At({x, y}) == b.At({x, y}))) return false;
+    return true;
+}
+
+TEST(FeatureFilm, IsTheSameForAnyThreads) {
+    const FeatureRender one(1), three(3);
+    EXPECT_TRUE(SameFeatures(one.features, three.features));
+    // The film beside it is what it is without.
+    Film film(kPictureRegion);
+    RenderOptions options;
+    options.schedule = {.blockSize = 30, .passLength = 6, .cap = 36};
+    options.makeCriterion = [](const BlockInfo&) {
+        return std::make_unique<ScriptedCriterion>(1000);
+    };
+    Render(SyntheticSample, options, &film);
+    EXPECT_TRUE(SamePixels(one.film, film));
+}
+
+TEST(FeatureFilm, GoesThroughStatesAndCheckpoints) {
+    FeatureRender render(1);
+    const Layers from{.features = &render.features};
+    FeatureFilm sent(kPictureRegion), filed(kPictureRegion), none(kPictureRegion);
+
+    StateWriter writer;
+    PutLayers(from, kPictureRegion, &writer);
+    StateReader reader(writer.bytes);
+    GetLayers(&reader, kPictureRegion, {.features = &sent});
+    EXPECT_TRUE(SameFeatures(sent, render.features));
+
+    Hdf5Group group = Hdf5Group::CreateInMemory();
+    WriteLayers(from, kPictureRegion, &group);
+    ReadLayers(group, kPictureRegion, {.features = &filed});
+    EXPECT_TRUE(SameFeatures(filed, render.features));
+    EXPECT_FALSE(SameFeatures(none, render.features));
+    EXPECT_THROW(ReadLayers(Hdf5Group::CreateInMemory(), kPictureRegion, {.features = &filed}),
+                 std::runtime_error);
+}
+
+TEST(PictureOf, HasBothHalvesOfTheMean) {
+    const FeatureRender render(1);
+    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+    ASSERT_EQ(picture.colour.a.width, kPictureRegion.Width());
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 60; ++x) {
+            const Rgb mean = render.film.At({x + 3, y + 5}).Mean();
+            for (int c = 0; c < 3; ++c) {
+                const float of =
+                    (picture.colour.a.Row(c, y)[x] + picture.colour.b.Row(c, y)[x]) / 2;
+                EXPECT_NEAR(of, mean[c], 1e-4f * std::abs(mean[c]));
+            }
+            for (int c = 0; c < picture.features.a.count; ++c)
+                EXPECT_TRUE(std::isfinite(picture.features.a.Row(c, y)[x]));
+            EXPECT_GE(picture.variance.Row(0, y)[x], 0);
+        }
+}
+
+TEST(PictureOf, LeavesPixelsAloneThatHaveNoHalves) {
+    const FeatureRender render(1, 2);
+    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+    EXPECT_EQ(picture.colour.a.values, picture.colour.b.values);
+}
+
+TEST(HalfChannels, AreReadAsTheyWere) {
+    const FeatureRender render(1);
+    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+    ExrImage exr;
+    exr.width = 60;
+    exr.height = 40;
+    exr.channels = MakeHalfChannels(picture);
+    const NoisyPicture again = ReadPicture(exr, "a.exr");
+    EXPECT_EQ(again.colour.a.values, picture.colour.a.values);
+    EXPECT_EQ(again.features.b.values, picture.features.b.values);
+    EXPECT_EQ(again.variance.values, picture.variance.values);
+    exr.channels.erase(exr.channels.begin());
+    EXPECT_THROW(ReadPicture(exr, "a.exr"), Error);
+}
+
+}  // namespace
+}  // namespace lull
