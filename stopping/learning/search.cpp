@@ -13,7 +13,7 @@
 #include "stopping/base/checksum.h"
 #include "stopping/base/csv.h"
 #include "stopping/base/state.h"
-#include "stopping/network/model_inputs.h"
+#include "stopping/features/model_inputs.h"
 
 namespace lull {
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "stopping/network/block_memory.h"
+#include "stopping/features/block_memory.h"
 
 namespace lull {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "stopping/features/recorded_measures.h"
 #include "stopping/learning/dataset.h"
-#include "stopping/network/recorded_measures.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "stopping/features/model_inputs.h"
 #include "stopping/learning/dataset.h"
-#include "stopping/network/model_inputs.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "stopping/network/window.h"
+#include "stopping/features/window.h"
 #include "tests/stopping/learning/made_up_recordings.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "stopping/network/block_memory.h"
+#include "stopping/features/block_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "stopping/network/model_inputs.h"
+#include "stopping/features/model_inputs.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "stopping/network/recorded_measures.h"
+#include "stopping/features/recorded_measures.h"
 
 #include <stdexcept>
 #include <string>

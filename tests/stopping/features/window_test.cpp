@@ -1,4 +1,4 @@
-#include "stopping/network/window.h"
+#include "stopping/features/window.h"
 
 #include <gtest/gtest.h>
 

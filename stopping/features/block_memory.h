@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "stopping/network/window.h"
+#include "stopping/features/window.h"
 #include "stopping/signals/drop_history.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "stopping/network/model_inputs.h"
+#include "stopping/features/model_inputs.h"
 
 #include <Eigen/Core>
 #include <algorithm>

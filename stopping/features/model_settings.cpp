@@ -1,4 +1,4 @@
-#include "stopping/network/model_settings.h"
+#include "stopping/features/model_settings.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stopping/base/block_view.h"
-#include "stopping/network/model_settings.h"
+#include "stopping/features/model_settings.h"
 
 namespace lull {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stopping/network/model_inputs.h"
+#include "stopping/features/model_inputs.h"
 
 namespace lull {
 
