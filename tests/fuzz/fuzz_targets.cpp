@@ -11,11 +11,11 @@
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
 #include "renderer/scene/shape_table.h"
-#include "stopping/learning/observers.h"
-#include "stopping/learning/search.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
+#include "stopping/observers/observers.h"
 #include "stopping/rules/thresholds.h"
+#include "stopping/training/search.h"
 #include "tests/renderer/output/test_files.h"
 
 namespace lull {
