@@ -12,7 +12,7 @@
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
 
-namespace lull {
+namespace lull::recording_test {
 namespace {
 
 TEST(Recorder, RecordsAllPassesFirstAndThenEverySecond) {
@@ -243,4 +243,4 @@ TEST(Dataset, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::recording_test
