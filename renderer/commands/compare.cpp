@@ -15,8 +15,8 @@
 #include "renderer/measure/block_files.h"
 #include "renderer/measure/compared_files.h"
 #include "renderer/measure/image_files.h"
+#include "renderer/mpi/job.h"
 #include "renderer/output/file_io.h"
-#include "renderer/ranks/job.h"
 
 namespace lull {
 

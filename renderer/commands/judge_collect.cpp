@@ -7,7 +7,7 @@
 #include "renderer/commands/judge_options.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/collected_page.h"
-#include "stopping/learning/observer_tables.h"
+#include "stopping/observers/observer_tables.h"
 
 namespace lull {
 
