@@ -9,6 +9,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
@@ -94,36 +95,6 @@ std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& reg
     return rules;
 }
 
-// Holds a scene that is ready, and all that its renders have in common.
-struct PreparedScene {
-    std::unique_ptr<const Scene> scene;
-    std::string sceneHash;
-    Provenance provenance;
-    std::vector<ObservedRule> rules;
-    std::vector<ExternalImage> external;
-    std::vector<RgbImage> externalImages;
-    std::optional<RgbImage> reference;  // set by the first render, unless it was given
-};
-
-PreparedScene Prepare(const Options& options, const Job& job) {
-    const bool leads = job.Rank() == 0;
-    const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
-    PreparedScene prepared;
-    prepared.rules = MakeRules(options, input.region);
-    if (!options.reference.empty())
-        prepared.reference = ReadImageOfSize(options.reference, input.region);
-    if (!options.external.empty()) prepared.external = ReadExternalImages(options.external);
-    for (const ExternalImage& external : prepared.external)
-        prepared.externalImages.push_back(ReadImageOfSize(external.file, input.region));
-    if (leads) CheckWritable(options.output + ".csv");
-    if (leads && !options.report.empty()) CheckWritable(options.report);
-    prepared.scene = CompileScene(settings, &input);
-    prepared.sceneHash = SceneHash(input.description);
-    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
-    return prepared;
-}
-
 // One way of rendering: what a curve is drawn for.
 struct Variant {
     SamplerKind sampler = SamplerKind::Sobol;
@@ -146,6 +117,50 @@ std::vector<Variant> Variants(const Options& options) {
 
 std::string CheckpointName(const Options& options, const Variant& variant) {
     return fmt::format("{}.{}.checkpoint", options.output, NameOf(variant));
+}
+
+// Holds a scene that is ready, and all that its renders have in common.
+struct PreparedScene {
+    std::unique_ptr<const Scene> scene;
+    std::string sceneHash;
+    Provenance provenance;
+    std::vector<ObservedRule> rules;
+    std::vector<ExternalImage> external;
+    std::vector<RgbImage> externalImages;
+    std::optional<RgbImage> reference;  // set by the first render, unless it was given
+};
+
+// Throws Error where a result would replace another or an input, or could not be written now.
+void CheckFiles(const Options& options, const Description& description,
+                const std::vector<ExternalImage>& external) {
+    std::vector<NamedFile> outputs = {{"-o", options.output + ".csv"},
+                                      {"--report", options.report}};
+    for (const Variant& variant : Variants(options))
+        outputs.push_back({"the checkpoint", CheckpointName(options, variant)});
+    std::vector<NamedFile> inputs = InputsOf(options.render.scene, description);
+    inputs.push_back({"--reference", options.reference});
+    inputs.push_back({"--external", options.external});
+    for (const ExternalImage& image : external)
+        inputs.push_back({"an image of --external", image.file});
+    for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
+    CheckOutputs(outputs, inputs);
+}
+
+PreparedScene Prepare(const Options& options, const Job& job) {
+    const RenderSettings& settings = options.render;
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    PreparedScene prepared;
+    prepared.rules = MakeRules(options, input.region);
+    if (!options.external.empty()) prepared.external = ReadExternalImages(options.external);
+    if (job.Rank() == 0) CheckFiles(options, input.description, prepared.external);
+    if (!options.reference.empty())
+        prepared.reference = ReadImageOfSize(options.reference, input.region);
+    for (const ExternalImage& external : prepared.external)
+        prepared.externalImages.push_back(ReadImageOfSize(external.file, input.region));
+    prepared.scene = CompileScene(settings, &input);
+    prepared.sceneHash = SceneHash(input.description);
+    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
+    return prepared;
 }
 
 // Says how far the comparisons are, at most once a second.

@@ -1,8 +1,10 @@
 #include "renderer/commands/clock_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 
+#include "renderer/base/say.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -53,6 +55,22 @@ std::function<double()> StartClock(const ClockOptions& options) {
     const auto end =
         Clock::from_time_t(NextTimeOfDay(options.until, Clock::to_time_t(Clock::now())));
     return [end] { return std::chrono::duration<double>(end - Clock::now()).count(); };
+}
+
+ProgressListener WarnOfFirstPass(int64_t samples, ProgressListener listener) {
+    return [=, hasWarned = false](const RenderProgress& p) mutable {
+        listener(p);
+        constexpr int64_t share = 200;  // of the pass, from which its speed is taken
+        if (hasWarned || !p.secondsLeft || p.samples >= samples || p.samples < samples / share)
+            return;
+        const double needed = p.seconds / double(p.samples) * double(samples - p.samples);
+        const double left = std::max(*p.secondsLeft, 0.);
+        if (needed < 1.1 * left || needed < left + 1) return;
+        hasWarned = true;
+        Say("\nlull: warning: the first pass of all blocks, which is always completed, takes about "
+            "{} more, of {} that are left; a smaller --resolution or --pass takes less\n",
+            FormatDuration(needed), FormatDuration(left));
+    };
 }
 
 }  // namespace lull

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <cstdint>
 #include <functional>
 #include <string>
+
+#include "renderer/output/progress.h"
 
 namespace lull {
 
@@ -19,5 +22,11 @@ void AddClockOptions(CLI::App& app, ClockOptions* options);
 
 // Starts the clock: returns what says how many seconds are left; empty where none is set.
 std::function<double()> StartClock(const ClockOptions&);
+
+using ProgressListener = std::function<void(const RenderProgress&)>;
+
+// Returns a listener that passes on what it hears and warns, once and as early as it can be known,
+// where the first pass of all blocks, of so many samples, will take longer than there is time.
+ProgressListener WarnOfFirstPass(int64_t samples, ProgressListener listener);
 
 }  // namespace lull

@@ -8,6 +8,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/compare_options.h"
 #include "renderer/commands/comparison_table.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/session_options.h"
 #include "renderer/commands/talk.h"
@@ -16,31 +17,42 @@
 #include "renderer/measure/compared_files.h"
 #include "renderer/measure/image_files.h"
 #include "renderer/mpi/job.h"
-#include "renderer/output/file_io.h"
 
 namespace lull {
 
 namespace {
 
-// Writes figures and page, and prints the table and the names of the files, `images` first.
-void WriteReport(const CompareOptions& options, ComparisonReport report,
-                 const std::vector<std::string>& images) {
+// Writes figures and page beside what was written before, and prints the table and the names of
+// all files. Throws Error where one is not where it should be.
+void WriteReport(const CompareOptions& options, ComparisonReport report, ResultFiles results) {
     if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
         Say("lull: {}\n", note);
         report.notes.push_back(note);
     }
-    const std::string json = options.output + ".compare.json";
-    WriteFileAtomically(json, Dump(ComparisonJson(report)));
-    if (!options.report.empty()) WriteFileAtomically(options.report, MakeComparisonPage(report));
+    results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));
+    if (!options.report.empty()) results.WriteText(options.report, MakeComparisonPage(report));
     fmt::print("{}", ComparisonTable(report));
-    for (const std::string& file : images) fmt::print("{}\n", file);
-    fmt::print("{}\n", json);
-    if (!options.report.empty()) fmt::print("{}\n", options.report);
+    for (const std::string& file : results.Names()) fmt::print("{}\n", file);
+    results.Check();
 }
 
-void CheckNames(const CompareOptions& options) {
-    CheckWritable(options.output + ".compare.json");
-    if (!options.report.empty()) CheckWritable(options.report);
+// Throws Error where a result would replace another or an input, or could not be written now;
+// `rendered` are the images that come from the scene, if there is one.
+void CheckFiles(const CompareOptions& options, const std::vector<std::string>& rendered,
+                std::vector<NamedFile> inputs) {
+    std::vector<NamedFile> outputs = {{"-o", options.output + ".compare.json"},
+                                      {"--report", options.report},
+                                      {"--checkpoint", options.render.checkpoint.file}};
+    for (const std::string& image : rendered)
+        for (const char* extension : {".exr", ".png"})
+            outputs.push_back({"-o", fmt::format("{}.{}{}", options.output, image, extension)});
+    if (!rendered.empty()) outputs.push_back({"-o", options.output + ".thresholds.csv"});
+    inputs.push_back({"--automatic", options.automatic});
+    inputs.push_back({"--human", options.human});
+    inputs.push_back({"--reference", options.reference});
+    AddFileOfRule("thresholds:" + options.human, &inputs);
+    AddFileOfRule(options.rule, &inputs);
+    CheckOutputs(outputs, inputs);
 }
 
 // Compares images from files.
@@ -52,7 +64,7 @@ ExitCode CompareFiles(CompareOptions options) {
     if (!options.human.empty() && !IsImageFile(options.human))
         throw Error("--human " + options.human +
                     ": thresholds need a scene; without one, an image");
-    CheckNames(options);
+    CheckFiles(options, {}, {});
 
     std::vector<ComparedFile> files;
     if (!options.automatic.empty())
@@ -99,7 +111,10 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
         humanChecksum = human.checksum;
     }
     if (job.Rank() == 0) {
-        CheckNames(options);
+        std::vector<std::string> rendered;
+        for (const ObservedRule& rule : prepared.rules) rendered.push_back(rule.name);
+        if (options.snapshots) rendered.push_back("reference");
+        CheckFiles(options, rendered, InputsOf(settings.scene, input.description));
         CheckCheckpoint(settings.checkpoint);
     }
     prepared.scene = CompileScene(settings, &input);
@@ -131,9 +146,9 @@ Verification Verify(const PreparedScene& prepared, const RenderSettings& setting
     return VerificationOf(result, session.TheFilm(), expected);
 }
 
-std::vector<std::string> WriteImages(const CompareOptions& options, const PreparedScene& prepared,
-                                     const Comparison& comparison) {
-    std::vector<std::string> names;
+ResultFiles WriteImages(const CompareOptions& options, const PreparedScene& prepared,
+                        const Comparison& comparison) {
+    ResultFiles results;
     const std::vector<Block> blocks = MakeBlocks(comparison.region, options.render.schedule);
     for (const ComparedImage& image : comparison.images) {
         if (image.wallSeconds) continue;  // is a file already
@@ -145,14 +160,14 @@ std::vector<std::string> WriteImages(const CompareOptions& options, const Prepar
             image.rule.empty() ? fmt::format("fixed:{}", comparison.cap) : image.rule;
         if (image.name != "automatic") provenance.checksum.clear();
         WriteImage({base + ".exr", base + ".png"}, {*prepared.scene, provenance},
-                   {image.image, blocks, spp, SumCosts(comparison, image).seconds});
-        names.insert(names.end(), {base + ".exr", base + ".png"});
+                   {image.image, blocks, spp, SumCosts(comparison, image).seconds}, &results);
     }
     std::vector<int> thresholds;
     for (const BlockCost& cost : comparison.images.front().costs) thresholds.push_back(cost.spp);
-    names.push_back(options.output + ".thresholds.csv");
-    WriteThresholdsOf(names.back(), options.render.scene.file, std::move(thresholds));
-    return names;
+    results.Write(options.output + ".thresholds.csv", [&](const std::string& file) {
+        WriteThresholdsOf(file, options.render.scene.file, thresholds);
+    });
+    return results;
 }
 
 // Returns a comparison to which images are to be added.
@@ -248,8 +263,7 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
         report.notes.push_back(
             "The reference holds the samples of the other images, so that errors near the cap are "
             "understated.");
-    const std::vector<std::string> images = WriteImages(options, prepared, report.comparison);
-    WriteReport(options, report, images);
+    WriteReport(options, report, WriteImages(options, prepared, report.comparison));
     if (!settings.checkpoint.file.empty()) std::filesystem::remove(settings.checkpoint.file);
     return Interrupted() ? kInterrupted : kDone;
 }

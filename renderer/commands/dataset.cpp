@@ -7,6 +7,7 @@
 
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
@@ -88,13 +89,19 @@ ExitCode RunDataset(const Options& options, Job* job) {
     const RenderSettings& settings = options.render;
     SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
     const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
+    if (leads) {
+        std::vector<NamedFile> inputs = InputsOf(settings.scene, input.description);
+        inputs.push_back({"--human", options.human});
+        CheckOutputs(std::vector<NamedFile>{{"-o", options.output},
+                                            {"the checkpoint", CheckpointName(options)}},
+                     inputs);
+    }
     CheckRecordable(blocks, settings.schedule);
 
     // Leave out what is there already.
     std::vector<int> limits = RecordingLimits(blocks.size(), options.blocks, settings.schedule.cap);
     if (options.past > 0) LimitByHuman(options.human, options.name, options.past, &limits);
     std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
-    if (leads) CheckWritable(options.output);
     const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
     if (old != dataset.end())
         for (const auto& [number, block] : old->blocks) limits.at(size_t(number)) = 0;

@@ -9,7 +9,7 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/measure/denoised_image.h"
-#include "renderer/output/file_io.h"
+#include "renderer/output/outputs.h"
 #include "renderer/output/progress.h"
 #include "renderer/render/film_picture.h"
 
@@ -67,8 +67,8 @@ ExitCode RunDenoise(Options options) {
     if (options.output.empty())
         options.output = path(options.input).replace_extension(".denoised.exr").string();
     const std::string png = path(options.output).replace_extension(".png").string();
-    CheckWritable(options.output);
-    CheckWritable(png);
+    CheckOutputs(std::vector<NamedFile>{{"-o", options.output}, {"-o", png}},
+                 std::vector<NamedFile>{{"IN", options.input}, {"--half", options.half}});
     std::error_code missing;
     if (std::filesystem::equivalent(options.input, options.half, missing))
         throw Error("--half " + options.half + ": it is the same file as " + options.input +

@@ -6,6 +6,7 @@
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
@@ -120,8 +121,16 @@ std::vector<JudgedRule> JudgeRecordings(const Options& options) {
                           .grid = options.judge.grid});
 }
 
+std::vector<NamedFile> InputsOf(const Options& options) {
+    std::vector<NamedFile> inputs = {{"--human", options.human}};
+    for (const std::string& file : options.datasets) inputs.push_back({"DATASET.h5", file});
+    for (const std::string& file : options.predicted) inputs.push_back({"--predicted", file});
+    for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
+    return inputs;
+}
+
 ExitCode RunEvaluate(const Options& options) {
-    if (!options.csv.empty()) CheckWritable(options.csv);
+    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv}}, InputsOf(options));
     const std::vector<JudgedRule> rules =
         options.datasets.empty() ? JudgeFiles(options) : JudgeRecordings(options);
     PrintEvaluation(stdout, rules, options.judge, !options.brief);

@@ -8,6 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
 #include "renderer/commands/session_options.h"
@@ -35,7 +36,11 @@ std::string FolderName(std::string folder) {
 }
 
 ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
-    CheckWritable(settings.output);
+    std::vector<NamedFile> pictures;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(settings.images, error))
+        pictures.push_back({"a picture", entry.path()});
+    CheckOutputs(std::vector<NamedFile>{{"-o", settings.output}}, pictures);
     const std::string name = settings.name.empty() ? FolderName(settings.images) : settings.name;
     const Study study = ReadStudy(settings.images, name, settings.render.schedule.blockSize,
                                   settings.levels, kLadderRatio);
@@ -62,11 +67,14 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
                 "make it with fewer --levels, of a part with --crop, or smaller with --resolution");
     const std::string name = options.name.empty() ? SceneName(settings.scene.file) : options.name;
     const bool records = !options.record.empty();
-    CheckWritable(options.output);
+    const std::string file = options.output + ".checkpoint";
+    CheckOutputs(
+        std::vector<NamedFile>{
+            {"-o", options.output}, {"--record", options.record}, {"the checkpoint", file}},
+        InputsOf(settings.scene, input.description));
     std::vector<ViewpointRecording> dataset;
     if (records) {
         CheckRecordable(blocks, schedule);
-        CheckWritable(options.record);
         dataset = ReadDatasetIfThere(options.record);
     }
 
@@ -81,7 +89,6 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     Study study = BeginStudy(name, input.region, levels, blocks, identity);
     ProgressPrinter printer = MakePrinter(settings, false);
     SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, nullptr);
-    const std::string file = options.output + ".checkpoint";
     how.checkpoint = ResumeIfThere(file, settings.checkpoint.interval);
     how.identity = identity;
     Session session(*scene, input.region, how);

@@ -6,6 +6,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/judge_options.h"
 #include "renderer/output/file_io.h"
+#include "renderer/output/outputs.h"
 #include "renderer/pages/collected_page.h"
 #include "stopping/observers/observer_tables.h"
 
@@ -27,8 +28,13 @@ void Tell(const Collected& collected) {
 void CollectAnswers(const JudgeSettings& settings) {
     const std::string base = settings.output.substr(0, settings.output.rfind('.'));
     const std::string details = base + ".details.csv", observers = base + ".observers.csv";
-    for (const std::string& file : {settings.output, details, observers}) CheckWritable(file);
-    if (!settings.report.empty()) CheckWritable(settings.report);
+    std::vector<NamedFile> inputs = {{"--study", settings.studyPage}};
+    for (const std::string& file : settings.collect) inputs.push_back({"--collect", file});
+    CheckOutputs(std::vector<NamedFile>{{"-o", settings.output},
+                                        {"-o", details},
+                                        {"-o", observers},
+                                        {"--report", settings.report}},
+                 inputs);
 
     CollectOptions options;
     Json study;

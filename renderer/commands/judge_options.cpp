@@ -112,7 +112,6 @@ void CheckJudgeOptions(const JudgeSettings& s) {
         Refuse("--report and --study need --collect");
     if (!s.report.empty() && !s.report.ends_with(".html"))
         Refuse("--report " + s.report + ": the report is a page, PAGE.html");
-    if (!s.report.empty() && s.report == s.studyPage) Refuse("--report would replace the study");
 }
 
 }  // namespace lull

@@ -12,6 +12,7 @@
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
@@ -178,11 +179,14 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
         FormatDuration(NeededSeconds(noisy, result)));
 }
 
-void PrintFiles(const RenderFiles& files, const RenderResult& result) {
-    fmt::print("{}\n{}\n{}\n", files.exr, files.png, files.sppMap);
-    if (!result.cancelled) fmt::print("{}\n", files.thresholds);
-    if (!result.cancelled && !files.ranges.empty()) fmt::print("{}\n", files.ranges);
-    if (!files.report.empty()) fmt::print("{}\n", files.report);
+// Throws Error where a result would replace another or an input, or could not be written now.
+void CheckFiles(const Options& options, const RenderFiles& files, const Description& description) {
+    std::vector<NamedFile> outputs = OutputsOf(files);
+    outputs.push_back({"--checkpoint", options.render.checkpoint.file});
+    std::vector<NamedFile> inputs = InputsOf(options.render.scene, description);
+    AddFileOfRule(options.rule, &inputs);
+    CheckOutputs(outputs, inputs);
+    CheckCheckpoint(options.render.checkpoint);
 }
 
 // Says whether it collects what a denoiser is shown.
@@ -281,10 +285,8 @@ ExitCode RunRender(Options options, Job* job) {
     CheckBlocks(region, settings.schedule, input.warnings);
     const FilmOptions film = CheckedFilm(options, factory, region);
     const RenderFiles files =
-        NameFiles(options.output.empty() ? input.film.filename : options.output, options.report,
-                  !factory.logRatios.empty());
-    if (leads) CheckWritable(files, settings.scene.file);
-    if (leads) CheckCheckpoint(settings.checkpoint);
+        NameFiles(options.output.empty() ? input.film.filename : options.output, options.report);
+    if (leads) CheckFiles(options, files, input.description);
     CheckLayersFit(options.aovs, CollectsFeatures(options), region);
     const std::unique_ptr<Display> display = MakeDisplay(
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
@@ -297,6 +299,10 @@ ExitCode RunRender(Options options, Job* job) {
     how.render.makeCriterion = MakeCriteria(factory, IsHtml(options.report), &histories);
     how.render.trend = factory.trend;
     how.render.display = display.get();
+    if (clock)
+        how.render.onProgress = WarnOfFirstPass(
+            region.Area() * std::min(settings.schedule.passLength, settings.schedule.cap),
+            std::move(how.render.onProgress));
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);
@@ -328,18 +334,19 @@ ExitCode RunRender(Options options, Job* job) {
     }
     session.TheFilm().DropHalf();  // what follows needs the memory
 
-    WriteFiles(files, {{*scene, provenance},
-                       session.TheFilm(),
-                       result,
-                       histories,
-                       input.warnings,
-                       session.Aovs(),
-                       denoised ? &*denoised : nullptr,
-                       halves,
-                       input.description,
-                       options.pictures.format});
-    PrintFiles(files, result);
+    const ResultFiles written = WriteFiles(files, {{*scene, provenance},
+                                                   session.TheFilm(),
+                                                   result,
+                                                   histories,
+                                                   input.warnings,
+                                                   session.Aovs(),
+                                                   denoised ? &*denoised : nullptr,
+                                                   halves,
+                                                   input.description,
+                                                   options.pictures.format});
+    for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (display) display->Finish();
+    written.Check();
     if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())
         std::filesystem::remove(settings.checkpoint.file);
     return result.cancelled ? kInterrupted : kDone;

@@ -13,8 +13,6 @@ namespace {
 
 using std::filesystem::path;
 
-path Normal(const std::string& file) { return std::filesystem::absolute(file).lexically_normal(); }
-
 }  // namespace
 
 bool HasImageExtension(const std::string& output) {
@@ -22,47 +20,54 @@ bool HasImageExtension(const std::string& output) {
     return extension == ".exr" || extension == ".png";
 }
 
-RenderFiles NameFiles(const std::string& output, const std::string& report, bool withRanges) {
+RenderFiles NameFiles(const std::string& output, const std::string& report) {
     auto with = [&](const char* extension) {
         return path(output).replace_extension(extension).string();
     };
-    return {with(".exr"),
-            with(".png"),
-            with(".spp.png"),
-            with(".thresholds.csv"),
-            withRanges ? with(".ranges.csv") : "",
-            report};
+    return {with(".exr"),        with(".png"), with(".spp.png"), with(".thresholds.csv"),
+            with(".ranges.csv"), report};
 }
 
-void CheckWritable(const RenderFiles& files, const std::string& scene) {
+std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
+    std::vector<NamedFile> outputs;
     for (const std::string& file :
-         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, scene})
-        if (!files.report.empty() && !file.empty() && Normal(file) == Normal(files.report))
-            throw Error("--report " + files.report + ": would replace " + file);
-    for (const std::string& file :
-         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges, files.report})
-        if (!file.empty()) CheckWritable(file);
+         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges})
+        outputs.push_back({"-o", file});
+    outputs.push_back({"--report", files.report});
+    return outputs;
 }
 
-void WriteFiles(const RenderFiles& files, const FinishedRender& render) {
+ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     const auto& [origin, film, result, histories, warnings, aovs, denoised, halves, description,
                  pictures] = render;
     const Provenance& provenance = origin.provenance;
     ExtraLayers extra =
         aovs ? MakeExtraLayers(*aovs, film, description, origin.scene) : ExtraLayers();
     extra.channels.insert(extra.channels.end(), halves.begin(), halves.end());
-    WriteImage({files.exr, files.png}, origin, film, denoised, result, std::move(extra), pictures);
-    WriteSppMap(files.sppMap, provenance, result);
+    ResultFiles results;
+    WriteImage({files.exr, files.png}, origin, film, denoised, result, std::move(extra), pictures,
+               &results);
+    results.Write(files.sppMap,
+                  [&](const std::string& file) { WriteSppMap(file, provenance, result); });
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
-    if (!result.cancelled)
-        WriteThresholdsOf(files.thresholds, provenance.scene, ThresholdsOf(provenance, result));
-    if (!result.cancelled && !files.ranges.empty()) WriteRanges(files.ranges, provenance, result);
+    if (result.cancelled)
+        ResultFiles::RemoveOld(files.thresholds);
+    else
+        results.Write(files.thresholds, [&](const std::string& file) {
+            WriteThresholdsOf(file, provenance.scene, ThresholdsOf(provenance, result));
+        });
+    if (result.cancelled || provenance.logRatios.empty())
+        ResultFiles::RemoveOld(files.ranges);
+    else
+        results.Write(files.ranges,
+                      [&](const std::string& file) { WriteRanges(file, provenance, result); });
     if (files.report.ends_with(".html"))
-        WriteFileAtomically(files.report, MakeRenderPage(provenance, result, film, histories,
-                                                         warnings.Counts(), denoised));
+        results.WriteText(files.report, MakeRenderPage(provenance, result, film, histories,
+                                                       warnings.Counts(), denoised));
     else if (!files.report.empty())
-        WriteFileAtomically(files.report, MakeReport(provenance, result, film.RejectedCount(),
-                                                     warnings.Counts(), denoised));
+        results.WriteText(files.report, MakeReport(provenance, result, film.RejectedCount(),
+                                                   warnings.Counts(), denoised));
+    return results;
 }
 
 }  // namespace lull

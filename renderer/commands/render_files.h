@@ -3,23 +3,23 @@
 
 #include "renderer/measure/block_observer.h"
 #include "renderer/measure/image_files.h"
+#include "renderer/output/outputs.h"
 
 namespace lull {
 
-// Names the files; those not wanted are empty.
+// Names the files; a report that is not wanted is empty.
 struct RenderFiles {
     std::string exr, png, sppMap, thresholds, ranges, report;
 };
 
 // Returns the names for `output`, a name that ends in .exr or .png; all lie beside each other.
-RenderFiles NameFiles(const std::string& output, const std::string& report, bool withRanges);
+RenderFiles NameFiles(const std::string& output, const std::string& report);
 
 // Says whether `output` ends as an image that can be written.
 bool HasImageExtension(const std::string& output);
 
-// Throws Error if one of the files could not be written now, or if the report would replace an
-// image or the scene.
-void CheckWritable(const RenderFiles&, const std::string& scene);
+// Returns all files that may be written or removed, for CheckOutputs().
+std::vector<NamedFile> OutputsOf(const RenderFiles&);
 
 // Holds what there is to write of a render; `histories` have the curves for a page.
 struct FinishedRender {
@@ -35,8 +35,8 @@ struct FinishedRender {
     const PictureFormat& pictures;
 };
 
-// Writes all files, each whole or not at all; a report whose name ends in .html as a page. Throws
-// Error.
-void WriteFiles(const RenderFiles&, const FinishedRender&);
+// Writes all files, each whole or not at all; a report whose name ends in .html as a page. Those of
+// an earlier render that this one has none of are removed.
+ResultFiles WriteFiles(const RenderFiles&, const FinishedRender&);
 
 }  // namespace lull

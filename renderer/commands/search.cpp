@@ -8,6 +8,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
@@ -82,10 +83,15 @@ ExitCode RunSearch(const TrainOptions& options) {
     const TrainingPlan& plan = options.plan;
     const std::vector<SearchAxis> axes = ReadGrid(options.search);
     const std::string table = WithExtension(options.csv, ".md");
-    if (table == options.csv)
-        throw Error("--csv " + options.csv + ": is the Markdown table's name");
-    CheckWritable(options.csv);
-    CheckWritable(table);
+    TrainingCheckpoint checkpoint(options.csv + ".training.checkpoint", options.checkpointInterval,
+                                  WriteBytes);
+    std::vector<NamedFile> inputs = InputsOf(plan);
+    inputs.push_back({"--search", options.search});
+    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv},
+                                        {"the Markdown table", table},
+                                        {"the checkpoint", options.csv + ".checkpoint"},
+                                        {"the checkpoint", checkpoint.Path()}},
+                 inputs);
     CheckGrid(plan, options.search, axes, SetPlanOptions);
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
     const std::vector<Trial> trials =
@@ -96,8 +102,6 @@ ExitCode RunSearch(const TrainOptions& options) {
     const std::string data = SearchDataText(plan, trials.front());
     std::vector<SearchResult> known;
     if (options.resume) known = ReadResults(options.csv + ".checkpoint", data);
-    TrainingCheckpoint checkpoint(options.csv + ".training.checkpoint", options.checkpointInterval,
-                                  WriteBytes);
     if (options.resume && std::filesystem::exists(checkpoint.Path())) checkpoint.Read();
     CatchInterrupts();
 

@@ -15,7 +15,7 @@
 namespace lull {
 
 void PrepareStreams() {
-    std::signal(SIGPIPE, SIG_IGN);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     // What is opened gets the lowest number that is free. Only that for errors takes what is
     // written: results that go nowhere are an error.
     constexpr std::pair<int, int> kStreams[] = {{0, O_RDONLY}, {1, O_RDONLY}, {2, O_WRONLY}};

@@ -7,8 +7,9 @@
 
 namespace lull {
 
-// Readies the three streams of the program: writing to a pipe that nobody reads is an error and not
-// the end, and one that is closed is /dev/null, so that no file of results takes its place.
+// Readies the three streams of the program: writing to a pipe that nobody reads, or more to a file
+// than is allowed, is an error and not the end, and a stream that is closed is /dev/null, so that no
+// file of results takes its place.
 void PrepareStreams();
 
 // Writes out what was printed to stdout. Throws Error where it, or anything before, could not be.

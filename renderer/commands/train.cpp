@@ -7,6 +7,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
+#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/search.h"
 #include "renderer/commands/talk.h"
@@ -40,16 +41,18 @@ TrainingEvents PrintTo(TrainingPrinter* printer, const BlockSplit& split, bool q
 
 ExitCode RunTrain(const TrainOptions& options) {
     const TrainingPlan& plan = options.plan;
-    if (!options.output.empty()) CheckWritable(options.output);
-    if (!options.csv.empty()) CheckWritable(options.csv);
+    const std::string checkpointName = options.output.empty() ? "" : options.output + ".checkpoint";
+    CheckOutputs(
+        std::vector<NamedFile>{
+            {"-o", options.output}, {"the checkpoint", checkpointName}, {"--csv", options.csv}},
+        InputsOf(plan));
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
     const std::vector<JudgedBlock> blocks =
         KeepRecordedForAll(ReadJudgedBlocks(viewpoints, plan.human, plan.without, PrintTalk),
                            {&plan.settings, 1}, PrintTalk);
     CheckSpacing(plan.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
-    TrainingCheckpoint checkpoint(options.output.empty() ? "" : options.output + ".checkpoint",
-                                  options.checkpointInterval, WriteBytes);
+    TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
     if (options.resume) checkpoint.Read();
     TrainingPrinter printer(StyleOf(options), stderr);
     CatchInterrupts();

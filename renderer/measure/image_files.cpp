@@ -138,7 +138,7 @@ RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
                 const DenoisedImage* denoised, const RenderResult& result, ExtraLayers extra,
-                const PictureFormat& format) {
+                const PictureFormat& format, ResultFiles* results) {
     ExrImage exr = MakeExr(origin, film, result);
     if (denoised) {
         std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
@@ -149,20 +149,27 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Fi
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, format);
     const RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
-    WriteExr(files.exr, exr, colours, SppOf(film));
-    WritePng(files.png, colours, film.Region().Width(), film.Region().Height(),
-             MakePngFormat(format, origin.scene.film.exposure));
+    results->Write(files.exr,
+                   [&](const std::string& file) { WriteExr(file, exr, colours, SppOf(film)); });
+    results->Write(files.png, [&](const std::string& file) {
+        WritePng(file, colours, film.Region().Width(), film.Region().Height(),
+                 MakePngFormat(format, origin.scene.film.exposure));
+    });
 }
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin,
-                const ImageOfBlocks& picture) {
+                const ImageOfBlocks& picture, ResultFiles* results) {
     const auto& [image, blocks, spp, seconds] = picture;
     const PixelRect& region = origin.provenance.crop;
     int64_t samples = 0;
     for (size_t i = 0; i < blocks.size(); ++i) samples += blocks[i].pixels.Area() * spp[i];
-    WriteExr(files.exr, MakeExr(origin, region, samples, seconds), MeansOf(image),
-             SppOf(region, blocks, spp));
-    WritePng(files.png, MeansOf(image), image.width, image.height);
+    const ExrImage exr = MakeExr(origin, region, samples, seconds);
+    results->Write(files.exr, [&](const std::string& file) {
+        WriteExr(file, exr, MeansOf(image), SppOf(region, blocks, spp));
+    });
+    results->Write(files.png, [&](const std::string& file) {
+        WritePng(file, MeansOf(image), image.width, image.height);
+    });
 }
 
 }  // namespace lull

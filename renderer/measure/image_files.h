@@ -5,6 +5,7 @@
 #include "renderer/measure/extra_layers.h"
 #include "renderer/measure/image_error.h"
 #include "renderer/output/png_format.h"
+#include "renderer/output/result_files.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 
@@ -31,9 +32,8 @@ struct PictureOrigin {
 
 // Writes the image of a render, each file whole or not at all: the means of the film or, where
 // there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
-// Throws Error.
 void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
-                const RenderResult&, ExtraLayers extra, const PictureFormat&);
+                const RenderResult&, ExtraLayers extra, const PictureFormat&, ResultFiles*);
 
 // Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
 struct ImageOfBlocks {
@@ -42,6 +42,6 @@ struct ImageOfBlocks {
     const std::vector<int>& spp;
     double seconds;  // of processors
 };
-void WriteImage(const PictureFiles&, const PictureOrigin&, const ImageOfBlocks&);
+void WriteImage(const PictureFiles&, const PictureOrigin&, const ImageOfBlocks&, ResultFiles*);
 
 }  // namespace lull

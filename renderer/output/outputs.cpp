@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
+#include "renderer/output/file_io.h"
 
 namespace lull {
 
@@ -51,6 +52,7 @@ void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile>
         if (const NamedFile* other = found.FindOrAdd(output))
             throw Error(fmt::format("{} \"{}\" would replace {} \"{}\"; give it another name",
                                     output.role, output.path, other->role, other->path));
+        CheckWritable(output.path);
     }
 }
 

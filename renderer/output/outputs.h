@@ -11,8 +11,9 @@ struct NamedFile {
     std::string role, path;
 };
 
-// Throws Error if an output would be the same file as another one or as an input, by whatever name
-// or link. Empty paths stand for none, and devices are no files.
+// For use before the work begins. Throws Error if an output would be the same file as another one
+// or as an input, by whatever name or link, or could not be written now (see CheckWritable()).
+// Empty paths stand for none, and devices are no files.
 void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs);
 
 }  // namespace lull

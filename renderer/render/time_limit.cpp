@@ -10,7 +10,17 @@ namespace lull {
 
 namespace {
 
-double SecondsIn(char unit) { return unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0; }
+// Takes a unit off the text and returns it in seconds; 0 for none.
+double TakeUnit(std::string_view* text) {
+    constexpr std::pair<std::string_view, double> kUnits[] = {
+        {"ms", 1e-3}, {"h", 3600}, {"m", 60}, {"s", 1}};
+    for (const auto& [name, seconds] : kUnits)
+        if (text->starts_with(name)) {
+            text->remove_prefix(name.size());
+            return seconds;
+        }
+    return 0;
+}
 
 // Takes two digits below `limit`, and `end` after them, off the text. Returns -1 for others.
 int TakeTwoDigits(std::string_view* text, int limit) {
@@ -27,20 +37,19 @@ int TakeTwoDigits(std::string_view* text, int limit) {
 double ParseDuration(const std::string& text) {
     const auto refuse = [&] {
         throw std::invalid_argument(
-            fmt::format("'{}' is no time; 90s, 10m, 2h or 1h30m are, for example", text));
+            fmt::format("'{}' is no time; 500ms, 90s, 10m, 2h or 1h30m are, for example", text));
     };
-    double seconds = 0;
-    const char *at = text.data(), *end = at + text.size();
-    double largerUnit = INFINITY;
-    while (at != end) {
+    double seconds = 0, largerUnit = INFINITY;
+    for (std::string_view left = text; !left.empty();) {
         double value = 0;
-        const auto [rest, error] = std::from_chars(at, end, value, std::chars_format::fixed);
-        if (error != std::errc() || rest == end) refuse();
-        const double unit = SecondsIn(*rest);
+        const auto [rest, error] = std::from_chars(left.data(), left.data() + left.size(), value,
+                                                   std::chars_format::fixed);
+        if (error != std::errc()) refuse();
+        left.remove_prefix(size_t(rest - left.data()));
+        const double unit = TakeUnit(&left);
         if (unit == 0 || unit >= largerUnit || !(value >= 0)) refuse();
         seconds += value * unit;
         largerUnit = unit;
-        at = rest + 1;
     }
     if (!(seconds > 0) || seconds > 1e9) refuse();
     return seconds;

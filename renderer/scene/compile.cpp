@@ -98,7 +98,13 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     if (scene->lights.Count() == 0)
         warnings.Add(description.integrator.loc,
                      "the scene has no lights: the image will be black");
-    if (scene->shapes.bounds.IsEmpty()) warnings.Add({}, "the scene has no shapes");
+    const Bounds3f& bounds = scene->shapes.bounds;
+    if (bounds.IsEmpty()) warnings.Add({}, "the scene has no shapes");
+    if (const float size = bounds.Diagonal().norm();
+        scene->shapes.TriangleCount() > 0 && size < kSmallestScene)
+        warnings.Add({}, "the scene is too small for its light to be right",
+                     fmt::format("it is {:g} across, which should be {:g} or more; scale it up",
+                                 size, kSmallestScene));
     return scene;
 }
 

@@ -12,6 +12,10 @@ namespace lull {
 constexpr float kFarthest = 1e12f;
 constexpr float kLongestRay = 1e18f;
 
+// Embree takes hits of triangles of less than 1e-18 square units for hits of their first corner: a
+// scene of triangles has to be larger than this.
+constexpr float kSmallestScene = 1e-6f;
+
 // Returns the greatest distance of a point of the box from the origin, also where that is beyond
 // the squares of floats; 0 for an empty box.
 double Farthest(const Bounds3f& box);

@@ -206,6 +206,22 @@ TEST(CommandLine, KeepsTheHalfWhereItIsNeeded) {
     EXPECT_EQ(ReadBytes(directory.File("on.png")), ReadBytes(directory.File("auto.png")));
 }
 
+// Whoever gives less time than the first pass takes hears of it long before the end.
+TEST(CommandLine, WarnsOfFirstPassesLongerThanTheClock) {
+    const SceneDirectory directory;
+    const std::string render = "LULL render scene.pbrt --quiet ";
+    const std::string part = "warning: the first pass of all blocks";
+    const Outcome late = RunShell(directory, "timeout -s TERM 5 " + render +
+                                                 "--resolution 200x150 --block 50 --spp 20000 "
+                                                 "--pass 20000 --time 1ms");
+    EXPECT_EQ(late.exitCode, 124);
+    EXPECT_TRUE(Contains(late.err, part)) << late.err;
+    EXPECT_EQ(late.err.find(part), late.err.rfind(part)) << late.err;
+    const Outcome inTime = RunShell(directory, render + "--spp 20 --time 100s");
+    EXPECT_EQ(inTime.exitCode, 0);
+    EXPECT_FALSE(Contains(inTime.err, part)) << inTime.err;
+}
+
 // The cap of 10,000 is for rules that may never stop.
 TEST(CommandLine, TakesAsManySamplesAsAskedFor) {
     const SceneDirectory directory;

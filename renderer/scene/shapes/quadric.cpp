@@ -24,8 +24,8 @@ void FinishQuadricHit(const QuadricPlacement& place, const Vec3f& pShape, const 
                       SurfaceNeeds needs, SurfaceInteraction* hit) {
     const Mat4d& m = place.worldFromShape;
     std::tie(hit->p, hit->pError) = TransformWithError(m, pShape, errorShape);
-    hit->n = hit->dpdu.cross(hit->dpdv).normalized();
-    hit->n = TransformNormal(place.shapeFromWorld, hit->n).normalized();
+    hit->n = UnitOf(hit->dpdu.cross(hit->dpdv));
+    hit->n = UnitOf(TransformNormal(place.shapeFromWorld, hit->n));
     if (place.flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
     if (!(needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))) return;

@@ -180,8 +180,10 @@ TEST(TimeLimit, ReadsDurations) {
     EXPECT_EQ(ParseDuration("1h30m"), 5400);
     EXPECT_EQ(ParseDuration("1h0m5s"), 3605);
     EXPECT_EQ(ParseDuration("0.5m"), 30);
+    EXPECT_EQ(ParseDuration("1ms"), 0.001);
+    EXPECT_EQ(ParseDuration("2s500ms"), 2.5);
     for (const char* bad : {"", "10", "m", "10x", "-5s", "0s", "10m1h", "5m5m", "nans", "infs",
-                            "1e3s", "10 m", "99999999h", "10m "})
+                            "1e3s", "10 m", "99999999h", "10m ", "1sm", "1ms1s"})
         EXPECT_THROW(ParseDuration(bad), std::invalid_argument) << bad;
 }
 

@@ -101,5 +101,42 @@ TEST(Reach, MeshesMayBeOfAnySize) {
     }
 }
 
+TEST(Reach, SpheresMayBeOfAnySize) {
+    for (const double scale : {1e-10, 1., 1e10, 1e11}) {
+        const auto scene = MakeScene(fmt::format(
+            "WorldBegin\nTranslate 0 0 {0}\nShape \"sphere\" \"float radius\" [{1}]\nWorldEnd\n",
+            4 * scale, scale));
+        Hit hit;
+        const Ray ray{Vec3f::Zero(), Vec3f(0.1f, 0, 1), kInfinity};
+        ASSERT_TRUE(scene->accelerator.Intersect(ray, &hit)) << scale;
+        SurfaceInteraction at;
+        scene->shapes.Interact(ray, hit, kNeedsTangents, &at);
+        EXPECT_NEAR(at.n.norm(), 1, 1e-6) << scale;
+        EXPECT_LT(at.n.z(), -0.8f) << scale;
+    }
+}
+
+TEST(Reach, WarnsOfScenesTooSmallForTriangles) {
+    const auto warningsOf = [](double scale) {
+        const TemporaryDirectory directory;
+        Warnings warnings;
+        const auto d =
+            ParsePbrt(directory.Write(
+                          "small.pbrt",
+                          fmt::format("WorldBegin\nScale {0} {0} {0}\nShape \"trianglemesh\" "
+                                      "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"
+                                      "\nWorldEnd\n",
+                                      scale)),
+                      warnings);
+        CompileOptions options;
+        options.threads = 1;
+        Compile(d, options, warnings);
+        return warnings.Counts();
+    };
+    const std::string kind = "the scene is too small for its light to be right";
+    EXPECT_EQ(warningsOf(1e-10).count(kind), 1u);
+    EXPECT_EQ(warningsOf(1e-4).count(kind), 0u);
+}
+
 }  // namespace
 }  // namespace lull

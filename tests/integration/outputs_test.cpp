@@ -1,0 +1,175 @@
+// Results replace neither each other nor what they are made from, and none is lost where one cannot
+// be written.
+#include <thread>
+
+#include "renderer/output/image_io.h"
+#include "tests/integration/run_and_signal.h"
+
+namespace lull::outputs_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOptions = "scene.pbrt --spp 20 --block 8 --quiet";
+
+// Holds a scene with a mesh and a texture, an image, thresholds and answers of people.
+struct Inputs : TemporaryDirectory {
+    Inputs() {
+        Write("mesh.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+              "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        Write("scene.pbrt", SceneText("Texture \"t\" \"color\" \"imagemap\" \"string filename\" "
+                                      "\"texture.png\"\n"
+                                      "Material \"matte\" \"texture Kd\" \"t\"\n"
+                                      "Shape \"plymesh\" \"string filename\" \"mesh.ply\""));
+        WritePng(File("texture.png"), std::vector<Rgb>(4, Rgb(0.5f, 0.5f, 0.5f)), 2, 2);
+        WritePng(File("environment.png"), std::vector<Rgb>(2, Rgb(1, 1, 1)), 2, 1);
+        Write("human.csv", "scene;20;40;60;80;100;120\n");
+        fs::create_symlink("human.csv", File("link.csv"));
+    }
+};
+
+// Returns all files by name, with what is in them.
+std::map<std::string, std::string> FilesIn(const TemporaryDirectory& directory) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(directory.path))
+        files[entry.path().filename()] = ReadBytes(entry.path());
+    return files;
+}
+
+// Expects exit code 1, one error that says which two files are the same, and no change.
+void ExpectRefused(const TemporaryDirectory& directory, const std::string& arguments,
+                   const std::string& output, const std::string& other) {
+    const auto before = FilesIn(directory);
+    const Outcome outcome = RunLull(directory, arguments);
+    EXPECT_EQ(outcome.exitCode, 1) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << arguments << "\n" << outcome.err;
+    for (const std::string& part : {output + " \"", "would replace " + other + " \""})
+        EXPECT_TRUE(Contains(outcome.err, part)) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(FilesIn(directory), before) << arguments;
+}
+
+TEST(Outputs, OfRendersAreDifferentFiles) {
+    const Inputs directory;
+    const std::string render = fmt::format("render {} ", kOptions);
+    ExpectRefused(directory, render + "--checkpoint out.exr -o out.exr", "--checkpoint", "-o");
+    ExpectRefused(directory, render + "--checkpoint out.png -o out.exr", "--checkpoint", "-o");
+    ExpectRefused(directory, render + "-o o.exr --report r.json --checkpoint r.json",
+                  "--checkpoint", "--report");
+    ExpectRefused(directory, render + "-o o.exr --report o.thresholds.csv", "--report", "-o");
+}
+
+TEST(Outputs, OfRendersAreNoInputs) {
+    const Inputs directory;
+    const std::string render = fmt::format("render {} ", kOptions);
+    ExpectRefused(directory, render + "-o environment.exr --environment environment.png", "-o",
+                  "--environment");
+    for (const char* file : {"mesh.ply", "texture.png"})
+        for (const char* option : {"--report ", "--checkpoint "})
+            ExpectRefused(directory, render + "-o o.exr " + option + file,
+                          option == std::string("--report ") ? "--report" : "--checkpoint",
+                          "a file of the scene");
+    ExpectRefused(directory, render + "-o texture.exr", "-o", "a file of the scene");
+    ExpectRefused(directory, render + "-o o.exr --report scene.pbrt", "--report", "the scene");
+    ExpectRefused(directory,
+                  "render scene.pbrt -o o.exr --report human.csv --stop thresholds:link.csv:scene "
+                  "--block 8",
+                  "--report", "what the rule reads,");
+}
+
+TEST(Outputs, OfOtherCommandsAreNoInputs) {
+    const Inputs directory;
+    directory.Write("d.h5", "no recording");
+    directory.Write("p.csv", "scene;20;40;60;80;100;120\n");
+    directory.Write("a.exr", "no image");
+    const struct {
+        const char *arguments, *output, *other;
+    } kCases[] = {
+        {"train d.h5 --human human.csv -o d.h5", "-o", "DATASET.h5"},
+        {"train d.h5 --human human.csv -o m.h5 --csv link.csv", "--csv", "--human"},
+        {"train d.h5 --human human.csv -o m.h5 --csv m.h5.checkpoint", "--csv", "the checkpoint"},
+        {"evaluate --human human.csv --predicted p.csv --csv human.csv", "--csv", "--human"},
+        {"evaluate --human human.csv --predicted p.csv --csv link.csv", "--csv", "--human"},
+        {"evaluate --human human.csv --predicted p.csv --csv p.csv", "--csv", "--predicted"},
+        {"dataset scene.pbrt --name a -o mesh.ply --blocks 0", "-o", "a file of the scene"},
+        {"denoise a.exr -o a.exr", "-o", "IN"},
+        {"bench scene.pbrt --cap 40 -o b --report b.csv.html --reference b.csv", "-o",
+         "--reference"},
+        {"compare --automatic a.exr --reference r.html -o c --report r.html", "--report",
+         "--reference"},
+        {"compare scene.pbrt --snapshots --cap 40 --block 8 --checkpoint c.reference.exr -o c "
+         "--quiet",
+         "-o", "--checkpoint"},
+        {"judge scene.pbrt -o s.html --record mesh.ply --cap 100", "--record",
+         "a file of the scene"},
+        {"judge --collect p.csv -o p.csv", "-o", "--collect"},
+    };
+    for (const auto& [arguments, output, other] : kCases)
+        ExpectRefused(directory, arguments, output, other);
+}
+
+// What an interrupted render leaves is of one render.
+TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
+    const Inputs directory;
+    const std::string render =
+        "LULL render scene.pbrt --resolution 100x90 --block 40 --quiet -o out.exr ";
+    ASSERT_EQ(RunShell(directory, render + "--cap 40").exitCode, 0);
+    const std::vector<std::string> others = {directory.File("out.thresholds.csv"),
+                                             directory.File("out.ranges.csv")};
+    for (const std::string& file : others) ASSERT_TRUE(fs::exists(file)) << file;
+
+    const Outcome outcome = RunAndSignal(
+        directory, render + "--stop dammertz:0.00001 --checkpoint c.h5 --checkpoint-interval 0.1",
+        SIGTERM, "c.h5");
+    EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+    for (const std::string& file : others) EXPECT_FALSE(fs::exists(file)) << file;
+    EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
+}
+
+// Rules that know nothing of people have no ranges of theirs.
+TEST(Outputs, RendersLeaveNoOlderRanges) {
+    const Inputs directory;
+    ASSERT_EQ(RunLull(directory, "render scene.pbrt --quiet -o out.exr --cap 40").exitCode, 0);
+    ASSERT_TRUE(fs::exists(directory.File("out.ranges.csv")));
+    ASSERT_EQ(RunLull(directory, "render scene.pbrt --quiet -o out.exr --spp 40").exitCode, 0);
+    EXPECT_FALSE(fs::exists(directory.File("out.ranges.csv")));
+    EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
+}
+
+// /dev/full is a disk that is always full.
+TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
+    const Inputs directory;
+    ASSERT_EQ(RunLull(directory, fmt::format("render {} -o whole.exr", kOptions)).exitCode, 0);
+    fs::create_symlink("/dev/full", directory.File("out.exr"));
+    fs::create_directory(directory.File("other"));
+    const Outcome outcome =
+        RunShell(directory, fmt::format("TMPDIR=other LULL render {} -o out.exr", kOptions));
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "cannot write \"out.exr\": No space left on device"))
+        << outcome.err;
+
+    const std::string place = outcome.out.substr(0, outcome.out.find('\n'));
+    EXPECT_TRUE(place.starts_with("other/lull-") && place.ends_with("/out.exr")) << place;
+    EXPECT_TRUE(Contains(outcome.err, fs::path(place).parent_path().string())) << outcome.err;
+    EXPECT_EQ(ReadImage(directory.File(place)).texels,
+              ReadImage(directory.File("whole.exr")).texels);
+    for (const char* extension : {".png", ".spp.png", ".thresholds.csv"})
+        EXPECT_TRUE(fs::exists(directory.File(std::string("out") + extension))) << extension;
+}
+
+// Where no folder takes one, the others are written all the same.
+TEST(Outputs, FilesBeyondALimitDoNotCostTheOthers) {
+    const Inputs directory;
+    const Outcome outcome =
+        RunShell(directory, fmt::format("ulimit -f 4; LULL render {} -o out.exr", kOptions));
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "cannot write \"out.exr\": File too large")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "\"out.exr\" is lost")) << outcome.err;
+    EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
+    EXPECT_TRUE(outcome.out.ends_with("out.thresholds.csv\n")) << outcome.out;
+}
+
+}  // namespace
+}  // namespace lull::outputs_test
