@@ -10,7 +10,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/talk.h"
-#include "renderer/ranks/job.h"
+#include "renderer/mpi/job.h"
 
 namespace lull {
 

@@ -15,9 +15,9 @@
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/bench.h"
 #include "renderer/measure/compared_files.h"
+#include "renderer/mpi/job.h"
 #include "renderer/output/file_io.h"
 #include "renderer/pages/bench_page.h"
-#include "renderer/ranks/job.h"
 
 namespace lull {
 

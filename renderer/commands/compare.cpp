@@ -16,7 +16,7 @@
 #include "renderer/measure/block_files.h"
 #include "renderer/measure/compared_files.h"
 #include "renderer/measure/image_files.h"
-#include "renderer/ranks/job.h"
+#include "renderer/mpi/job.h"
 
 namespace lull {
 

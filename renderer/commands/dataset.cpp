@@ -12,8 +12,8 @@
 #include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/recorded_viewpoint.h"
+#include "renderer/mpi/job.h"
 #include "renderer/output/file_io.h"
-#include "renderer/ranks/job.h"
 
 namespace lull {
 

@@ -10,7 +10,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/talk.h"
 #include "renderer/output/file_io.h"
-#include "stopping/learning/judged_rules.h"
+#include "stopping/evaluation/judged_rules.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

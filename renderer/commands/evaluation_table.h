@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/learning/evaluation.h"
+#include "stopping/evaluation/evaluation.h"
 
 namespace lull {
 

@@ -5,7 +5,7 @@
 
 #include "renderer/commands/scene_options.h"
 #include "renderer/output/outputs.h"
-#include "stopping/learning/training_plan.h"
+#include "stopping/training/training_plan.h"
 
 namespace lull {
 

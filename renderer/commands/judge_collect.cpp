@@ -8,7 +8,7 @@
 #include "renderer/output/file_io.h"
 #include "renderer/output/outputs.h"
 #include "renderer/pages/collected_page.h"
-#include "stopping/learning/observer_tables.h"
+#include "stopping/observers/observer_tables.h"
 
 namespace lull {
 

@@ -20,7 +20,7 @@
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"
-#include "renderer/ranks/job.h"
+#include "renderer/mpi/job.h"
 #include "renderer/render/block_denoiser.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/render/half_buffer.h"

@@ -6,7 +6,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
-#include "renderer/ranks/job.h"
+#include "renderer/mpi/job.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "renderer/commands/choice_option.h"
-#include "stopping/learning/training_preset.h"
+#include "stopping/training/training_preset.h"
 
 namespace lull {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/output/progress.h"
-#include "stopping/learning/search_run.h"
+#include "stopping/training/search_run.h"
 
 namespace lull {
 

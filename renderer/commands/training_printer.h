@@ -6,7 +6,7 @@
 #include <string>
 
 #include "renderer/output/progress.h"
-#include "stopping/learning/training.h"
+#include "stopping/training/training.h"
 
 namespace lull {
 

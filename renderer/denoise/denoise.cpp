@@ -90,7 +90,7 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
 
 }  // namespace
 
-DenoisedPicture Denoise(const NoisyPicture& in) {
+DenoisedPicture Denoise(const NoisyPicture& in, int rowsPerFit) {
     const Halves sane = SaneColours(in.colour);
     CalmedHalves calm = TakeFireflies(sane.a, sane.b, kFireflyLimit);
     DenoisedPicture result;
@@ -103,9 +103,9 @@ DenoisedPicture Denoise(const NoisyPicture& in) {
     const Planes features = FilterFeatures(scaled.a, scaled.b);
     const Halves& noisy = result.noisy;
     std::vector<Planes> a =
-        Regress(noisy.a, features, {noisy.b, result.variance}, kPatches, kBandwidths);
+        Regress(noisy.a, features, {noisy.b, result.variance}, kPatches, kBandwidths, rowsPerFit);
     std::vector<Planes> b =
-        Regress(noisy.b, features, {noisy.a, result.variance}, kPatches, kBandwidths);
+        Regress(noisy.b, features, {noisy.a, result.variance}, kPatches, kBandwidths, rowsPerFit);
     std::vector<Halves> candidates;
     for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
     result.halves = ChooseCandidates(std::move(candidates), noisy, result.variance);

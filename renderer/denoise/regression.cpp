@@ -14,6 +14,7 @@ constexpr int kMoments = kUnknowns * (kUnknowns + 1) / 2;
 constexpr float kRidge = 1e-3f;
 // Neighbours of less weight are left out where that is so of all sixteen.
 constexpr float kLeastWeight = 1e-3f;
+constexpr float kOwnWeight = 0.1f;  // of a pixel's own colour, where there is no fit around it
 
 using Moments = std::array<Lanes, kMoments>;               // w xi xj for j >= i, row by row
 using Products = std::array<Lanes, kUnknowns * kColours>;  // w xi c
@@ -48,15 +49,18 @@ void Solve(Moments* moments, Products* products) {
 class TileFits {
   public:
     TileFits(const Cutout& colour, const Cutout& features, const PatchWeights& weights,
-             const ImageTile& tile, int radius, float bandwidth)
-        : features(features),
+             const ImageTile& tile, int radius, float bandwidth, int rowsPerFit)
+        : colour(colour),
+          features(features),
           weights(weights),
           bandwidth(bandwidth),
+          rowsPerFit(rowsPerFit),
           scale(1 / float(radius)),
           fits(tile.Grown(radius), kUnknowns * kColours) {
         const ImageTile& area = fits.Area();
         for (int y = area.y0; y < area.y1; ++y)
-            for (int x = area.x0; x < area.x1; x += kLanes) Fit(colour, x, y);
+            if (HasFits(y))
+                for (int x = area.x0; x < area.x1; x += kLanes) Fit(x, y);
     }
 
     // Returns what the fits around say of the pixels (x, y) to (x + 15, y), by their weights.
@@ -64,10 +68,16 @@ class TileFits {
         std::array<Lanes, kColours> sums;
         sums.fill(Lanes::Zero());
         Lanes norm = Lanes::Constant(1e-30f);
+        if (!HasFits(y)) {
+            norm = Lanes::Constant(kOwnWeight);
+            for (int c = 0; c < kColours; ++c)
+                sums[size_t(c)] = LanesIn(colour.At(c, x, y)) * kOwnWeight;
+        }
         for (int o = 0; o < int(weights.Offsets().size()); ++o) {
+            const auto [dx, dy] = weights.Offsets()[size_t(o)];
+            if (!HasFits(y + dy)) continue;
             const Lanes w = weights.Of(o, x, y, bandwidth);
             if (!(w.maxCoeff() > kLeastWeight)) continue;
-            const auto [dx, dy] = weights.Offsets()[size_t(o)];
             norm += w;
             for (int c = 0; c < kColours; ++c) {
                 const auto unknown = [&](int i) {
@@ -86,7 +96,10 @@ class TileFits {
     }
 
   private:
-    void Fit(const Cutout& colour, int x, int y) {
+    // A pixel without a fit, which may be like none around, has its own colour instead.
+    bool HasFits(int y) const { return y % rowsPerFit == 0; }
+
+    void Fit(int x, int y) {
         Moments moments;
         Products products;
         moments.fill(Lanes::Zero());
@@ -119,23 +132,28 @@ class TileFits {
         for (size_t i = 0; i < products.size(); ++i) Store(products[i], fits.At(int(i), x, y));
     }
 
+    const Cutout& colour;
     const Cutout& features;
     const PatchWeights& weights;
-    float bandwidth, scale;  // pixels to what the slopes along x and y are of
+    float bandwidth;
+    int rowsPerFit;
+    float scale;  // pixels to what the slopes along x and y are of
     Cutout fits;
 };
 
 }  // namespace
 
 std::vector<Planes> Regress(const Planes& colour, const Planes& features, const PatchGuide& guide,
-                            const PatchOptions& options, std::span<const float> bandwidths) {
+                            const PatchOptions& options, std::span<const float> bandwidths,
+                            int rowsPerFit) {
     std::vector<Planes> pictures(bandwidths.size(), Planes(colour.width, colour.height, kColours));
     ForEachTile(colour.width, colour.height, [&](const ImageTile& tile) {
         const ImageTile around = tile.Grown(2 * options.radius);
         const Cutout colours(around, colour), values(around, features);
         const PatchWeights weights(guide, tile, options.radius, options);
         for (size_t b = 0; b < bandwidths.size(); ++b) {
-            const TileFits fits(colours, values, weights, tile, options.radius, bandwidths[b]);
+            const TileFits fits(colours, values, weights, tile, options.radius, bandwidths[b],
+                                rowsPerFit);
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; x += kLanes) {
                     const std::array<Lanes, kColours> result = fits.Gather(x, y);

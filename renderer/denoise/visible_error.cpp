@@ -5,6 +5,7 @@
 #include <span>
 
 #include "stopping/signals/entropy_drop.h"
+#include "stopping/signals/lightness.h"
 #include "stopping/signals/svd_entropy.h"
 
 namespace lull {
@@ -15,15 +16,9 @@ constexpr int kSide = 10;         // sub-blocks a side
 constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = 5;  // pixels
 
-// Returns L, in [0, 100], and the slope by which luminance changes it: 0 above white.
-struct LightnessAt {
-    float lightness, slope;
-};
-LightnessAt LightnessOf(float y) {
-    if (!(y > 0.008856f)) return {std::max(0.f, 903.3f * y), 903.3f};
-    if (y >= 1) return {100, 0};
-    const float root = std::cbrt(y);
-    return {116 * root - 16, 116 / (3 * root * root)};
+// Returns L, in [0, 100], of what a display shows, and the slope by which luminance changes it.
+LightnessSlope<float> DisplayedLightness(float y) {
+    return y < 1 ? LightnessAt(y) : LightnessSlope<float>{100, 0};
 }
 
 // Sums up a sub-block.
@@ -93,7 +88,7 @@ EstimatedError MeasureError(const DenoisedPicture& denoised) {
     EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
     error.squared = error.deviation = error.least = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
-        const LightnessAt at = LightnessOf(LuminanceOf(denoised.picture, i));
+        const LightnessSlope<float> at = DisplayedLightness(LuminanceOf(denoised.picture, i));
         const float a = LuminanceOf(denoised.noisy.a, i), b = LuminanceOf(denoised.noisy.b, i);
         const float x = LuminanceOf(denoised.halves.a, i), y = LuminanceOf(denoised.halves.b, i);
         const float scale = square(at.slope);
@@ -108,6 +103,8 @@ EstimatedError MeasureError(const DenoisedPicture& denoised) {
         error.squared.values[i] = scale * (squared - square(x - y) / 4);
         error.deviation.values[i] = scale * square(deviation);
     }
+    // The variance of a few samples is itself noisy, which would count twice in its square.
+    error.deviation = BoxMean(std::move(error.deviation), kSmoothRadius);
     return error;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/render/checkpoint.h"
-#include "stopping/learning/dataset.h"
+#include "stopping/recordings/dataset.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/measure/report_json.h"
-#include "stopping/learning/observers.h"
+#include "stopping/observers/observers.h"
 
 namespace lull {
 

@@ -1,22 +1,17 @@
 #include "renderer/render/aov_channels.h"
 
+#include "stopping/signals/lightness.h"
+
 namespace lull {
 
 namespace {
-
-// Returns dL/dY of CIE 1976 lightness (see stopping/signals/lightness.h).
-double LightnessSlope(double y) {
-    if (!(y > 0.008856)) return 116 * 7.787;
-    const double root = std::cbrt(y);
-    return 116 / (3 * root * root);
-}
 
 // Returns the standard error in lightness of a pixel whose mean luminance is `mean`.
 float Noise(const AovPixel& pixel, double mean, double count) {
     constexpr float kUnknown = 100;  // from black to white
     if (count < 2) return kUnknown;
     const double variance = std::max(0., pixel.squares / count - mean * mean) / (count - 1);
-    const double noise = LightnessSlope(mean) * std::sqrt(variance);
+    const double noise = LightnessAt(mean).slope * std::sqrt(variance);
     return float(std::min(noise, double(std::numeric_limits<float>::max())));
 }
 

@@ -5,9 +5,10 @@
 namespace lull {
 
 VisibleError BlockDenoiser::MeasureBlock(int block) const {
+    constexpr int rowsPerFit = 2;  // the picture in the end is a little better than that judged
     const PixelRect& pixels = blocks.at(size_t(block)).pixels;
-    return MeasureVisibleError(MeasureError(Denoise(PictureOf(*film, *featureFilm, pixels))), 0, 0,
-                               pixels.Width(), pixels.Height());
+    const DenoisedPicture denoised = Denoise(PictureOf(*film, *featureFilm, pixels), rowsPerFit);
+    return MeasureVisibleError(MeasureError(denoised), 0, 0, pixels.Width(), pixels.Height());
 }
 
 SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser> denoiser) {

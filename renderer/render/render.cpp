@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "renderer/render/executor_internal.h"
-#include "renderer/render/rank_executor_internal.h"
+#include "renderer/render/ranks/rank.h"
 
 namespace lull {
 
@@ -29,7 +29,7 @@ RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& op
 
 RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
                     const RenderState* interrupted) {
-    if (interrupted && !Executor::Fits(*interrupted, film->Region(), options.schedule))
+    if (interrupted && !Fits(*interrupted, film->Region(), options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     if (!options.layers.AreOf(film->Region()))
@@ -39,8 +39,10 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
     if (!alone) return RenderWithPeers(source, options, film, interrupted, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
-    RenderResult result =
-        arena.execute([&] { return Executor(source, options, film, interrupted).Run(); });
+    RenderResult result = arena.execute([&] {
+        return Executor(source, options, film, interrupted, StartsOf(interrupted, options, *film))
+            .Run();
+    });
     result.threads = threads;
     return result;
 }

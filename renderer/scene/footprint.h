@@ -1,7 +1,7 @@
 // Computes how far apart the samples of neighbouring pixels lie on a surface.
 #pragma once
 
-#include "renderer/scene/camera.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/interaction.h"
 
 namespace lull {

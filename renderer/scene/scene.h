@@ -5,7 +5,7 @@
 
 #include "renderer/base/sampler.h"
 #include "renderer/scene/accelerator.h"
-#include "renderer/scene/camera.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/film_settings.h"
 #include "renderer/scene/filter.h"
 #include "renderer/scene/light_table.h"

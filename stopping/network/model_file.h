@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "stopping/features/window.h"
 #include "stopping/network/lstm.h"
-#include "stopping/network/window.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "stopping/network/block_memory.h"
+#include "stopping/features/block_memory.h"
 
 namespace lull {
 

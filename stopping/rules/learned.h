@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "stopping/features/window.h"
 #include "stopping/network/model_file.h"
-#include "stopping/network/window.h"
 #include "stopping/rules/voting.h"
 
 namespace lull {

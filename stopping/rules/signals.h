@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "stopping/network/model_inputs.h"
+#include "stopping/features/model_inputs.h"
 
 namespace lull {
 

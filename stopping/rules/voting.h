@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "stopping/base/state.h"
-#include "stopping/network/recorded_measures.h"
+#include "stopping/features/recorded_measures.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/signals.h"
 #include "stopping/rules/votes.h"

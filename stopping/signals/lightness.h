@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -25,5 +26,19 @@ void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);
 // L = 116 f(Y) - 16 with f(t) = cbrt(t) where t > 0.008856 and 7.787 t + 16/116 elsewhere.
 // Throws std::invalid_argument if `srgb` is not three times as long as `lightness`.
 void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness);
+
+// Holds L at a luminance, at least 0, and its derivative there; above white L goes on.
+template <typename Real>
+struct LightnessSlope {
+    Real lightness, slope;
+};
+template <typename Real>
+LightnessSlope<Real> LightnessAt(Real y) {
+    if (!(y > Real(0.008856)))
+        return {std::max(Real(0), 116 * (Real(7.787) * y + 16 / Real(116)) - 16),
+                116 * Real(7.787)};
+    const Real root = std::cbrt(y);
+    return {116 * root - 16, 116 / (3 * root * root)};
+}
 
 }  // namespace lull

@@ -24,15 +24,10 @@ float Luminance(float r, float g, float b) {
            float(luminanceWeights[2]) * b;
 }
 
-// Holds L at a luminance in [0, 1] and its derivative there (see Lightness()).
-struct LightnessSlope {
-    float lightness, slope;
-};
-LightnessSlope LightnessAt(float y) {
-    if (!(y > 0.008856f))
-        return {std::max(0.f, 116 * (7.787f * y + 16 / 116.f) - 16), 116 * 7.787f};
-    const float root = std::cbrt(y);
-    return {std::min(100.f, 116 * root - 16), 116 / (3 * root * root)};
+// The luminance of white can round to more than 1.
+LightnessSlope<float> DisplayedLightness(float y) {
+    const LightnessSlope<float> at = LightnessAt(y);
+    return {std::min(100.f, at.lightness), at.slope};
 }
 
 // Answers what the values in rectangles of an image sum to.
@@ -147,11 +142,11 @@ LightnessNoise ComputeLightnessNoise(const BlockView& view) {
             // (A - B) / 2 = A - M, which is between -M and M where no sample is negative.
             change[c] = IsDisplayed(all) ? std::clamp(half - all, -1.f, 1.f) : 0;
         }
-        const LightnessSlope at = LightnessAt(Luminance(m[0], m[1], m[2]));
+        const LightnessSlope<float> at = DisplayedLightness(Luminance(m[0], m[1], m[2]));
         result.lightness[i] = at.lightness;
         result.noise[i] = at.slope * Luminance(change[0], change[1], change[2]);
-        result.halfNoise[i] = (LightnessAt(Luminance(a[0], a[1], a[2])).lightness -
-                               LightnessAt(Luminance(b[0], b[1], b[2])).lightness) /
+        result.halfNoise[i] = (DisplayedLightness(Luminance(a[0], a[1], a[2])).lightness -
+                               DisplayedLightness(Luminance(b[0], b[1], b[2])).lightness) /
                               2;
     }
     result.texture = Texture(result.lightness, view.width, view.height);

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "stopping/network/window.h"
+#include "stopping/features/window.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/learned.h"
 #include "stopping/signals/svd_entropy.h"

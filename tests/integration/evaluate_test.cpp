@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "renderer/output/file_io.h"
-#include "stopping/learning/dataset.h"
+#include "stopping/recordings/dataset.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"
-#include "tests/stopping/learning/channel_recordings.h"
+#include "tests/stopping/recordings/channel_recordings.h"
 
 namespace lull {
 namespace {

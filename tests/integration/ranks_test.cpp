@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "renderer/output/image_io.h"
-#include "stopping/learning/dataset.h"
+#include "stopping/recordings/dataset.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::ranks_test {

@@ -1,6 +1,7 @@
 """Renders scenes by the default rule, plain and denoised, and says what both took and how wrong they are.
 
     python3 denoising.py FOLDER NAME=SCENE.pbrt[@X0,X1,Y0,Y1] ... [--lull ../../build/release/renderer/lull]
+    python3 denoising.py --calibrate FOLDER ...     # what renders say of their error, beside the truth
 
 Images are kept in FOLDER: what is there is not rendered again. The truth is the mean of two renders of
 half of --truth spp each, whose difference is its noise, which is subtracted from visible errors but not
@@ -25,13 +26,25 @@ def read(path):
     return np.asarray(oiio.ImageBuf(path).get_pixels(oiio.FLOAT), np.float64)[:, :, :3]
 
 
-def write(path, rgb):
-    buffer = oiio.ImageBuf(oiio.ImageSpec(rgb.shape[1], rgb.shape[0], 3, oiio.FLOAT))
-    buffer.set_pixels(oiio.ROI(), rgb.astype(np.float32))
+def write(path, rgb, like):
+    """Writes an image of the same part of the frame as another one."""
+    frame = oiio.ImageBuf(like).spec()
+    spec = oiio.ImageSpec(rgb.shape[1], rgb.shape[0], 3, oiio.FLOAT)
+    spec.x, spec.y = frame.x, frame.y
+    spec.full_x, spec.full_y, spec.full_width, spec.full_height = (
+        frame.full_x, frame.full_y, frame.full_width, frame.full_height)
+    buffer = oiio.ImageBuf(spec)
+    buffer.set_pixels(spec.roi, rgb.astype(np.float32))
     buffer.write(path)
 
 
-def lightness(rgb):
+def srgb(linear):
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
+
+
+def lightness(rgb, encoded=False):
+    if encoded:
+        rgb = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     y = np.clip(rgb @ WEIGHTS, 0, 1)
     return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
 
@@ -62,6 +75,22 @@ def visible_error(rgb, halves):
     return float(np.mean(np.sqrt(np.maximum(squared, 0)) * seen(truth)))
 
 
+def entropies(rgb):
+    """SVD-entropies of sub-blocks as a display shows them."""
+    levels = lightness(np.round(255 * np.clip(srgb(rgb), 0, 1)) / 255, encoded=True)
+    h, w = levels.shape[0] // SIDE, levels.shape[1] // SIDE
+    blocks = levels[:h * SIDE, :w * SIDE].reshape(h, SIDE, w, SIDE).swapaxes(1, 2)
+    shares = np.linalg.svd(blocks, compute_uv=False) ** 2
+    shares /= np.maximum(shares.sum(-1, keepdims=True), 1e-300)
+    return -(shares * np.log(np.maximum(shares, 1e-300))).sum(-1) / np.log(SIDE), blocks.mean((2, 3))
+
+
+def entropy_fall(before, now, truth):
+    """What still changes in a picture since half as many samples."""
+    (h0, _), (h1, mean) = entropies(before), entropies(now)
+    return float(np.mean(np.sqrt(np.abs(h0 - h1)) * mean * seen(truth)))
+
+
 class Scene:
     def __init__(self, text, o):
         self.name, rest = text.split('=')
@@ -88,16 +117,34 @@ class Scene:
         figures = json.load(open(out + '.compare.json'))
         return next(i for i in figures['images'] if i['name'] == 'automatic')['figures']
 
-    def row(self):
+    def truth(self):
         half = str(self.o.truth // 2)
+        self.render('a', '--spp', half, '--seed', '3')
+        self.render('b', '--spp', half, '--seed', '4')
+        return [read(self.file(n + '.exr')) for n in 'ab']
+
+    def calibrate(self):
+        """Returns estimate, bound and truth of all counts of samples."""
+        halves, rows, before = self.truth(), [], None
+        for spp in 32, 64, 128, 256, 512:
+            self.render(str(spp), '--spp', str(spp), '--denoise', '--seed', '1')
+            picture = read(self.file(f'{spp}.exr'))
+            said = [b['visibleError'] for b in json.load(open(self.file(f'{spp}.json')))['blocks']]
+            estimate, upper = (np.mean([s[k] for s in said]) for k in ('estimate', 'upper'))
+            true = visible_error(picture, halves)
+            fall = entropy_fall(before, picture, lightness((halves[0] + halves[1]) / 2)) if before is not None else np.nan
+            before = picture
+            rows.append((estimate, upper, fall, true))
+            print(f'| {self.name} | {spp} | {estimate:.2f} | {upper:.2f} | {fall:.2f} | {true:.2f} |', flush=True)
+        return rows
+
+    def row(self):
         self.render('start', '--spp', '1')
         self.render('denoised', '--denoise', '--seed', '1')
         self.render('plain', '--seed', '1')
-        self.render('a', '--spp', half, '--seed', '3')
-        self.render('b', '--spp', half, '--seed', '4')
-        halves = [read(self.file(n + '.exr')) for n in 'ab']
+        halves = self.truth()
         truth = self.file('truth.exr')
-        write(truth, (halves[0] + halves[1]) / 2)
+        write(truth, (halves[0] + halves[1]) / 2, self.file('a.exr'))
         seconds = {n: self.seconds[n] - self.seconds['start'] for n in ('plain', 'denoised')}
         cells = [self.name]
         for name in 'plain', 'denoised':
@@ -108,15 +155,30 @@ class Scene:
         return seconds['plain'] / seconds['denoised']
 
 
+def calibrate(o):
+    print('| scene | spp | estimate | upper bound | fall of SVD-entropy | truth |\n|---|---|---|---|---|---|')
+    rows = np.array([row for text in o.scenes for row in Scene(text, o).calibrate()])
+    estimate, upper, fall, true = rows.T
+    for name, said in ('estimate', estimate), ('bound', upper), ('entropy', fall):
+        known = np.isfinite(said) & (said > 0) & (true > 0)
+        ratio = np.log(said[known] / true[known])
+        print(f'{name} / truth: geometric mean {np.exp(ratio.mean()):.2f}, standard deviation of the logarithm '
+              f'{ratio.std():.2f}; truth above it in {np.mean(true[known] > said[known]):.0%} of {known.sum()}')
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('folder')
     parser.add_argument('scenes', nargs='+')
     parser.add_argument('--lull', default='lull')
     parser.add_argument('--resolution', default='400x400')
+    parser.add_argument('--calibrate', action='store_true')
     parser.add_argument('--truth', type=int, default=4096)
     o = parser.parse_args()
     os.makedirs(o.folder, exist_ok=True)
+    if o.calibrate:
+        calibrate(o)
+        return
     columns = ['spp', 's', 'visible', 'RMSE of L', 'FLIP', 'SSIM']
     print('| scene | ' + ' | '.join(f'{c}, {n}' for n in ('plain', 'denoised') for c in columns) + ' | times faster |')
     print('|---' * 14 + '|')

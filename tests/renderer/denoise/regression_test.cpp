@@ -37,6 +37,21 @@ TEST(Regression, AveragesWhatFeaturesDoNotTell) {
     EXPECT_NEAR(SumOf(result) / SumOf(noisy.colour.a), 1, 1e-3);
 }
 
+// Half of the fits nearly suffice, and no pixel goes without.
+TEST(Regression, FitsOverlap) {
+    const Planes truth =
+        MakePlanes(128, 128, 3, [](int, int x, int y) { return x == 63 && y % 7 == 0 ? 5 : 0.5; });
+    const Planes features = FlatFeatures(128, 128);
+    const NoisyPicture noisy = AddNoise(truth, features, 0.1, 4);
+    const Planes variance(128, 128, 3, 0.01f);
+    const PatchGuide guide{noisy.colour.b, variance};
+    const Planes all = Regress(noisy.colour.a, features, guide, kPatches, kBandwidths)[1];
+    const Planes half = Regress(noisy.colour.a, features, guide, kPatches, kBandwidths, 2)[1];
+    EXPECT_NE(all.values, half.values);
+    EXPECT_LT(Rms(half, truth), 1.1 * Rms(all, truth));
+    for (const int y : {35, 49, 56, 63}) EXPECT_NEAR(half.Row(1, y)[63], 5, 0.5);
+}
+
 // Weights that come from the other half end at an edge that features do not know of.
 TEST(Regression, KeepsEdgesThatTheGuideSees) {
     const Planes truth = MakePlanes(100, 60, 3, [](int, int x, int) { return x < 50 ? 0.2 : 0.8; });

@@ -1,0 +1,154 @@
+#include "renderer/mpi/mpi_calls.h"
+
+#include <algorithm>
+#include <chrono>
+#include <climits>
+#include <list>
+#include <thread>
+
+#include "renderer/base/error.h"
+
+#ifdef LULL_MPI
+#include <mpi.h>
+#endif
+
+namespace lull {
+
+#ifdef LULL_MPI
+
+const bool hasMpi = true;
+
+namespace {
+
+constexpr int tag = 0x6c;
+
+// Waits without taking a core from ranks that still load the scene, or write files.
+void WaitFor(MPI_Request request) {
+    constexpr std::chrono::microseconds longest{10000};
+    std::chrono::microseconds nap{50};
+    for (int done = 0; !done; nap = std::min(2 * nap, longest)) {
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+        if (!done) std::this_thread::sleep_for(nap);
+    }
+}
+
+// What is sent stays here until it has left.
+class MpiPeers final : public Peers {
+  public:
+    MpiPeers() {
+        MPI_Comm_dup(MPI_COMM_WORLD, &world);
+        MPI_Comm_rank(world, &rank);
+        MPI_Comm_size(world, &count);
+    }
+    ~MpiPeers() override {
+        Flush();
+        MPI_Comm_free(&world);
+    }
+
+    int Rank() const override { return rank; }
+    int Count() const override { return count; }
+
+    void Send(int to, std::vector<std::byte> message) override {
+        if (message.size() > INT_MAX)
+            throw Error(
+                "a block is too large to be shared by several ranks; --block makes it "
+                "smaller");
+        while (!sent.empty() && HasLeft(&sent.front())) sent.pop_front();
+        Sent& entry = sent.emplace_back();
+        entry.message = std::move(message);
+        MPI_Isend(entry.message.data(), int(entry.message.size()), MPI_BYTE, to, tag, world,
+                  &entry.request);
+    }
+
+    std::optional<PeerMessage> Receive() override {
+        int isThere = 0;
+        MPI_Status status;
+        MPI_Iprobe(MPI_ANY_SOURCE, tag, world, &isThere, &status);
+        if (!isThere) return {};
+        int size = 0;
+        MPI_Get_count(&status, MPI_BYTE, &size);
+        PeerMessage message{status.MPI_SOURCE, std::vector<std::byte>(size_t(size))};
+        MPI_Recv(message.bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, tag, world,
+                 MPI_STATUS_IGNORE);
+        return message;
+    }
+
+    void Flush() override {
+        for (Sent& entry : sent) WaitFor(entry.request);
+        sent.clear();
+    }
+
+  private:
+    struct Sent {
+        std::vector<std::byte> message;
+        MPI_Request request = MPI_REQUEST_NULL;
+    };
+
+    static bool HasLeft(Sent* entry) {
+        int done = 0;
+        MPI_Test(&entry->request, &done, MPI_STATUS_IGNORE);
+        return done != 0;
+    }
+
+    MPI_Comm world = MPI_COMM_NULL;
+    int rank = 0, count = 1;
+    std::list<Sent> sent;
+};
+
+}  // namespace
+
+MpiWorld StartMpi() {
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    MpiWorld world;
+    MPI_Comm_rank(MPI_COMM_WORLD, &world.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &world.count);
+    if (provided < MPI_THREAD_FUNNELED) {
+        MPI_Finalize();
+        throw Error("this MPI does not allow for threads");
+    }
+    return world;
+}
+
+void EndMpi() {
+    int started = 0, ended = 0;
+    MPI_Initialized(&started);
+    MPI_Finalized(&ended);
+    if (!started || ended) return;
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);  // rank 0 may be writing files for long
+    WaitFor(request);
+    MPI_Finalize();
+}
+
+MpiAgreement AgreeByMpi(bool failed, uint64_t value) {
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    uint64_t first = value;
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
+    WaitFor(request);
+    const int mine[2] = {failed ? rank : INT_MAX, value != first ? rank : INT_MAX};
+    int all[2] = {};
+    MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MIN, MPI_COMM_WORLD, &request);
+    WaitFor(request);
+    return {all[0] == INT_MAX ? -1 : all[0], all[1] == INT_MAX ? -1 : all[1]};
+}
+
+void AbortMpi() { MPI_Abort(MPI_COMM_WORLD, 1); }
+
+std::unique_ptr<Peers> MakeMpiPeers() { return std::make_unique<MpiPeers>(); }
+
+#else
+
+const bool hasMpi = false;
+
+MpiWorld StartMpi() { return {}; }
+void EndMpi() {}
+MpiAgreement AgreeByMpi(bool, uint64_t) { return {}; }
+void AbortMpi() {}
+std::unique_ptr<Peers> MakeMpiPeers() { return nullptr; }
+
+#endif
+
+}  // namespace lull

@@ -1,0 +1,124 @@
+#include "renderer/render/block_judge_internal.h"
+
+#include "renderer/base/thread_clock.h"
+#include "renderer/render/peers.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/signals/lightness_noise.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int smallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
+
+bool HasSamplesBeyond(int spp, const PixelRect& rect, const Film& film) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x)
+            if (film.At({x, y}).count > uint32_t(spp)) return true;
+    return false;
+}
+
+// Returns the visible noise of a block, of any size, both of whose means are in the view.
+double NoiseOf(const BlockView& view) {
+    if (std::min(view.width, view.height) >= smallestNoiseSide) return VisibleNoise(view);
+    const LightnessNoise noise = ComputeLightnessNoise(view);
+    return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
+}
+
+std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderOptions& options,
+                                                     const PixelRect& region,
+                                                     std::span<const Block> blocks,
+                                                     const RenderState* interrupted) {
+    std::vector<std::unique_ptr<Criterion>> made(blocks.size());
+    const bool follows = options.peers && options.peers->Rank() > 0;
+    if (!options.makeCriterion || follows) return made;
+    const double imageArea = double(region.Area());
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        if (!blocks[i].votes) continue;
+        made[i] = options.makeCriterion(
+            {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
+        if (interrupted && blocks[i].spp > 0) made[i]->Restore(interrupted->criteria[i]);
+    }
+    return made;
+}
+
+}  // namespace
+
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions& options,
+                                 const Film& film) {
+    std::vector<BlockStart> starts;
+    for (const BlockResult& b : blocks) {
+        const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
+        BlockStart start{
+            .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
+        if (options.secondsLeft && spp > 0) {
+            FilmView view;
+            film.Extract(rect, true, &view);
+            start.noise = NoiseOf({view.width, view.height, spp, view.mean, view.halfMean});
+            start.begun = HasSamplesBeyond(spp, rect, film);
+        }
+        starts.push_back(start);
+    }
+    return starts;
+}
+
+std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOptions& options,
+                                 const Film& film) {
+    if (!interrupted) return {};
+    return StartsOf(interrupted->blocks, options, film);
+}
+
+BlockJudge::BlockJudge(const RenderOptions& options, const Film& film,
+                       std::span<const Block> blocks, const RenderState* interrupted)
+    : film(film),
+      hasClock(options.secondsLeft),
+      criteria(MakeCriteria(options, film.Region(), blocks, interrupted)) {}
+
+ViewNeed BlockJudge::NeedAt(int block, int spp) const {
+    if (hasClock) return ViewNeed::MeanAndHalf;
+    const auto& criterion = criteria[size_t(block)];
+    return criterion ? criterion->Need(spp) : ViewNeed::Nothing;
+}
+
+Judgement BlockJudge::Judge(int index, const Block& block, int spp, double seconds,
+                            const std::function<void(int, FilmView*)>& complete) {
+    const auto& criterion = criteria[size_t(index)];
+    if (!criterion && !hasClock) return {};
+    const double start = ThreadSeconds();
+    BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
+    view.spp = spp;
+    view.seconds = seconds;
+    Judgement judgement;
+    if (criterion) judgement.decision = criterion->Observe(view);
+    judgement.answer.stop = judgement.decision.stop;
+    if (hasClock)
+        judgement.answer.noise =
+            judgement.decision.visibleNoise ? *judgement.decision.visibleNoise : NoiseOf(view);
+    judgement.seconds = ThreadSeconds() - start;
+    return judgement;
+}
+
+BlockView BlockJudge::ViewOf(int index, const Block& block, ViewNeed need,
+                             const std::function<void(int, FilmView*)>& complete) {
+    BlockView blockView;
+    blockView.width = block.pixels.Width();
+    blockView.height = block.pixels.Height();
+    if (need == ViewNeed::Nothing) return blockView;
+    const double start = ThreadSeconds();
+    FilmView& view = views.local();
+    film.Extract(block.pixels, need == ViewNeed::MeanAndHalf, &view);
+    if (complete) complete(index, &view);
+    blockView.mean = view.mean;
+    blockView.halfMean = view.halfMean;
+    blockView.viewSeconds = ThreadSeconds() - start;
+    return blockView;
+}
+
+std::vector<std::vector<std::byte>> BlockJudge::Save() const {
+    std::vector<std::vector<std::byte>> states;
+    for (const std::unique_ptr<Criterion>& criterion : criteria)
+        states.push_back(criterion ? criterion->Save() : std::vector<std::byte>());
+    return states;
+}
+
+}  // namespace lull

@@ -1,0 +1,51 @@
+// Asks the criteria of blocks after each pass.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "renderer/render/live_schedule_internal.h"
+
+namespace lull {
+
+// Holds what is said of a block after a pass.
+struct Judgement {
+    BlockAnswer answer;
+    Decision decision;   // of the criterion, which may not have looked at the block
+    double seconds = 0;  // of processors, that it took, the view of the pixels included
+};
+
+// Nobody else touches a block between the end of its pass and the decision, so that blocks can be
+// judged at the same time without locks.
+class BlockJudge {
+  public:
+    // Makes the criteria of the blocks that vote, as an interrupted render has left them. Film and
+    // options must outlive it.
+    BlockJudge(const RenderOptions&, const Film&, std::span<const Block> blocks,
+               const RenderState* interrupted);
+
+    // Returns what criterion and clock have to see of a block.
+    ViewNeed NeedAt(int block, int spp) const;
+    // Judges a block whose pass has come to `spp`, and whose samples took so many seconds so far.
+    // `complete`, if any, fills in the pixels of the view that other ranks have rendered.
+    Judgement Judge(int index, const Block&, int spp, double seconds,
+                    const std::function<void(int block, FilmView*)>& complete);
+    // Returns the states of the criteria, for checkpoints.
+    std::vector<std::vector<std::byte>> Save() const;
+
+  private:
+    BlockView ViewOf(int index, const Block&, ViewNeed,
+                     const std::function<void(int block, FilmView*)>& complete);
+
+    const Film& film;
+    const bool hasClock;
+    std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
+    tbb::enumerable_thread_specific<FilmView> views;
+};
+
+// Says where blocks are that an interrupted render has left, null if there is none; with a clock,
+// also how noisy.
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions&,
+                                 const Film&);
+std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOptions&, const Film&);
+
+}  // namespace lull

@@ -1,0 +1,89 @@
+#include "renderer/render/live_schedule_internal.h"
+
+#include <utility>
+
+namespace lull {
+
+namespace {
+
+ScheduleOptions ScheduleFor(const RenderOptions& options) {
+    ScheduleOptions schedule = options.schedule;
+    schedule.worstFirst = bool(options.secondsLeft);
+    return schedule;
+}
+
+}  // namespace
+
+LiveSchedule::LiveSchedule(const RenderOptions& options, Film* film,
+                           std::span<const BlockStart> starts, TileShare given)
+    : options(options),
+      film(film),
+      share(std::move(given)),
+      hasClock(options.secondsLeft),
+      schedule(film->Region(), ScheduleFor(options), starts, share) {
+    ShowStops();
+}
+
+void LiveSchedule::Restart(std::span<const BlockStart> starts, TileShare given) {
+    std::lock_guard lock(mutex);
+    share = std::move(given);
+    schedule = Schedule(film->Region(), ScheduleFor(options), starts, share);
+    undo = {};
+}
+
+// Of several ranks, the first has the clock, and looks at it by itself.
+std::optional<Tile> LiveSchedule::Next() {
+    if (hasClock && !options.peers && !(options.secondsLeft() > 0)) CallTime();
+    std::lock_guard lock(mutex);
+    const std::optional<Tile> tile = schedule.Next();
+    if (tile && hasClock && !undo.Has(tile->block))
+        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *film, options.layers);
+    return tile;
+}
+
+bool LiveSchedule::Finish(const Tile& tile) {
+    std::lock_guard lock(mutex);
+    return schedule.Finish(tile);
+}
+
+int LiveSchedule::Decide(int block, const BlockAnswer& answer) {
+    std::lock_guard lock(mutex);
+    const int readyBefore = schedule.ReadyTiles();
+    schedule.Decide(block, answer.stop, answer.noise);
+    ShowStops();
+    if (hasClock) undo.Forget(block);
+    return schedule.ReadyTiles() - readyBefore;
+}
+
+int LiveSchedule::ReadyTiles() {
+    std::lock_guard lock(mutex);
+    return schedule.ReadyTiles();
+}
+
+void LiveSchedule::CallTime() {
+    std::lock_guard lock(mutex);
+    schedule.CallTime();
+    timeCalled = true;
+}
+
+bool LiveSchedule::IsOver() {
+    std::lock_guard lock(mutex);
+    return schedule.Done() || (timeCalled && !schedule.MustGoOn());
+}
+
+std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(film, options.layers); }
+
+std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
+    return TilesOf(BlockAt(block).pixels, block, options.schedule.tileSize, {rank, share.deal});
+}
+
+void LiveSchedule::ShowStops() {
+    if (!options.display) return;
+    const std::span<const Block> blocks = schedule.Blocks();
+    shownStops.resize(blocks.size());
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i].stopped && !std::exchange(shownStops[i], true))
+            options.display->ShowStop(blocks[i].pixels);
+}
+
+}  // namespace lull

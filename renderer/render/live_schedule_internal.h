@@ -1,0 +1,76 @@
+// A schedule that threads share, with what belongs to its passes: a clock that can end them, what
+// their pixels were before, and a viewer that is shown where blocks have stopped.
+#pragma once
+
+#include <mutex>
+
+#include "renderer/render/render.h"
+#include "renderer/render/undo.h"
+
+namespace lull {
+
+// Says how a block goes on after a pass.
+struct BlockAnswer {
+    bool stop = false;
+    double noise = unknownNoise;
+};
+
+// Costs a lock a call, a few for each tile.
+class LiveSchedule {
+  public:
+    // Begins where blocks are, `starts`; empty: from nothing. The options must outlive it.
+    LiveSchedule(const RenderOptions&, Film*, std::span<const BlockStart> starts, TileShare);
+
+    // Gives out a tile; nothing if none is ready, or if the time is up. There are never more tasks
+    // than tiles, but when time has been called.
+    std::optional<Tile> Next();
+    // Returns true if the tile was the last of its pass.
+    bool Finish(const Tile&);
+    // Returns how many tiles have become ready.
+    int Decide(int block, const BlockAnswer&);
+    int ReadyTiles();
+
+    // Ends passes, but for those that have to come to their end.
+    void CallTime();
+    bool HasClock() const { return hasClock; }
+    bool TimeCalled() const { return timeCalled; }
+    // Says whether no tile will be ready any more.
+    bool IsOver();
+
+    // Calls look(schedule) while nothing changes.
+    template <typename Look>
+    auto Locked(const Look& look) {
+        std::lock_guard lock(mutex);
+        return look(static_cast<const Schedule&>(schedule));
+    }
+
+    // With no task at work: begins anew where blocks are, so that passes under way are given out
+    // once more, of which pixels keep what they have; and puts back the samples of passes that the
+    // time did not suffice for. Undo() returns their blocks.
+    void Restart(std::span<const BlockStart> starts, TileShare);
+    std::vector<int> Undo();
+
+    // Shows the schedule without a lock: with no task at work, or what cannot change, which is
+    // where blocks are and, after the last tile of a pass and before the decision, that block.
+    const Schedule& Unlocked() const { return schedule; }
+    const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
+    const TileShare& Share() const { return share; }
+    // Returns the tiles of a block that a rank has.
+    std::vector<PixelRect> TilesOfRank(int block, int rank) const;
+
+  private:
+    void ShowStops();
+
+    const RenderOptions& options;
+    Film* film;
+    TileShare share;
+    const bool hasClock;
+
+    std::mutex mutex;  // guards what follows
+    Schedule schedule;
+    PassUndo undo;  // for renders that have a clock
+    bool timeCalled = false;
+    std::vector<char> shownStops;  // blocks that the viewer knows to have stopped
+};
+
+}  // namespace lull

@@ -1,0 +1,137 @@
+#include "renderer/render/progress_ledger_internal.h"
+
+#include <utility>
+
+namespace lull {
+
+namespace {
+
+// Follows the decisions so far. Of several ranks, none knows what all blocks have cost.
+std::vector<StopTrend> MakeTrends(const RenderOptions& options,
+                                  const std::vector<BlockResult>& results) {
+    if (!options.trend || !options.onProgress || options.peers) return {};
+    std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
+    for (size_t i = 0; i < results.size(); ++i)
+        for (const DecisionRecord& record : results[i].decisions)
+            made[i].Add(record.spp, record.decision);
+    return made;
+}
+
+}  // namespace
+
+ProgressLedger::ProgressLedger(const RenderOptions& options, const RenderState* interrupted,
+                               size_t blocks, int64_t samples)
+    : options(options),
+      secondsBefore(interrupted ? interrupted->seconds : 0),
+      results(interrupted ? interrupted->blocks : std::vector<BlockResult>(blocks)),
+      trends(MakeTrends(options, results)),
+      samples(samples) {}
+
+double ProgressLedger::Seconds() const {
+    return secondsBefore + std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void ProgressLedger::AddTile(int block, double processorSeconds, const TileEffort& taken) {
+    std::lock_guard lock(mutex);
+    results[size_t(block)].seconds += processorSeconds;
+    samples += taken.samples;
+    effort.samples += taken.samples;
+    effort.seconds += taken.seconds;
+}
+
+void ProgressLedger::AddPart(int block, double processorSeconds, int64_t partSamples) {
+    std::lock_guard lock(mutex);
+    results[size_t(block)].seconds += processorSeconds;
+    samples += partSamples;
+}
+
+void ProgressLedger::AddJudgement(int block, int spp, const Judgement& judgement) {
+    BlockResult& result = results[size_t(block)];
+    result.criterionSeconds += judgement.seconds;
+    if (!judgement.decision.judged) return;
+    result.decisions.push_back({spp, judgement.decision});
+    std::lock_guard lock(mutex);
+    if (!trends.empty()) trends[size_t(block)].Add(spp, judgement.decision);
+}
+
+TileEffort ProgressLedger::TakeEffort() {
+    std::lock_guard lock(mutex);
+    return std::exchange(effort, {});
+}
+
+double ProgressLedger::TakeSeconds(int block) {
+    std::lock_guard lock(mutex);
+    return std::exchange(results[size_t(block)].seconds, 0);
+}
+
+double ProgressLedger::SecondsOf(int block) {
+    std::lock_guard lock(mutex);
+    return results[size_t(block)].seconds;
+}
+
+int64_t ProgressLedger::Samples() {
+    std::lock_guard lock(mutex);
+    return samples;
+}
+
+void ProgressLedger::SetSamples(int64_t count) {
+    std::lock_guard lock(mutex);
+    samples = count;
+}
+
+const std::vector<BlockResult>& ProgressLedger::Blocks(const Schedule& schedule) {
+    const std::span<const Block> blocks = schedule.Blocks();
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        results[i].block = blocks[i];
+        results[i].block.spp = schedule.DecidedSpp(int(i));
+    }
+    return results;
+}
+
+RenderResult ProgressLedger::Result(const Schedule& schedule) {
+    Blocks(schedule);
+    RenderResult result;
+    result.progress = Progress(schedule);
+    if (options.onProgress) options.onProgress(result.progress);
+    result.blocks = std::move(results);
+    return result;
+}
+
+void ProgressLedger::Report(LiveSchedule* schedule) {
+    if (!options.onProgress) return;
+    std::unique_lock reporting(reportMutex, std::try_to_lock);
+    if (!reporting || Seconds() < nextReport) return;
+    nextReport = Seconds() + options.progressInterval;
+    options.onProgress(schedule->Locked([&](const Schedule& s) { return Progress(s); }));
+}
+
+RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
+    std::lock_guard lock(mutex);
+    RenderProgress progress{int(schedule.Blocks().size()), schedule.StoppedBlocks(),
+                            schedule.MedianSpp(),          samples,
+                            schedule.SamplesToCap(),       Seconds()};
+    if (options.secondsLeft) progress.secondsLeft = options.secondsLeft();
+    if (!trends.empty()) Predict(schedule, &progress);
+    return progress;
+}
+
+// Predicts what is left. A sample of a block costs what its samples have cost so far, and the
+// seconds of processors go by as fast as they did.
+void ProgressLedger::Predict(const Schedule& schedule, RenderProgress* progress) const {
+    const std::span<const Block> blocks = schedule.Blocks();
+    const auto stops = PredictStops(trends, blocks, options.schedule.cap);
+    if (!stops) return;
+    double spent = 0;
+    for (const BlockResult& result : results) spent += result.seconds;
+    double left = 0, secondsLeft = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const double area = double(blocks[i].pixels.Area()), had = area * blocks[i].spp;
+        const double missing = area * ((*stops)[i] - blocks[i].spp);
+        left += missing;
+        secondsLeft += missing * (had > 0 ? results[i].seconds / had : spent / double(samples));
+    }
+    progress->predictedSamples = left;
+    if (spent > 0) progress->predictedSeconds = secondsLeft / spent * progress->seconds;
+}
+
+}  // namespace lull

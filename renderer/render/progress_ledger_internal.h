@@ -1,0 +1,73 @@
+// Keeps the books of a render: what blocks have cost, what was said of them, and how far it is.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+
+#include "renderer/render/block_judge_internal.h"
+#include "renderer/render/forecast.h"
+
+namespace lull {
+
+// What tiles took: samples, and seconds as clocks have it.
+struct TileEffort {
+    int64_t samples = 0;
+    double seconds = 0;
+};
+
+// Costs a lock a tile.
+class ProgressLedger {
+  public:
+    // Goes on with the books of an interrupted render. The options must outlive it.
+    ProgressLedger(const RenderOptions&, const RenderState* interrupted, size_t blocks,
+                   int64_t samples);
+
+    // Returns the seconds since the start, of the runs before this one as well.
+    double Seconds() const;
+
+    // Notes a tile that was rendered here, with its seconds of processors, and what another rank
+    // has rendered of a block.
+    void AddTile(int block, double processorSeconds, const TileEffort&);
+    void AddPart(int block, double processorSeconds, int64_t samples);
+    void AddJudgement(int block, int spp, const Judgement&);
+
+    // Return what was noted here since the last call: of all tiles; of a block's seconds of
+    // processors.
+    TileEffort TakeEffort();
+    double TakeSeconds(int block);
+
+    double SecondsOf(int block);
+    int64_t Samples();
+    // With no task at work, sets the samples to those that the film has after all.
+    void SetSamples(int64_t);
+
+    // Tells options.onProgress how far the render is, if that is due, from one thread at a time.
+    void Report(LiveSchedule*);
+    // With no task at work, returns what there is of each block, and the result, after which there
+    // is nothing left.
+    const std::vector<BlockResult>& Blocks(const Schedule&);
+    RenderResult Result(const Schedule&);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    RenderProgress Progress(const Schedule&);
+    void Predict(const Schedule&, RenderProgress*) const;
+
+    const RenderOptions& options;
+    const Clock::time_point start = Clock::now();
+    const double secondsBefore;  // of the runs before this one
+
+    // Guards what follows, but for criteria's seconds and decisions in `results`, which one thread
+    // at a time has to do with.
+    std::mutex mutex;
+    std::vector<BlockResult> results;
+    std::vector<StopTrend> trends;  // of the blocks; empty: nothing is predicted
+    int64_t samples;
+    TileEffort effort;
+
+    std::mutex reportMutex;  // guards `nextReport`, and lets one thread report at a time
+    double nextReport = 0;
+};
+
+}  // namespace lull

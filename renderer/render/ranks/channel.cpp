@@ -1,0 +1,92 @@
+#include "renderer/render/ranks/channel.h"
+
+#include <algorithm>
+
+namespace lull {
+
+namespace {
+
+// How long nobody looks for messages: an eighth of the time for which none has come, so that none
+// is late by more than that, within what costs nothing.
+constexpr std::chrono::microseconds shortest{50}, longest{10000};
+
+constexpr std::chrono::milliseconds patience{500};  // with ranks, to answer a Ping
+
+}  // namespace
+
+void RankChannel::Post(int to, std::vector<std::byte> message) {
+    {
+        std::lock_guard lock(mutex);
+        outbox.emplace_back(to, std::move(message));
+    }
+    changed.notify_one();
+}
+
+void RankChannel::PostToAll(const std::vector<std::byte>& message) {
+    for (int to = 0; to < Count(); ++to)
+        if (to != Rank()) Post(to, message);
+}
+
+void RankChannel::Fail(std::exception_ptr exception) {
+    std::lock_guard lock(mutex);
+    if (!failure) failure = exception;
+}
+
+void RankChannel::AskForLife(const std::vector<int>& ranks) {
+    silent.insert(ranks.begin(), ranks.end());
+    silentSince = Clock::now();
+    for (const int rank : ranks) Post(rank, Pack(RankWord::Ping));
+}
+
+void RankChannel::CheckLife() {
+    if (silent.empty() || Clock::now() < silentSince + patience) return;
+    if (onSilence) onSilence({silent.begin(), silent.end()});
+    silent.clear();
+}
+
+void RankChannel::Exchange(const Handler& handle) {
+    const bool hasSent = Send(), hasReceived = Receive(handle);
+    CheckLife();
+    if (hasSent || hasReceived)
+        lastMessage = Clock::now();
+    else
+        Wait();
+}
+
+// Returns whether there was anything.
+bool RankChannel::Send() {
+    std::vector<std::pair<int, std::vector<std::byte>>> posted;
+    {
+        std::lock_guard lock(mutex);
+        if (failure) std::rethrow_exception(failure);
+        posted.swap(outbox);
+    }
+    for (auto& [to, message] : posted) peers.Send(to, std::move(message));
+    return !posted.empty();
+}
+
+bool RankChannel::Receive(const Handler& handle) {
+    bool any = false;
+    while (const std::optional<PeerMessage> message = peers.Receive()) {
+        StateReader reader(message->bytes);
+        const RankWord word = reader.Get<RankWord>();
+        if (word == RankWord::Ping)
+            peers.Send(message->from, Pack(RankWord::Alive));
+        else if (word == RankWord::Alive)
+            silent.erase(message->from);
+        else
+            handle(message->from, word, reader);
+        any = true;
+    }
+    return any;
+}
+
+void RankChannel::Wait() {
+    const auto silence =
+        std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - lastMessage);
+    std::unique_lock lock(mutex);
+    changed.wait_for(lock, std::clamp(silence / 8, shortest, longest),
+                     [&] { return !outbox.empty() || failure; });
+}
+
+}  // namespace lull

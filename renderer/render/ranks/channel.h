@@ -1,0 +1,63 @@
+// Carries what the ranks of a render say to each other (peers.h).
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <set>
+
+#include "renderer/render/peers.h"
+#include "renderer/render/ranks/messages.h"
+
+namespace lull {
+
+// Takes messages from any thread; the one that made it sends and receives them.
+class RankChannel {
+  public:
+    // `onSilence` is told of ranks that do not answer; it can be empty.
+    RankChannel(Peers* peers, std::function<void(const std::vector<int>&)> onSilence)
+        : peers(*peers), onSilence(std::move(onSilence)) {}
+
+    int Rank() const { return peers.Rank(); }
+    int Count() const { return peers.Count(); }
+
+    // Leave a message to be sent. From any thread.
+    void Post(int to, std::vector<std::byte> message);
+    void PostToAll(const std::vector<std::byte>& message);
+    // Has Exchange() throw the first of what is given. From any thread.
+    void Fail(std::exception_ptr);
+
+    // Sends what was posted and calls handle(from, word, what follows) for what has arrived, or
+    // waits a little if there is neither. Throws what Fail() was given.
+    using Handler = std::function<void(int from, RankWord, StateReader&)>;
+    void Exchange(const Handler& handle);
+    // Waits until all that was sent has left.
+    void Flush() { peers.Flush(); }
+
+    // Asks whether the ranks are there, and tells `onSilence` of those that are not.
+    void AskForLife(const std::vector<int>& ranks);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    bool Send();
+    bool Receive(const Handler& handle);
+    void CheckLife();
+    void Wait();
+
+    Peers& peers;
+    const std::function<void(const std::vector<int>&)> onSilence;
+
+    std::mutex mutex;  // guards `outbox` and `failure`
+    std::condition_variable changed;
+    std::vector<std::pair<int, std::vector<std::byte>>> outbox;
+    std::exception_ptr failure;
+
+    Clock::time_point lastMessage = Clock::now();
+    std::set<int> silent;  // have been asked, and have not answered
+    Clock::time_point silentSince;
+};
+
+}  // namespace lull

@@ -1,0 +1,126 @@
+// All ranks but the first: render their tiles, and do as they are told.
+#include "renderer/render/ranks/rank.h"
+
+namespace lull {
+
+namespace {
+
+class Follower {
+  public:
+    Follower(const SampleSource& source, const RenderOptions& options, Film* film,
+             tbb::task_arena* arena)
+        : options(options),
+          film(film),
+          rank(source, options, film, nullptr, arena,
+               {.onPassEnd = [this](int block) { SendPart(block); },
+                .completeView = {},
+                .onDecided = {},
+                .onException = {}}) {
+        executor.pausing = true;  // until rank 0 has said where blocks are
+    }
+
+    RenderResult Follow() {
+        return rank.Guarded([&] { return RunAll(); });
+    }
+
+  private:
+    RenderResult RunAll() {
+        bool told = false;
+        while (!ended) {
+            channel.Exchange(
+                [this](int, RankWord word, StateReader& reader) { Handle(word, reader); });
+            if (told || !executor.IsCancelled()) continue;
+            channel.Post(0, Pack(RankWord::Interrupted));
+            if (channel.Rank() == 1) channel.AskForLife({0});  // one is enough to say so
+            told = true;
+        }
+        executor.Quiesce();
+        return executor.Result();
+    }
+
+    void Handle(RankWord word, StateReader& reader) {
+        if (word == RankWord::Answer) {
+            const AnswerMessage answer = GetAnswer(reader);
+            needs.at(size_t(answer.block)) = answer.need;
+            const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
+            if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
+        } else if (word == RankWord::Start) {
+            Begin(GetStart(reader));
+        } else if (word == RankWord::Pixels) {
+            const int block = GetBlock(reader, needs.size());
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), film, options.layers);
+        } else if (word == RankWord::TimeUp) {
+            schedule.CallTime();
+        } else if (word == RankWord::Pause) {
+            executor.Quiesce();
+            channel.Post(0, Pack(RankWord::Quiet));
+        } else if (word == RankWord::Collect) {
+            if (reader.Get<uint8_t>())
+                for (const int block : executor.Undo()) touched[size_t(block)] = true;
+            SendPixels();
+        } else if (word == RankWord::Resume || word == RankWord::Begin) {
+            executor.pausing = false;
+            rank.EnqueueReady();
+        } else if (word == RankWord::End) {
+            ended = true;
+        }
+    }
+
+    // Goes on from where rank 0 says, as soon as the sums have come. It has those of all pixels.
+    void Begin(StartMessage start) {
+        if (start.blocks.size() != schedule.Unlocked().Blocks().size())
+            throw std::runtime_error("the ranks have different blocks");
+        before = begun ? schedule.Share().deal : std::vector<int>();
+        begun = true;
+        schedule.Restart(start.blocks, {channel.Rank(), std::move(start.deal)});
+        executor.ledger.TakeEffort();
+        needs = std::move(start.needs);
+        touched.assign(needs.size(), false);
+    }
+
+    void SendPart(int block) {
+        const std::vector<PixelRect> tiles = schedule.TilesOfRank(block, channel.Rank());
+        const TileEffort taken = rank.TakeEffort();
+        const PartMessage part{block, taken.samples, executor.ledger.TakeSeconds(block),
+                               taken.seconds, MeansOf(tiles, needs[size_t(block)], *film)};
+        touched[size_t(block)] = true;
+        channel.Post(0, Pack(part));
+    }
+
+    // Sends what has changed since the last time, or may have.
+    void SendPixels() {
+        for (int i = 0; i < int(touched.size()); ++i) {
+            const bool isUnderWay = !schedule.BlockAt(i).stopped;
+            if (!touched[size_t(i)] && !isUnderWay) continue;
+            touched[size_t(i)] = false;
+            const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
+            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *film, options.layers));
+        }
+        channel.Post(0, Pack(RankWord::Collected));
+    }
+
+    const RenderOptions& options;
+    Film* film;
+    Rank rank;
+    Executor& executor = rank.executor;
+    LiveSchedule& schedule = executor.schedule;
+    RankChannel& channel = rank.channel;
+
+    std::vector<ViewNeed> needs;
+    std::vector<char> touched;  // blocks that had a pass since their pixels were sent
+    std::vector<int> before;    // the deal before this one
+    bool begun = false, ended = false;
+};
+
+}  // namespace
+
+RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given, Film* film,
+                         tbb::task_arena* arena) {
+    RenderOptions options = given;
+    options.makeCriterion = nullptr;
+    options.onProgress = nullptr;
+    options.onCheckpoint = nullptr;
+    return Follower(source, options, film, arena).Follow();
+}
+
+}  // namespace lull

@@ -1,0 +1,274 @@
+// Rank 0: asks the criteria, writes checkpoints, deals out tiles, and says when to end.
+#include <algorithm>
+#include <numeric>
+
+#include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/rank.h"
+
+namespace lull {
+
+namespace {
+
+constexpr double leastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
+constexpr double leastRun = 20;    // until the next pause: times what the last one took
+
+class Leader {
+  public:
+    Leader(const SampleSource& source, const RenderOptions& options, Film* film,
+           const RenderState* interrupted, tbb::task_arena* arena)
+        : options(options),
+          film(film),
+          rank(source, options, film, interrupted, arena,
+               {.onPassEnd = [this](int block) { EndPass(block); },
+                .completeView = [this](int block, FilmView* view) { CompleteView(block, view); },
+                .onDecided = [this](int block, const BlockAnswer& a) { TellAnswer(block, a); },
+                .onException = {}}),
+          speeds(options.peers->Count()),
+          nextDeal(executor.ledger.Seconds() + options.dealInterval) {
+        ForgetParts();
+    }
+
+    RenderResult Lead() {
+        return rank.Guarded([&] { return RunAll(); });
+    }
+
+  private:
+    RenderResult RunAll() {
+        SendStart({});
+        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+        for (;;) {
+            executor.pausing = false;
+            rank.EnqueueReady();
+            RunUntilPause();
+            const double pause = Seconds();
+            const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
+            Gather(undo);
+            const bool over =
+                IsOver() && (undo || !schedule.TimeCalled() || executor.IsCancelled());
+            if (over || Seconds() >= executor.nextCheckpoint) WriteCheckpoint();
+            if (over) break;
+            if (deal.empty() || schedule.TimeCalled())
+                channel.PostToAll(Pack(RankWord::Resume));
+            else
+                Deal();
+            nextDeal = Seconds() + std::max(options.dealInterval, leastRun * (Seconds() - pause));
+        }
+        channel.PostToAll(Pack(RankWord::End));
+        Exchange();  // sends the last word
+        channel.Flush();
+        RenderResult result = executor.Result();
+        const std::vector<int>& dealt = schedule.Share().deal;
+        for (int other = 0; other < channel.Count(); ++other)
+            result.shares.push_back(double(std::ranges::count(dealt, other)) /
+                                    double(dealt.size()));
+        return result;
+    }
+
+    double Seconds() const { return executor.ledger.Seconds(); }
+    void Exchange() {
+        channel.Exchange(
+            [this](int from, RankWord word, StateReader& reader) { Handle(from, word, reader); });
+    }
+
+    void WriteCheckpoint() {
+        executor.WriteCheckpoint();
+        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+    }
+
+    // Deals out the tiles by `deal`, with all pixels here and nobody at work.
+    void Deal() {
+        const std::vector<int> before = schedule.Share().deal;
+        const auto& blocks = executor.ledger.Blocks(schedule.Unlocked());
+        schedule.Restart(StartsOf(blocks, options, *film), {0, std::exchange(deal, {})});
+        executor.ledger.TakeEffort();
+        ForgetParts();
+        SendStart(before);
+        speeds.Forget();
+    }
+
+    void ForgetParts() {
+        parts.assign(schedule.Unlocked().Blocks().size(), {});
+        missing.clear();
+        for (int i = 0; i < int(parts.size()); ++i) missing.push_back(PartCount(i));
+    }
+
+    // Decides on another deal, where it gains enough.
+    void ThinkOfDeal() {
+        if (Seconds() < nextDeal || schedule.TimeCalled()) return;
+        std::lock_guard lock(partsMutex);
+        const std::vector<double> known = speeds.Speeds(options.dealInterval / 10);
+        if (known.empty()) return;
+        if (GainOfDealing(known, schedule.Share().deal) >= leastGain) {
+            deal = DealBySpeed(known);
+            executor.pausing = true;
+        }
+        speeds.Forget();
+        nextDeal = Seconds() + options.dealInterval;
+    }
+
+    // Tells the others where the blocks are and who has which tiles, and gives them the sums of
+    // those that they did not have by the deal before.
+    void SendStart(const std::vector<int>& before) {
+        StartMessage message;
+        message.deal = schedule.Share().deal;
+        const std::span<const Block> blocks = schedule.Unlocked().Blocks();
+        for (int i = 0; i < int(blocks.size()); ++i) {
+            const Block& block = blocks[size_t(i)];
+            message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
+                                      schedule.HasClock() && schedule.Unlocked().MustEnd(i)});
+            message.needs.push_back(block.stopped ? ViewNeed::Nothing
+                                                  : executor.judge.NeedAt(i, NextSpp(block.spp)));
+        }
+        channel.PostToAll(Pack(message));
+        for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
+            for (int i = 0; i < int(blocks.size()); ++i) {
+                const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
+                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, options.layers));
+            }
+        channel.PostToAll(Pack(RankWord::Begin));
+    }
+
+    int NextSpp(int spp) const {
+        return std::min(spp + options.schedule.passLength, options.schedule.cap);
+    }
+
+    int PartCount(int block) const {
+        int count = 0;
+        for (int other = 0; other < channel.Count(); ++other)
+            count += !schedule.TilesOfRank(block, other).empty();
+        return count;
+    }
+
+    bool IsOver() { return executor.IsCancelled() || schedule.IsOver(); }
+
+    void RunUntilPause() {
+        while (!executor.pausing && !IsOver()) {
+            Exchange();
+            if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
+                schedule.CallTime();
+                channel.PostToAll(Pack(RankWord::TimeUp));
+            }
+            if (options.onCheckpoint && Seconds() >= executor.nextCheckpoint && HasGoneOn())
+                executor.pausing = true;
+            ThinkOfDeal();
+            executor.ledger.Report(&schedule);
+        }
+    }
+
+    // Says whether there are new samples, so that the shortest interval leads to an end.
+    bool HasGoneOn() { return executor.ledger.Samples() > samplesGathered; }
+
+    // Brings everything to rest, and all pixels here.
+    void Gather(bool undo) {
+        quiet = collected = 0;  // now: a rank that is idle answers before Exchange() returns
+        channel.PostToAll(Pack(RankWord::Pause));
+        Exchange();  // sends it
+        executor.Quiesce();
+        Await(quiet);
+        executor.Quiesce();  // decisions on what has arrived
+        if (undo) executor.Undo();
+        channel.PostToAll(PackCollect(undo));
+        Await(collected);
+        samplesGathered = film->SampleCount();
+        executor.ledger.SetSamples(samplesGathered);
+    }
+
+    // Waits until all others have said a word. Who cancels a render may do so because one of them
+    // has died, so that it is asked then.
+    void Await(const int& heard) {
+        while (heard < channel.Count() - 1) {
+            if (executor.IsCancelled() && !std::exchange(hasAsked, true)) {
+                std::vector<int> others(size_t(channel.Count()) - 1);
+                std::iota(others.begin(), others.end(), 1);
+                channel.AskForLife(others);
+            }
+            Exchange();
+        }
+    }
+
+    void Handle(int from, RankWord word, StateReader& reader) {
+        if (word == RankWord::Part) {
+            TakePart(from, GetPart(reader));
+        } else if (word == RankWord::Pixels) {
+            const int block = GetBlock(reader, parts.size());
+            GetPixels(reader, schedule.TilesOfRank(block, from), film, options.layers);
+        } else if (word == RankWord::Quiet) {
+            ++quiet;
+        } else if (word == RankWord::Collected) {
+            ++collected;
+        } else if (word == RankWord::Interrupted) {
+            executor.peerInterrupted = true;
+        }
+    }
+
+    void TakePart(int from, PartMessage part) {
+        executor.ledger.AddPart(part.block, part.seconds, part.samples);
+        {
+            std::lock_guard lock(partsMutex);
+            speeds.Add(from, part.samples, part.busySeconds);
+            parts[size_t(part.block)].emplace_back(from, std::move(part.values));
+        }
+        if (IsLastPart(part.block)) rank.Enqueue([this, block = part.block] { Decide(block); });
+    }
+
+    bool IsLastPart(int block) {
+        std::lock_guard lock(partsMutex);
+        if (--missing[size_t(block)] > 0) return false;
+        missing[size_t(block)] = PartCount(block);
+        return true;
+    }
+
+    void Decide(int block) { executor.tasks.Spawn(executor.DecideBlock(block)); }
+
+    void EndPass(int block) {
+        const TileEffort own = rank.TakeEffort();
+        {
+            std::lock_guard lock(partsMutex);
+            speeds.Add(0, own.samples, own.seconds);
+        }
+        if (IsLastPart(block)) Decide(block);
+    }
+
+    void CompleteView(int block, FilmView* view) {
+        for (const auto& [from, values] : parts[size_t(block)])
+            PutMeans(values, schedule.TilesOfRank(block, from), schedule.BlockAt(block).pixels,
+                     view);
+    }
+
+    void TellAnswer(int block, const BlockAnswer& answer) {
+        parts[size_t(block)].clear();
+        const int next = NextSpp(schedule.Unlocked().PassEnd(block));
+        const ViewNeed need = answer.stop ? ViewNeed::Nothing : executor.judge.NeedAt(block, next);
+        channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
+    }
+
+    const RenderOptions& options;
+    Film* film;
+    Rank rank;
+    Executor& executor = rank.executor;
+    LiveSchedule& schedule = executor.schedule;
+    RankChannel& channel = rank.channel;
+
+    std::mutex partsMutex;  // guards what follows, but for decisions, which have a
+                            // block's parts
+    // Of each block, what other ranks have sent of its pass, and how many ranks have still to end
+    // theirs.
+    std::vector<std::vector<std::pair<int, std::vector<float>>>> parts;
+    std::vector<int> missing;
+    RankSpeeds speeds;
+
+    double nextDeal;               // seconds, before which nobody thinks of it
+    std::vector<int> deal;         // that is to come; empty: none
+    bool hasAsked = false;         // whether the others are there
+    int quiet = 0, collected = 0;  // ranks that have said so
+    int64_t samplesGathered = 0;   // at the last checkpoint
+};
+
+}  // namespace
+
+RenderResult LeadRanks(const SampleSource& source, const RenderOptions& options, Film* film,
+                       const RenderState* interrupted, tbb::task_arena* arena) {
+    return Leader(source, options, film, interrupted, arena).Lead();
+}
+
+}  // namespace lull

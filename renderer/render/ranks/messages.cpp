@@ -1,0 +1,172 @@
+#include "renderer/render/ranks/messages.h"
+#include "renderer/render/undo.h"
+
+namespace lull {
+
+namespace {
+
+StateWriter Begin(RankWord word) {
+    StateWriter writer;
+    writer.Put(word);
+    return writer;
+}
+
+int64_t AreaOf(const std::vector<PixelRect>& tiles) {
+    int64_t area = 0;
+    for (const PixelRect& tile : tiles) area += tile.Area();
+    return area;
+}
+
+// Copies a row-major tile to its place in a row-major block.
+const float* PutTile(const float* from, const PixelRect& tile, const PixelRect& block, float* to) {
+    for (int y = tile.min.y(); y < tile.max.y(); ++y, from += 3 * tile.Width())
+        std::copy_n(from, 3 * tile.Width(),
+                    to + 3 * (size_t(y - block.min.y()) * size_t(block.Width()) +
+                              size_t(tile.min.x() - block.min.x())));
+    return from;
+}
+
+}  // namespace
+
+std::vector<std::byte> Pack(RankWord word) { return Begin(word).bytes; }
+
+std::vector<std::byte> Pack(const StartMessage& message) {
+    StateWriter writer = Begin(RankWord::Start);
+    writer.Put(uint64_t(message.deal.size()));
+    writer.PutAll(std::span(message.deal));
+    writer.Put(uint64_t(message.blocks.size()));
+    for (size_t i = 0; i < message.blocks.size(); ++i) {
+        writer.Put(message.blocks[i]);
+        writer.Put(message.needs[i]);
+    }
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> Pack(const AnswerMessage& message) {
+    StateWriter writer = Begin(RankWord::Answer);
+    writer.Put(message);
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> Pack(const PartMessage& message) {
+    StateWriter writer = Begin(RankWord::Part);
+    writer.Put(int32_t(message.block));
+    writer.Put(message.samples);
+    writer.Put(message.seconds);
+    writer.Put(message.busySeconds);
+    writer.Put(uint64_t(message.values.size()));
+    writer.PutAll(std::span(message.values));
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackCollect(bool undo) {
+    StateWriter writer = Begin(RankWord::Collect);
+    writer.Put(uint8_t(undo));
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
+                                  const Layers& layers) {
+    StateWriter writer = Begin(RankWord::Pixels);
+    writer.Put(int32_t(block));
+    std::vector<FilmPixel> pixels;
+    std::vector<double> sums;
+    for (const PixelRect& tile : tiles) {
+        pixels.clear();
+        CopyPixels(film, tile, &pixels);
+        sums.clear();
+        uint32_t rejected = 0;
+        for (const FilmPixel& pixel : pixels) {
+            sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
+            if (film.HasHalf()) sums.insert(sums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
+            rejected += pixel.rejected;
+        }
+        writer.Put(pixels.back().count);
+        writer.Put(rejected);
+        writer.PutAll(std::span<const double>(sums));
+        PutLayers(layers, tile, &writer);
+    }
+    return std::move(writer.bytes);
+}
+
+StartMessage GetStart(StateReader& reader) {
+    StartMessage message;
+    const auto deals = reader.Get<uint64_t>();
+    if (deals == 0 || deals > reader.Left() / sizeof(int))
+        throw std::runtime_error("a message of a rank is damaged");
+    message.deal.resize(deals);
+    reader.GetAll(std::span(message.deal));
+    for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
+        message.blocks.push_back(reader.Get<BlockStart>());
+        message.needs.push_back(reader.Get<ViewNeed>());
+    }
+    return message;
+}
+
+AnswerMessage GetAnswer(StateReader& reader) { return reader.Get<AnswerMessage>(); }
+
+PartMessage GetPart(StateReader& reader) {
+    PartMessage message;
+    message.block = reader.Get<int32_t>();
+    message.samples = reader.Get<int64_t>();
+    message.seconds = reader.Get<double>();
+    message.busySeconds = reader.Get<double>();
+    const auto size = reader.Get<uint64_t>();
+    if (size != reader.Left() / sizeof(float))
+        throw std::runtime_error("a message of a rank is damaged");
+    message.values.resize(size);
+    reader.GetAll(std::span(message.values));
+    return message;
+}
+
+int GetBlock(StateReader& reader, size_t blocks) {
+    const int block = reader.Get<int32_t>();
+    if (block < 0 || size_t(block) >= blocks)
+        throw std::runtime_error("a message of a rank is about a block that there is not");
+    return block;
+}
+
+void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
+               const Layers& layers) {
+    for (const PixelRect& tile : tiles) {
+        std::vector<FilmPixel> pixels(size_t(tile.Area()));
+        const auto count = reader.Get<uint32_t>();
+        pixels.back().rejected = reader.Get<uint32_t>();
+        for (FilmPixel& pixel : pixels) {
+            pixel.count = count;
+            reader.GetAll(std::span<double>(pixel.sum));
+            if (film->HasHalf()) reader.GetAll(std::span<double>(pixel.halfSum));
+        }
+        SetPixels(pixels.data(), tile, film);
+        GetLayers(&reader, tile, layers);
+    }
+    reader.Finish();
+}
+
+std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed need, const Film& film) {
+    std::vector<float> values;
+    if (need == ViewNeed::Nothing) return values;
+    const bool withHalf = need == ViewNeed::MeanAndHalf;
+    std::vector<float> halves;
+    FilmView view;
+    for (const PixelRect& tile : tiles) {
+        film.Extract(tile, withHalf, &view);
+        values.insert(values.end(), view.mean.begin(), view.mean.end());
+        halves.insert(halves.end(), view.halfMean.begin(), view.halfMean.end());
+    }
+    values.insert(values.end(), halves.begin(), halves.end());
+    return values;
+}
+
+void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,
+              const PixelRect& block, FilmView* view) {
+    const size_t means = size_t(AreaOf(tiles)) * 3;
+    if (values.size() != means * (view->halfMean.empty() ? 1 : 2))
+        throw std::runtime_error("a rank has sent another part of a block than was asked for");
+    const float* from = values.data();
+    for (const PixelRect& tile : tiles) from = PutTile(from, tile, block, view->mean.data());
+    if (view->halfMean.empty()) return;
+    for (const PixelRect& tile : tiles) from = PutTile(from, tile, block, view->halfMean.data());
+}
+
+}  // namespace lull

@@ -1,0 +1,57 @@
+// Runs the tasks of a render: those of tiles, of which each does the same, and works that have to
+// be done beside them.
+#pragma once
+
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <deque>
+#include <functional>
+#include <mutex>
+
+#include "stopping/base/parallel.h"
+
+namespace lull {
+
+// The thread sanitizer sees the order that a mutex gives, but not that of what oneTBB hands over:
+// hence the first thing that a task reads is a TaskOrder.
+class TaskSet {
+  public:
+    // What a task throws goes to `take`, or where that is empty to Wait().
+    TaskSet(std::function<void()> doTile, std::function<void(std::exception_ptr)> take)
+        : doTile(std::move(doTile)), take(std::move(take)) {}
+
+    // Spawns tasks of tiles, from within the arena.
+    void Spawn(int count);
+    // Has `work` done in the arena, from another thread.
+    void Enqueue(tbb::task_arena*, std::function<void()> work);
+    // Waits until there is no task any more.
+    void Wait();
+
+  private:
+    // Is what all tasks of tiles do.
+    struct TileTask {
+        TaskSet* set;
+        TaskOrder order = {};
+        void operator()();
+    };
+    // Does the oldest of `works`.
+    struct WorkTask {
+        TaskSet* set;
+        TaskOrder order = {};
+        void operator()();
+    };
+
+    template <typename Work>
+    void Guarded(const Work& work);
+
+    const std::function<void()> doTile;
+    const std::function<void(std::exception_ptr)> take;
+    TileTask tileTask{this};
+    WorkTask workTask{this};
+    std::mutex worksMutex;  // guards `works`
+    std::deque<std::function<void()>> works;
+    tbb::task_group group;
+};
+
+}  // namespace lull

@@ -1,0 +1,240 @@
+#include "renderer/scene/cameras/camera.h"
+
+#include <fmt/format.h>
+
+#include "renderer/base/sampling.h"
+#include "renderer/input/file_contents.h"
+#include "renderer/scene/cameras/lens_file.h"
+
+namespace lull {
+
+Ray Camera::GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const {
+    const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
+    const Vec3f direction = Vec3f(plane.x(), plane.y(), 1).normalized();
+    if (lensRadius == 0) return {position, rotation * direction, kInfinity};
+
+    // Move the origin to the lens and aim at the point that is in focus.
+    const Vec2f p = lensRadius * SampleConcentricDisk(lens);
+    const Vec3f origin(p.x(), p.y(), 0);
+    const Vec3f focus = direction * (focalDistance / direction.z());
+    return {position + rotation * origin, rotation * (focus - origin).normalized(), kInfinity};
+}
+
+Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
+    const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
+    if (projection == Projection::Environment) {
+        const float phi = plane.x(), theta = plane.y(), sinTheta = std::sin(theta);
+        const Vec3f d(sinTheta * std::cos(phi), std::cos(theta), sinTheta * std::sin(phi));
+        return {position, rotation * d, kInfinity};
+    }
+    Vec3f origin(plane.x(), plane.y(), 0), direction = Vec3f::UnitZ();
+    if (lensRadius > 0) {
+        // As in pbrt-v3 there is one lens for all pixels, about the camera's axis, and not one
+        // about the origin of each pixel's ray: far from the plane of focus the image is that of
+        // a perspective camera which looks at the plane's window.
+        const Vec2f p = lensRadius * SampleConcentricDisk(lens);
+        const Vec3f focus(plane.x(), plane.y(), focalDistance);
+        origin = Vec3f(p.x(), p.y(), 0);
+        direction = (focus - origin).normalized();
+    }
+    return {position + rotation * origin, rotation * direction, kInfinity};
+}
+
+Ray Camera::Move(const Ray& ray, float time) const {
+    const Mat4d m = motion->At(time);
+    return {TransformPoint(m, ray.o), TransformVector(m, ray.d), ray.tMax};
+}
+
+Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const {
+    const Ray ray = lenses->Generate(film.cwiseProduct(perPixel), lens, weight);
+    return {position + rotation * ray.o, rotation * ray.d, kInfinity};
+}
+
+Ray Camera::GenerateRareRay(const CameraSample& sample, float* weight) const {
+    const auto& [film, lens, time] = sample;
+    const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
+                    : lenses                              ? GenerateRealisticRay(film, lens, weight)
+                                                          : GenerateOtherRay(film, lens);
+    return motion ? Move(ray, time) : ray;
+}
+
+std::optional<Ray> Camera::NextRay(const Ray& ray, CameraSample sample, int axis) const {
+    const Vec2f film = sample.film, step = axis == 0 ? Vec2f(1, 0) : Vec2f(0, 1);
+    sample.film = film + step;
+    if (!lenses) return GenerateRay(sample);
+    for (const float share : {0.05f, -0.05f}) {
+        float weight;
+        sample.film = film + share * step;
+        const Ray next = GenerateRay(sample, &weight);
+        if (weight > 0)
+            return Ray{ray.o + (next.o - ray.o) / share, ray.d + (next.d - ray.d) / share,
+                       kInfinity};
+    }
+    return {};
+}
+
+namespace {
+
+// Reads the screen window: [-1, 1] along the shorter axis unless the scene says otherwise.
+std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
+    const Parameters& params = entity.parameters;
+    const float aspect =
+        params.GetFloat("frameaspectratio", float(resolution.x()) / float(resolution.y()));
+    std::array<float, 4> screen = aspect > 1 ? std::array{-aspect, aspect, -1.f, 1.f}
+                                             : std::array{-1.f, 1.f, -1 / aspect, 1 / aspect};
+    if (const auto window = params.GetFloats(ParameterType::Float, "screenwindow");
+        !window.empty()) {
+        if (window.size() != 4)
+            throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
+        std::copy(window.begin(), window.end(), screen.begin());
+    }
+    return screen;
+}
+
+float ReadFieldOfView(const Entity& entity) {
+    float fov = entity.parameters.GetFloat("fov", 90);
+    if (const float half = entity.parameters.GetFloat("halffov", -1); half > 0) fov = 2 * half;
+    if (!(fov > 0 && fov < 180))
+        throw Error(entity.loc, fmt::format("the field of view is {} degrees; it has to lie "
+                                            "between 0 and 180",
+                                            fov));
+    return fov;
+}
+
+Projection ReadProjection(const Entity& entity) {
+    if (entity.name == "perspective") return Projection::Perspective;
+    if (entity.name == "orthographic") return Projection::Orthographic;
+    if (entity.name == "environment") return Projection::Environment;
+    if (entity.name == "realistic") return Projection::Realistic;
+    throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic, "
+                                        "environment and realistic are",
+                                        entity.name));
+}
+
+LensSystem ReadLenses(const Description& description, const FilmSettings& film,
+                      const Shutter& shutter, int threads, Warnings& warnings) {
+    const Entity& entity = description.camera;
+    const Parameters& params = entity.parameters;
+    const std::string file = params.GetString("lensfile", "");
+    if (file.empty()) throw Error(entity.loc, "Camera \"realistic\" needs a \"lensfile\"");
+    LensSystem::Settings settings;
+    settings.loc = entity.loc;
+    settings.file = Printable(file);
+    settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
+    const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
+    if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
+    for (LensInterface& stop : settings.interfaces)
+        if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
+            if (radius > stop.apertureRadius)
+                warnings.Add(entity.loc, "\"aperturediameter\" is limited to what the lens has",
+                             fmt::format("{:g} mm", 2000 * stop.apertureRadius));
+            stop.apertureRadius = std::min(stop.apertureRadius, radius);
+        }
+    settings.focusDistance = params.GetFloat("focusdistance", 10);
+    if (!(settings.focusDistance > 0))
+        throw Error(entity.loc, "\"focusdistance\" has to be above 0");
+    settings.simpleWeighting = params.GetBool("simpleweighting", true);
+    settings.exposureTime = float(shutter.close - shutter.open);
+    const float aspect = float(film.resolution.y()) / float(film.resolution.x());
+    settings.filmExtent = film.diagonal / std::sqrt(1 + Sqr(aspect)) * Vec2f(1, aspect);
+    return LensSystem(settings, threads);
+}
+
+// Sets the plane, or the angles, that the image is seen through, and the thin lens.
+void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
+    const Parameters& params = entity.parameters;
+    const std::array<float, 4> screen = ReadScreen(entity, resolution);
+    const float fov = camera->projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
+    camera->lensRadius = params.GetFloat("lensradius", 0);
+    camera->focalDistance = params.GetFloat("focaldistance", 1e6f);
+    if (!(camera->lensRadius >= 0) || !(camera->focalDistance > 0))
+        throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
+
+    if (camera->projection == Projection::Environment) {
+        camera->lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
+        camera->planePerPixel = {2 * kPi / resolution.x(), kPi / resolution.y()};
+    } else {
+        const float scale =
+            camera->projection == Projection::Perspective ? std::tan(fov * kPi / 360) : 1;
+        camera->planeOrigin = scale * Vec2f(screen[0], screen[3]);
+        camera->planePerPixel = scale * Vec2f((screen[1] - screen[0]) / resolution.x(),
+                                              (screen[2] - screen[3]) / resolution.y());
+    }
+}
+
+}  // namespace
+
+double Farthest(const Camera& camera, const FilmSettings& film) {
+    double size = 1;
+    if (camera.projection != Projection::Environment && !camera.lenses) {
+        const Vec2f last =
+            camera.planeOrigin + film.resolution.cast<float>().cwiseProduct(camera.planePerPixel);
+        size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
+        if (camera.lensRadius > 0) size += double(camera.lensRadius) + double(camera.focalDistance);
+    }
+    // While it moves, it is neither farther away nor larger than at one of the ends.
+    double farthest = 0;
+    for (const double time : {0., 1.}) {
+        const Mat4d m = camera.motion ? camera.motion->At(time) : camera.worldFromCamera;
+        const double scale = m.topLeftCorner<3, 3>().norm();
+        farthest = std::max(farthest, m.topRightCorner<3, 1>().norm() + scale * size);
+    }
+    return farthest;
+}
+
+Camera MakeCamera(const Description& description, const FilmSettings& film, Warnings& warnings,
+                  int threads) {
+    const Entity& entity = description.camera;
+    Camera camera;
+    camera.projection = ReadProjection(entity);
+    const Shutter shutter = ReadShutter(entity);
+    if (entity.parameters.GetFloat("shutterclose", 1) <
+        entity.parameters.GetFloat("shutteropen", 0))
+        warnings.Add(entity.loc, "the shutter closes before it opens; the times are swapped");
+    if (camera.projection == Projection::Realistic) {
+        camera.lenses = ReadLenses(description, film, shutter, threads, warnings);
+        camera.perPixel = film.resolution.cast<float>().cwiseInverse();
+    } else {
+        ReadPlane(entity, film.resolution, &camera);
+    }
+    entity.parameters.ReportUnused("Camera \"" + entity.name + "\"", warnings);
+    camera.worldFromCamera = description.cameraFromWorld.inverse();
+    if (description.movingCameraFromWorld) {
+        const auto& [open, close] = description.movingCameraFromWorld->at;
+        const auto& [startTime, endTime] = description.transformTimes;
+        const AnimatedTransform motion(open.inverse(), close.inverse(), startTime, endTime,
+                                       shutter);
+        camera.worldFromCamera = motion.At(0);
+        if (!motion.IsConstant()) camera.motion = motion;
+    }
+    if (!camera.worldFromCamera.allFinite())
+        throw Error(entity.loc, "the camera's transform cannot be inverted");
+    camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
+    // Scales in the transform change the length of directions, not what they point at; remove a
+    // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
+    camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();
+    if (camera.motion) {
+        camera.rotation.setIdentity();
+        camera.position.setZero();
+    }
+    return camera;
+}
+
+Mat4d WorldToCamera(const Camera& camera) { return camera.worldFromCamera.inverse(); }
+
+std::optional<Mat4d> WorldToNdc(const Camera& camera, const FilmSettings& film) {
+    if (camera.projection == Projection::Environment || camera.lenses) return {};
+    const bool isPerspective = camera.projection == Projection::Perspective;
+    // Project onto the plane z = 1, or along z, then scale the image to [0, 1]^2.
+    Mat4d ndcFromCamera = Mat4d::Zero();
+    for (int i = 0; i < 2; ++i) {
+        const double perUnit = 1.0 / (double(camera.planePerPixel[i]) * film.resolution[i]);
+        ndcFromCamera(i, i) = perUnit;
+        ndcFromCamera(i, isPerspective ? 2 : 3) = -camera.planeOrigin[i] * perUnit;
+    }
+    ndcFromCamera(2, 2) = 1;
+    ndcFromCamera(3, isPerspective ? 2 : 3) = 1;
+    return Mat4d(ndcFromCamera * WorldToCamera(camera));
+}
+
+}  // namespace lull

@@ -1,0 +1,87 @@
+// Generates camera rays: pbrt-v3's perspective and orthographic cameras, with pinhole or thin lens,
+// its environment camera, and its realistic one, with real lens systems.
+#pragma once
+
+#include "renderer/input/description.h"
+#include "renderer/scene/animated_transform.h"
+#include "renderer/scene/cameras/lens_system.h"
+#include "renderer/scene/film_settings.h"
+
+namespace lull {
+
+// Says where and when a path starts.
+struct CameraSample {
+    Vec2f film;                      // pixels
+    Vec2f lens = Vec2f(0.5f, 0.5f);  // in [0, 1)^2, chooses the point on the lens
+    float time = 0;                  // from 0, where the shutter opens, to 1
+};
+
+enum class Projection { Perspective, Orthographic, Environment, Realistic };
+
+struct Camera {
+    Projection projection = Projection::Perspective;
+    Mat4d worldFromCamera = Mat4d::Identity();
+    // Maps the image [0, width] x [0, height] in pixels to the plane z = 1 of camera space
+    // (perspective), z = 0 (orthographic), or to the angles phi and theta (environment).
+    Vec2f planeOrigin = Vec2f::Zero(), planePerPixel = Vec2f::Zero();
+    float lensRadius = 0, focalDistance = 1e6f;
+
+    // The rotation and position of worldFromCamera in float, for the ray loop.
+    Mat3f rotation = Mat3f::Identity();
+    Vec3f position = Vec3f::Zero();
+
+    // The distance between samples, in pixels, for texture filtering: 1 / sqrt(samples per pixel)
+    // as the scene asks for them, as in pbrt-v3, even if the stopping rule takes more or fewer.
+    float sampleSpacing = 1;
+
+    // Of a moving camera; rotation and position are then those of the identity, and worldFromCamera
+    // is that of the moment when the shutter opens.
+    std::optional<AnimatedTransform> motion;
+
+    std::optional<LensSystem> lenses;  // of realistic cameras
+    Vec2f perPixel = Vec2f::Zero();    // theirs: the share of the film
+
+    bool HasLens() const { return lensRadius > 0 || lenses; }
+
+    // Returns the ray of a sample; direction unit. The radiance that it finds counts *weight times,
+    // which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
+    Ray GenerateRay(const CameraSample& sample, float* weight) const {
+        *weight = 1;
+        if (projection == Projection::Perspective && !motion) [[likely]]
+            return GeneratePerspectiveRay(sample.film, sample.lens);
+        return GenerateRareRay(sample, weight);
+    }
+    Ray GenerateRay(const CameraSample& sample) const {
+        float weight;
+        return GenerateRay(sample, &weight);
+    }
+
+    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that of the sample.
+    // For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it; nothing
+    // where no light passes there.
+    std::optional<Ray> NextRay(const Ray& ray, CameraSample, int axis) const;
+
+  private:
+    Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
+    Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
+    Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
+    // Of all but perspective cameras at rest: apart, so that these do not pay for it.
+    Ray GenerateRareRay(const CameraSample&, float* weight) const;
+    Ray Move(const Ray& ray, float time) const;
+};
+
+// Reads Camera "perspective", "orthographic", "environment" or "realistic", whose exit pupils are
+// found with `threads` threads (0: all). Throws Error for other cameras, a field of view outside
+// (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
+Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
+
+// Bounds how far from the world's origin rays begin, or lie the points that they are aimed at. It
+// may be infinite.
+double Farthest(const Camera&, const FilmSettings&);
+
+// Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
+// is nothing if no matrix projects as the camera does.
+Mat4d WorldToCamera(const Camera&);
+std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
+
+}  // namespace lull

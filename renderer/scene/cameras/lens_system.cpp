@@ -1,0 +1,198 @@
+#include "renderer/scene/cameras/lens_system.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <thread>
+
+namespace lull {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// pbrt-v3's: simple weighting divides by the area of the first bounds, which so many points fix.
+constexpr int kPupils = 64, kPoints = 1 << 20, kFirstPoints = 1 << 14;
+
+// Meets a ray with a spherical interface whose centre is at `center` on the axis: with that half of
+// the sphere where the interface lies. Turns n to where the ray comes from.
+bool MeetSphere(double radius, double center, const Vector3d& origin, const Vector3d& d, double* t,
+                Vector3d* n) {
+    const Vector3d o(origin.x(), origin.y(), origin.z() - center);
+    const double a = d.squaredNorm(), halfB = d.dot(o), c = o.squaredNorm() - radius * radius;
+    const double discriminant = halfB * halfB - a * c;
+    if (!(discriminant >= 0)) return false;
+    const double root = std::sqrt(discriminant);
+    const bool isCloser = (d.z() < 0) != (radius < 0);
+    *t = (-halfB + (isCloser ? -root : root)) / a;
+    if (!(*t >= 0)) return false;
+    *n = (o + *t * d).normalized();
+    if (n->dot(d) > 0) *n = -*n;
+    return true;
+}
+
+// Refracts d, which it makes unit; `eta` is the index here over that beyond. False where all light
+// is reflected.
+bool Refract(double eta, const Vector3d& n, Vector3d* d) {
+    d->normalize();
+    const double cosine = -n.dot(*d);
+    const double sine2 = eta * eta * std::max(0., 1 - cosine * cosine);
+    if (sine2 >= 1) return false;
+    *d = eta * *d + (eta * cosine - std::sqrt(1 - sine2)) * n;
+    return true;
+}
+
+// Carries a ray through one interface at height z of the axis. `eta` as in Refract.
+bool Pass(const LensInterface& interface, double z, double eta, Vector3d* o, Vector3d* d) {
+    double t;
+    Vector3d n;
+    if (interface.radius == 0) {
+        t = (z - o->z()) / d->z();
+        if (!(t >= 0) || !std::isfinite(t)) return false;
+    } else if (!MeetSphere(interface.radius, z - interface.radius, *o, *d, &t, &n)) {
+        return false;
+    }
+    *o += t * *d;
+    if (o->head<2>().squaredNorm() > interface.apertureRadius * interface.apertureRadius)
+        return false;
+    return interface.radius == 0 || Refract(eta, n, d);
+}
+
+// Returns i with its digits in base b behind the point in reverse order.
+float RadicalInverse(int b, int i) {
+    double result = 0, place = 1;
+    for (; i > 0; i /= b) result += (i % b) * (place /= b);
+    return float(std::min(result, double(kOneMinusEpsilon)));
+}
+
+}  // namespace
+
+double LensSystem::FrontZ() const {
+    double z = 0;
+    for (const LensInterface& i : interfaces) z += i.thickness;
+    return z;
+}
+
+bool LensSystem::TraceFromFilm(Line* ray) const {
+    double z = 0;
+    for (size_t i = interfaces.size(); i-- > 0;) {
+        z += interfaces[i].thickness;
+        if (interfaces[i].radius == 0 && ray->d.z() <= 0) return false;
+        const double beyond = i > 0 ? interfaces[i - 1].eta : 1;
+        if (!Pass(interfaces[i], z, interfaces[i].eta / beyond, &ray->o, &ray->d)) return false;
+    }
+    return true;
+}
+
+bool LensSystem::TraceFromScene(Line* ray) const {
+    double z = FrontZ();
+    for (size_t i = 0; i < interfaces.size(); ++i) {
+        const double before = i > 0 ? interfaces[i - 1].eta : 1;
+        if (!Pass(interfaces[i], z, before / interfaces[i].eta, &ray->o, &ray->d)) return false;
+        z -= interfaces[i].thickness;
+    }
+    return true;
+}
+
+double LensSystem::FocusedRearZ(const Settings& settings) const {
+    // Find the principal planes and focal points on both sides from rays parallel to the axis.
+    const double x = 0.002 * filmRadius;
+    struct Cardinal {
+        double plane, focus;
+    };
+    const auto cardinal = [&](const Line& out) {
+        const double slope = out.d.z() / out.d.x();
+        return Cardinal{-(out.o.z() + (x - out.o.x()) * slope), -(out.o.z() - out.o.x() * slope)};
+    };
+    Line toFilm{{x, 0, FrontZ() + 1}, {0, 0, -1}}, toScene{{x, 0, RearZ() - 1}, {0, 0, 1}};
+    if (!TraceFromScene(&toFilm) || !TraceFromFilm(&toScene))
+        throw Error(settings.loc,
+                    fmt::format("no light passes the lenses of '{}' along the axis; the aperture "
+                                "may be too small",
+                                settings.file));
+    const Cardinal film = cardinal(toFilm), scene = cardinal(toScene);
+    // Solve the thick lens equation for where the film has to be.
+    const double f = film.focus - film.plane, z = -double(settings.focusDistance);
+    const double c = (scene.plane - z - film.plane) * (scene.plane - z - 4 * f - film.plane);
+    const double rearZ = RearZ() + 0.5 * (scene.plane - z + film.plane - std::sqrt(c));
+    if (!(c > 0) || !(rearZ > 0) || !std::isfinite(rearZ))
+        throw Error(settings.loc, fmt::format("the lenses of '{}' cannot focus at {} m",
+                                              settings.file, settings.focusDistance));
+    return rearZ;
+}
+
+LensSystem::Area LensSystem::BoundExitPupil(double r0, double r1,
+                                            const std::vector<Vec2f>& points) const {
+    const double side = 1.5 * interfaces.back().apertureRadius;
+    const auto isInside = [](const Vector2d& p, const Area& area) {
+        return (p.array() >= area.lower.array()).all() && (p.array() <= area.upper.array()).all();
+    };
+    Area bounds{Vector2d::Constant(kInfinity), Vector2d::Constant(-kInfinity)}, reach = bounds;
+    for (size_t i = 0; i < points.size(); ++i) {
+        // Once the first points have shown where light passes, only those nearby can add to it.
+        if (i == kFirstPoints) {
+            const double margin = 8 * side / std::sqrt(double(kFirstPoints));
+            reach = {bounds.lower.array() - margin, bounds.upper.array() + margin};
+        }
+        const Vector2d rear = (2 * points[i].cast<double>() - Vector2d::Ones()) * side;
+        if (isInside(rear, bounds)) continue;
+        if (i >= kFirstPoints && bounds.lower.x() <= bounds.upper.x() && !isInside(rear, reach))
+            continue;
+        const double r = r0 + (double(i) + 0.5) / double(points.size()) * (r1 - r0);
+        Line ray{{r, 0, 0}, {rear.x() - r, rear.y(), RearZ()}};
+        if (!TraceFromFilm(&ray)) continue;
+        bounds.lower = bounds.lower.cwiseMin(rear);
+        bounds.upper = bounds.upper.cwiseMax(rear);
+    }
+    // Without any light the sides do not matter.
+    if (!(bounds.lower.x() <= bounds.upper.x()))
+        return {Vector2d::Constant(-side), Vector2d::Constant(side)};
+    const double spacing = 2 * std::sqrt(8.) * side / std::sqrt(double(points.size()));
+    return {bounds.lower.array() - spacing, bounds.upper.array() + spacing};
+}
+
+LensSystem::LensSystem(const Settings& settings, int threads)
+    : interfaces(settings.interfaces),
+      filmExtent(settings.filmExtent),
+      filmRadius(0.5 * double(filmExtent.norm())) {
+    interfaces.back().thickness = FocusedRearZ(settings);
+
+    std::vector<Vec2f> points(kPoints);
+    for (int i = 0; i < kPoints; ++i) points[i] = {RadicalInverse(2, i), RadicalInverse(3, i)};
+    pupils.resize(kPupils);
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int i; (i = next++) < kPupils;)
+            pupils[i] =
+                BoundExitPupil(i * filmRadius / kPupils, (i + 1) * filmRadius / kPupils, points);
+    };
+    {
+        std::vector<std::jthread> helpers;
+        const int count = threads > 0 ? threads : int(std::thread::hardware_concurrency());
+        for (int i = 1; i < std::min(count, kPupils); ++i) helpers.emplace_back(work);
+        work();
+    }
+    const Area& middle = pupils[0];
+    scale = settings.simpleWeighting ? 1 / (middle.upper - middle.lower).prod()
+                                     : double(settings.exposureTime) / Sqr(RearZ());
+}
+
+Ray LensSystem::Generate(const Vec2f& st, const Vec2f& u, float* weight) const {
+    // The image is upside down on the film.
+    const Vector2d film = (Vec2f(0.5f, 0.5f) - st).cwiseProduct(filmExtent).cast<double>();
+    const double x = film.x(), y = -film.y(), r = std::sqrt(x * x + y * y);
+    const Area& pupil = pupils[std::min(int(r / filmRadius * kPupils), kPupils - 1)];
+    const Vector2d size = pupil.upper - pupil.lower;
+    const Vector2d p = pupil.lower + size.cwiseProduct(u.cast<double>());
+    // Bounds are those of points on the x axis; turn to the point at hand.
+    const double cosine = r > 0 ? x / r : 1, sine = r > 0 ? y / r : 0;
+    Line ray{{x, y, 0},
+             {cosine * p.x() - sine * p.y() - x, sine * p.x() + cosine * p.y() - y, RearZ()}};
+    const double cos2 = Sqr(ray.d.z()) / ray.d.squaredNorm();
+    *weight = 0;
+    if (!TraceFromFilm(&ray)) return {Vec3f::Zero(), Vec3f::UnitZ()};
+    *weight = float(Sqr(cos2) * size.prod() * scale);
+    return {ray.o.cast<float>(), ray.d.normalized().cast<float>(), kInfinity};
+}
+
+}  // namespace lull

@@ -1,0 +1,181 @@
+#include "stopping/features/model_inputs.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "stopping/signals/attributes26.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+// Whether an entropy is asked for, or its fall.
+bool NeedsEntropy(const ModelSettings& settings, Feature entropy) {
+    return std::ranges::any_of(settings.features, [&](Feature f) {
+        return f == entropy || (IsDrop(f) && EntropyOf(f) == entropy);
+    });
+}
+
+bool NeedsEntropies(const ModelSettings& settings) {
+    return std::ranges::any_of(settings.features,
+                               [](Feature f) { return IsEntropy(f) || IsDrop(f); });
+}
+
+bool NeedsDisplayed(const ModelSettings& settings) {
+    return NeedsEntropies(settings) || Needs(settings, Feature::Attributes26);
+}
+
+bool NeedsStatistics(const ModelSettings& settings) {
+    return std::any_of(settings.features.begin(), settings.features.end(),
+                       [](Feature f) { return HasSubBlocks(f) && !IsEntropy(f) && !IsDrop(f); });
+}
+
+// Measures what is seen in the display image.
+void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
+                      BlockMeasures* measures) {
+    if (Needs(settings, Feature::Attributes26)) {
+        std::vector<uint8_t> srgb(view.mean.size());
+        EncodeSrgb8(view.mean, srgb);
+        std::vector<double> lightness(view.mean.size() / 3);
+        Lightness(srgb, lightness);
+        const auto attributes = ComputeAttributes(lightness, view.width, view.height);
+        measures->Of(Feature::Attributes26).assign(attributes.begin(), attributes.end());
+    }
+    if (!NeedsEntropies(settings)) return;
+    for (const SvdEntropy& e : PictureEntropies(view, settings.m)) {
+        if (NeedsEntropy(settings, Feature::H)) measures->Of(Feature::H).push_back(e.h);
+        if (NeedsEntropy(settings, Feature::H1)) measures->Of(Feature::H1).push_back(e.h1);
+        if (NeedsEntropy(settings, Feature::H2)) measures->Of(Feature::H2).push_back(e.h2);
+    }
+}
+
+void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
+    const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
+                                                          view.height, kMeasuredSubBlocks);
+    auto put = [&](Feature feature, const std::vector<float>& values) {
+        measures->Of(feature).assign(values.begin(), values.end());
+    };
+    put(Feature::Lightness, s.lightness);
+    put(Feature::Deviation, s.deviation);
+    put(Feature::Texture, s.texture);
+    put(Feature::Noise, s.noise);
+    put(Feature::NoiseMean, s.noiseMean);
+    put(Feature::MaskedNoise, s.maskedNoise);
+    put(Feature::HalfNoise, s.halfNoise);
+    measures->Of(Feature::DetailMaskedNoise) =
+        DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
+}
+
+int ValueCount(const ModelSettings& settings, Feature feature) {
+    if (feature == Feature::Attributes26) return kAttributes;
+    const bool isEntropy =
+        IsEntropy(feature) || (IsDrop(feature) && feature != Feature::VisibleDrop);
+    return isEntropy ? settings.m : kMeasuredSubBlocks;
+}
+
+double Pooled(const Pool& pool, std::vector<double> values) {
+    const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
+    if (pool.kind == Pool::PowerMean)
+        return pool.number == 1 ? v.mean()
+                                : std::pow(v.abs().pow(pool.number).mean(), 1.0 / pool.number);
+    std::sort(values.begin(), values.end());
+    const double place = pool.number / 100.0 * double(values.size() - 1);
+    const size_t below = size_t(place), above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - double(below)) * (values[above] - values[below]);
+}
+
+// Returns what is added to noise before its logarithm is taken.
+double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.1 : 0.001; }
+
+// Brings values near the unit interval, or to where differences mean the same everywhere.
+double Scaled(Feature feature, double value) {
+    if (IsNormalized(feature)) return value;
+    if (feature == Feature::Lightness) return value / 100;
+    if (feature == Feature::Deviation || feature == Feature::Texture)
+        return std::log1p(std::max(value, 0.0) / 4) / 2;
+    return std::log(std::max(value, 0.0) + LeastNoise(feature));
+}
+
+}  // namespace
+
+ViewNeed NeedOf(const ModelSettings& settings) {
+    return NeedsStatistics(settings)  ? ViewNeed::MeanAndHalf
+           : NeedsDisplayed(settings) ? ViewNeed::Mean
+                                      : ViewNeed::Nothing;
+}
+
+BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
+    CheckView(view, NeedOf(settings));
+    BlockMeasures measures{.spp = view.spp};
+    if (NeedsDisplayed(settings)) MeasureDisplayed(view, settings, &measures);
+    if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
+    if (Needs(settings, Feature::VisibleDrop))
+        measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);
+    return measures;
+}
+
+std::vector<InputRange> InputRanges(const ModelSettings& settings) {
+    std::vector<InputRange> ranges;
+    int begin = 0;
+    for (Feature feature : settings.features) {
+        InputRange range{feature, begin, 1, 1};
+        if (feature != Feature::LogSpp) {
+            const bool pooled = !settings.pools.empty() && HasSubBlocks(feature);
+            range.count = pooled ? int(settings.pools.size()) : ValueCount(settings, feature);
+            if (!pooled && HasSubBlocks(feature))
+                range.side = int(std::lround(std::sqrt(range.count)));
+        }
+        ranges.push_back(range);
+        begin += range.count;
+    }
+    return ranges;
+}
+
+int InputCount(const ModelSettings& settings) {
+    int count = 0;
+    for (const InputRange& range : InputRanges(settings)) count += range.count;
+    return count;
+}
+
+std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings) {
+    std::vector<double> inputs;
+    for (Feature feature : settings.features) {
+        if (feature == Feature::LogSpp) {
+            inputs.push_back(std::log(measures.spp / 20.0) / std::log(500.0));
+            continue;
+        }
+        const std::vector<double>& values = measures.Of(feature);
+        if (values.size() != size_t(ValueCount(settings, feature)))
+            throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +
+                                        " do not have as many values as there must be");
+        const double factor = IsNoise(feature) ? settings.caution : 1;
+        if (settings.pools.empty() || !HasSubBlocks(feature)) {
+            for (double v : values) inputs.push_back(Scaled(feature, factor * v));
+            continue;
+        }
+        for (const Pool& pool : settings.pools)
+            inputs.push_back(Scaled(feature, factor * Pooled(pool, values)));
+    }
+    return inputs;
+}
+
+bool LooksAtNoiseOnly(const ModelSettings& settings) {
+    return settings.features.size() == 1 && IsNoise(settings.features[0]) &&
+           InputCount(settings) == 1;
+}
+
+double InputOfNoise(double noise, const ModelSettings& settings) {
+    return Scaled(settings.features.at(0), noise);
+}
+
+double NoiseOfInput(double input, const ModelSettings& settings) {
+    return std::max(0.0, std::exp(input) - LeastNoise(settings.features.at(0)));
+}
+
+}  // namespace lull

@@ -1,0 +1,60 @@
+// Turns measures of a block into the inputs of a network, in the same way for training, from
+// recordings, and for judging, from pixels.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+#include "stopping/features/model_settings.h"
+
+namespace lull {
+
+// The number of sub-blocks for statistics other than entropies, as in recordings.
+inline constexpr int kMeasuredSubBlocks = 100;
+
+// Holds the measures of a block at one spp: for each feature the values of its sub-blocks,
+// row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
+// empty if it is not asked for, and always for LogSpp.
+struct BlockMeasures {
+    int spp = 0;
+    std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
+    SubBlockLightness lightness = {};  // for visible_drop
+
+    std::vector<double>& Of(Feature feature) { return values[size_t(feature)]; }
+    const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
+};
+
+// Says what MeasureBlock() reads.
+ViewNeed NeedOf(const ModelSettings& settings);
+
+// Measures what the settings ask for; for drops, which BlockMemory completes, the entropies and the
+// lightness that they are made of. Throws as CheckView() and SubBlockEntropies() do.
+BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
+
+// Says which places in the input of a network belong to a feature.
+struct InputRange {
+    Feature feature;
+    int begin = 0, count = 0;
+    int side = 1;  // side * side = count where there is one value a sub-block, else 1
+};
+
+// Returns the ranges in the order of the settings' features; they cover all inputs.
+std::vector<InputRange> InputRanges(const ModelSettings& settings);
+int InputCount(const ModelSettings& settings);
+
+// Returns the input of one step, InputCount() values, before it is normalised over a window:
+// entropies as they are; noise, times the caution, and drops as log(v + 0.001); deviation and
+// texture as log(1 + v / 4) / 2 (a texture t masks noise by 1 + t / 4); lightness / 100; the spp as
+// log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their logarithm is
+// taken. Throws std::invalid_argument if the measures of a feature have a wrong length.
+std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
+
+// Says whether noise, pooled to one number, is the only input of a network.
+bool LooksAtNoiseOnly(const ModelSettings& settings);
+
+// Convert that noise, >= 0, times the caution, to the network's input, and back.
+double InputOfNoise(double noise, const ModelSettings& settings);
+double NoiseOfInput(double input, const ModelSettings& settings);
+
+}  // namespace lull

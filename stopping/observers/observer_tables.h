@@ -1,0 +1,18 @@
+// Writes down what observers said.
+#pragma once
+
+#include <string>
+
+#include "stopping/observers/observers.h"
+
+namespace lull {
+
+// Returns a CSV with a line of column names: a row for each block, and one for each viewpoint with
+// the block "all". Thresholds are in spp; fields of what is not known are empty.
+std::string DetailsCsv(const Collected& collected);
+
+// Returns a CSV with a line of column names and a row for each file of answers: who counts, who was
+// left out and why, and how consistent each was.
+std::string ObserversCsv(const Collected& collected);
+
+}  // namespace lull

@@ -1,0 +1,412 @@
+// Renders with several ranks, which are threads here and speak through queues.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "renderer/render/peers.h"
+#include "renderer/render/ranks/deal.h"
+#include "stopping/rules/lnoise.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+struct Mailboxes {
+    // How long rank 0 sleeps when it has sent a mere word, so that the others answer meanwhile.
+    std::chrono::milliseconds nap{0};
+    std::mutex mutex;
+    std::vector<std::deque<PeerMessage>> boxes;
+    int64_t bytes = 0;
+};
+
+class QueuePeers final : public Peers {
+  public:
+    QueuePeers(Mailboxes* mail, int rank) : mail(mail), rank(rank) {}
+    int Rank() const override { return rank; }
+    int Count() const override { return int(mail->boxes.size()); }
+    void Send(int to, std::vector<std::byte> message) override {
+        const bool isWord = message.size() == 1;
+        {
+            std::lock_guard lock(mail->mutex);
+            mail->bytes += int64_t(message.size());
+            mail->boxes[size_t(to)].push_back({rank, std::move(message)});
+        }
+        if (rank == 0 && isWord) std::this_thread::sleep_for(mail->nap);
+    }
+    std::optional<PeerMessage> Receive() override {
+        std::lock_guard lock(mail->mutex);
+        std::deque<PeerMessage>& box = mail->boxes[size_t(rank)];
+        if (box.empty()) return {};
+        PeerMessage message = std::move(box.front());
+        box.pop_front();
+        return message;
+    }
+    void Flush() override {}
+
+  private:
+    Mailboxes* mail;
+    int rank;
+};
+
+// What a render came to at rank 0.
+struct Shared {
+    std::unique_ptr<Film> film;
+    std::unique_ptr<AovFilm> layers;
+    RenderResult result;
+    RenderState state;  // the last that a checkpoint was shown
+    int64_t bytes = 0;
+};
+
+const PixelRect kImage = {{3, 2}, {74, 59}};
+
+RenderOptions SharedOptions() {
+    RenderOptions options;
+    options.schedule = {.blockSize = 25, .passLength = 20, .cap = 90, .smallestSide = 20};
+    options.sampler = SamplerKind::Random;
+    options.threads = 1;
+    options.makeCriterion = [](const BlockInfo& block) {
+        return std::make_unique<ScriptedCriterion>(40 + 20 * block.index);
+    };
+    return options;
+}
+
+using Change = std::function<void(RenderOptions*, int rank)>;
+using SourceOfRank = std::function<SampleSource(int rank)>;
+
+SampleSource SameForAll(int) { return SyntheticSample; }
+
+AovSource WithHits(const SampleSource& source) {
+    return [source](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+        const PathSample sample = source(sampler, pixel, index);
+        *hit = SyntheticHit(sampler, pixel, index);
+        return sample;
+    };
+}
+
+// Renders with `ranks` ranks; 0: without peers.
+Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
+                    const SourceOfRank& sourceOf = SameForAll, std::chrono::milliseconds nap = {},
+                    bool withLayers = false) {
+    Shared shared;
+    Mailboxes mail;
+    mail.nap = nap;
+    mail.boxes.resize(size_t(std::max(1, ranks)));
+    const auto runRank = [&](int rank) {
+        QueuePeers peers(&mail, rank);
+        RenderOptions options = SharedOptions();
+        if (ranks > 0) options.peers = &peers;
+        // The least that any of them allows is what this process has for all.
+        options.threads = ranks + 1;
+        if (rank == 0) options.onCheckpoint = [&](const RenderState& s) { shared.state = s; };
+        if (change) change(&options, rank);
+        auto film = std::make_unique<Film>(kImage, FilmOptions{.grid = GridOf(options.schedule)});
+        auto layers = std::make_unique<AovFilm>(kImage, AovSet{.depth = true});
+        const RenderState* state = nullptr;
+        if (before && rank == 0) {
+            *film = *before->film;
+            *layers = *before->layers;
+            state = &before->state;
+        }
+        const SampleSource source = sourceOf(rank);
+        if (withLayers) options.layers = {.aovs = layers.get(), .source = WithHits(source)};
+        RenderResult result = Render(source, options, film.get(), state);
+        if (rank > 0) return;
+        shared.film = std::move(film);
+        shared.layers = std::move(layers);
+        shared.result = std::move(result);
+    };
+    std::vector<std::thread> others;
+    for (int rank = 1; rank < ranks; ++rank) others.emplace_back(runRank, rank);
+    runRank(0);
+    for (std::thread& thread : others) thread.join();
+    shared.bytes = mail.bytes;
+    return shared;
+}
+
+std::vector<int> StopsOf(const Shared& shared) {
+    std::vector<int> stops;
+    for (const BlockResult& b : shared.result.blocks)
+        stops.push_back(b.block.stoppedByVote ? b.block.spp : -b.block.spp);
+    return stops;
+}
+
+TEST(Ranks, ComeToTheSameBits) {
+    const Shared reference = RenderShared(0);
+    ASSERT_EQ(reference.result.blocks.size(), 9u);
+    for (const auto& [ranks, threads] : {std::pair(1, 1), {2, 3}, {3, 4}, {4, 5}}) {
+        const Shared shared = RenderShared(
+            ranks, [threads = threads](RenderOptions* o, int) { o->threads = threads; });
+        EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks << " " << threads;
+        EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+        EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
+        EXPECT_FALSE(shared.result.cancelled);
+        for (size_t i = 0; i < 9; ++i)
+            EXPECT_EQ(shared.result.blocks[i].decisions.size(),
+                      reference.result.blocks[i].decisions.size());
+    }
+}
+
+// There are ranks without a tile, and rules that look at nothing.
+TEST(Ranks, CanBeMoreThanTiles) {
+    const auto change = [](RenderOptions* o, int) {
+        o->schedule = {.blockSize = 10, .cap = 20, .tileSize = 8};
+        o->makeCriterion = nullptr;
+    };
+    EXPECT_TRUE(SamePixels(*RenderShared(5, change).film, *RenderShared(0, change).film));
+}
+
+// What criteria are shown is the same numbers.
+TEST(Ranks, ShowCriteriaTheSame) {
+    const auto change = [](RenderOptions* o, int) {
+        o->makeCriterion = [](const BlockInfo&) { return MakeVoting(LightnessNoiseRule(12)); };
+    };
+    const Shared one = RenderShared(0, change), three = RenderShared(3, change);
+    for (size_t i = 0; i < one.result.blocks.size(); ++i) {
+        const auto &a = one.result.blocks[i].decisions, &b = three.result.blocks[i].decisions;
+        ASSERT_EQ(a.size(), b.size());
+        for (size_t k = 0; k < a.size(); ++k) {
+            EXPECT_EQ(a[k].spp, b[k].spp);
+            EXPECT_EQ(a[k].decision.value, b[k].decision.value);
+        }
+    }
+}
+
+// Returns what cancels the last of the ranks after a while.
+auto SignalToLast(int ranks) {
+    return [ranks](RenderOptions* o, int rank) {
+        if (rank != ranks - 1) return;
+        o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), ranks] {
+            return ++*calls > 150 / ranks;
+        };
+    };
+}
+
+// Interrupted with some ranks, by a signal to one of them, and taken up by others.
+TEST(Ranks, GoOnFromCheckpointsOfOthers) {
+    const Shared reference = RenderShared(0);
+    for (const auto& [first, second] : {std::pair(1, 3), {2, 0}, {4, 2}}) {
+        const Shared begun = RenderShared(first, SignalToLast(first));
+        ASSERT_TRUE(begun.result.cancelled);
+        EXPECT_LT(begun.film->SampleCount(), reference.film->SampleCount());
+        const Shared ended = RenderShared(second, {}, &begun);
+        EXPECT_TRUE(SamePixels(*ended.film, *reference.film)) << first << " " << second;
+        EXPECT_EQ(StopsOf(ended), StopsOf(reference));
+    }
+}
+
+TEST(Ranks, PauseForCheckpoints) {
+    const Shared reference = RenderShared(0);
+    std::atomic<int> checkpoints = 0;
+    const auto change = [&](RenderOptions* o, int rank) {
+        if (rank > 0) return;
+        o->checkpointInterval = 0.002;
+        o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+    };
+    // Takes many times the interval, however fast the machine is.
+    const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        if (pixel.x() == kImage.min.x() && index % 5 == 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return SyntheticSample(sampler, pixel, index);
+    };
+    const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
+    EXPECT_GT(checkpoints, 2);
+    EXPECT_TRUE(SamePixels(*shared.film, *reference.film));
+    EXPECT_EQ(StopsOf(shared), StopsOf(reference));
+}
+
+// Others are quiet, and say so, before rank 0 has looked for messages.
+TEST(Ranks, MayAnswerAtOnce) {
+    const auto change = [](RenderOptions* o, int) { o->makeCriterion = nullptr; };
+    const auto nap = std::chrono::milliseconds(20);
+    EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, nap).film,
+                           *RenderShared(0, change).film));
+}
+
+// The clock of rank 0 is that of all.
+TEST(Ranks, EndByTheClockWithWholePasses) {
+    for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
+        std::atomic<int64_t> taken = 0;
+        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            ++taken;
+            return SyntheticSample(sampler, pixel, index);
+        };
+        const Shared shared = RenderShared(
+            3,
+            [&](RenderOptions* o, int rank) {
+                o->makeCriterion = nullptr;
+                o->secondsLeft = [&taken, time, rank] {
+                    return rank > 0 ? 1 : double(time - taken);
+                };
+            },
+            nullptr, [&](int) { return source; });
+        EXPECT_TRUE(shared.result.timeUp);
+        const Shared again = RenderShared(2, [&](RenderOptions* o, int) {
+            o->schedule.smallestSide = 0;
+            o->makeCriterion = [&](const BlockInfo& block) {
+                return std::make_unique<ScriptedCriterion>(
+                    shared.result.blocks[size_t(block.index)].block.spp);
+            };
+        });
+        EXPECT_TRUE(SamePixels(*again.film, *shared.film));
+        for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 20);
+    }
+}
+
+TEST(Ranks, PassOnWhatTasksThrow) {
+    Mailboxes mail;
+    mail.boxes.resize(2);
+    QueuePeers peers(&mail, 0);
+    RenderOptions options = SharedOptions();
+    options.peers = &peers;
+    Film film(kImage);
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t) -> PathSample {
+        throw std::bad_alloc();
+    };
+    EXPECT_THROW(Render(broken, options, &film), std::bad_alloc);
+}
+
+TEST(Ranks, DealOutEveryTileOnce) {
+    const PixelRect block{{5, 5}, {49, 62}};
+    for (const int ranks : {1, 2, 5, 100}) {
+        int64_t area = 0;
+        size_t least = 1000, most = 0;
+        for (int rank = 0; rank < ranks; ++rank) {
+            const std::vector<PixelRect> tiles = TilesOf(block, 3, 8, {rank, EvenDeal(ranks)});
+            for (const PixelRect& tile : tiles) area += tile.Area();
+            least = std::min(least, tiles.size());
+            most = std::max(most, tiles.size());
+        }
+        EXPECT_EQ(area, block.Area());
+        EXPECT_LE(most - least, 1u);
+    }
+    int64_t area = 0;
+    for (int rank = 0; rank < 3; ++rank)
+        for (const PixelRect& tile : TilesOf(block, 300, 8, {rank, DealBySpeed({1, 2, 5})}))
+            area += tile.Area();
+    EXPECT_EQ(area, block.Area());
+}
+
+// Takes a nap at the first sample of each pixel's pass, on those ranks and in those passes that
+// `isSlow(rank, index)` is true for.
+SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSlow) {
+    return [isSlow](int rank) -> SampleSource {
+        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            if (index % 20 == 0 && isSlow(rank, index))
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+            return SyntheticSample(sampler, pixel, index);
+        };
+    };
+}
+
+TEST(Ranks, MoveTilesToWhereThereIsTime) {
+    const Shared reference = RenderShared(0);
+    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0.02; };
+    for (const int ranks : {2, 3, 4}) {
+        const Shared shared =
+            RenderShared(ranks, change, nullptr,
+                         SlowWhere([ranks](int rank, uint32_t) { return rank == ranks - 1; }));
+        EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
+        EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+        ASSERT_EQ(shared.result.shares.size(), size_t(ranks));
+        EXPECT_LT(shared.result.shares.back(), 0.7 / ranks);
+    }
+}
+
+// Tiles go to and fro, with a clock and checkpoints, too.
+TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
+    const auto source =
+        SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
+    const Shared reference = RenderShared(0);
+    int checkpoints = 0;
+    const Shared moved = RenderShared(
+        3,
+        [&](RenderOptions* o, int rank) {
+            o->dealInterval = 0;
+            o->secondsLeft = [] { return 1000.0; };
+            if (rank > 0) return;
+            o->checkpointInterval = 0.02;
+            o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+        },
+        nullptr, source);
+    EXPECT_TRUE(SamePixels(*moved.film, *reference.film));
+    EXPECT_EQ(StopsOf(moved), StopsOf(reference));
+    EXPECT_GT(checkpoints, 0);
+}
+
+Shared RenderLayers(int ranks, const Change& change = {}, const Shared* before = nullptr,
+                    const SourceOfRank& sourceOf = SameForAll) {
+    return RenderShared(ranks, change, before, sourceOf, {}, true);
+}
+
+void ExpectSameLayers(const Shared& shared, const Shared& reference, int ranks) {
+    EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
+    EXPECT_TRUE(SameLayers(*shared.layers, *reference.layers)) << ranks;
+    EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+}
+
+TEST(Ranks, ShareLayers) {
+    const Shared reference = RenderLayers(0);
+    EXPECT_TRUE(SamePixels(*reference.film, *RenderShared(0).film));
+    for (const auto& [ranks, threads] : {std::pair(1, 2), {2, 3}, {3, 4}, {3, 7}})
+        ExpectSameLayers(
+            RenderLayers(ranks, [n = threads](RenderOptions* o, int) { o->threads = n; }),
+            reference, ranks);
+}
+
+TEST(Ranks, GoOnWithTheLayersOfOthers) {
+    const Shared reference = RenderLayers(0);
+    for (const auto& [first, second] : {std::pair(1, 3), {3, 2}, {2, 0}}) {
+        const Shared begun = RenderLayers(first, SignalToLast(first));
+        ASSERT_TRUE(begun.result.cancelled);
+        ExpectSameLayers(RenderLayers(second, {}, &begun), reference, second);
+    }
+}
+
+TEST(Ranks, MoveLayersWithTheirTiles) {
+    const auto source =
+        SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
+    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0; };
+    ExpectSameLayers(RenderLayers(3, change, nullptr, source), RenderLayers(0), 3);
+}
+
+// Passes that the time does not suffice for are undone in the layers of all ranks.
+TEST(Ranks, UndoLayers) {
+    const int64_t time = kImage.Area() * 35;
+    bool undone = false;
+    for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
+        std::atomic<int64_t> taken = 0;
+        const auto source = [&](int) -> SampleSource {
+            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+                if (++taken > time && index % 20 == 0)
+                    std::this_thread::sleep_for(std::chrono::microseconds(100));
+                return SyntheticSample(sampler, pixel, index);
+            };
+        };
+        const Shared timed = RenderLayers(
+            3,
+            [&](RenderOptions* o, int rank) {
+                o->schedule.tileSize = 4;
+                o->makeCriterion = nullptr;
+                o->secondsLeft = [&, rank] { return rank > 0 ? 1 : double(time - taken); };
+            },
+            nullptr, source);
+        undone = timed.film->SampleCount() < taken;
+        const Shared again = RenderLayers(0, [&](RenderOptions* o, int) {
+            o->schedule.smallestSide = 0;
+            o->makeCriterion = [&](const BlockInfo& block) {
+                return std::make_unique<ScriptedCriterion>(
+                    timed.result.blocks[size_t(block.index)].block.spp);
+            };
+        });
+        EXPECT_TRUE(SamePixels(*timed.film, *again.film));
+        EXPECT_TRUE(SameLayers(*timed.layers, *again.layers));
+    }
+    EXPECT_TRUE(undone);
+}
+
+}  // namespace
+}  // namespace lull

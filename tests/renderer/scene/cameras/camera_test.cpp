@@ -1,0 +1,193 @@
+#include "renderer/scene/cameras/camera.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/scene/texture_builder.h"
+
+namespace lull {
+namespace {
+
+FilmSettings FilmOf(int width, int height) {
+    FilmSettings film;
+    film.resolution = film.cropMax = {width, height};
+    return film;
+}
+
+Camera MakeTestCamera(const FilmSettings& film, std::vector<Parameter> parameters,
+                      const Mat4d& cameraFromWorld = Mat4d::Identity(),
+                      const std::string& kind = "perspective") {
+    Description description;
+    description.camera.name = kind;
+    description.camera.loc = LocAt(3);
+    description.cameraFromWorld = cameraFromWorld;
+    for (Parameter& p : parameters) description.camera.parameters.Add(std::move(p));
+    Warnings warnings;
+    return MakeCamera(description, film, warnings);
+}
+
+void ExpectNear(const Vec3f& a, const Vec3f& b, float tolerance = 1e-5f) {
+    EXPECT_NEAR((a - b).norm(), 0, tolerance) << a.transpose() << " vs " << b.transpose();
+}
+
+Vec3f Direction(const Camera& camera, float x, float y) {
+    return camera.GenerateRay({{x, y}, {0.5f, 0.5f}}).d;
+}
+
+TEST(Camera, LooksAlongZWithTheFieldOfViewOnTheShorterAxis) {
+    const float t = std::tan(kPi / 6);  // half of 60 degrees
+    const Camera wide = MakeTestCamera(FilmOf(200, 100), {FloatParameter("fov", {60})});
+    ExpectNear(Direction(wide, 100, 50), Vec3f(0, 0, 1));
+    // Film y points down, camera y up, and x to the right.
+    ExpectNear(Direction(wide, 0, 0), Vec3f(-2 * t, t, 1).normalized());
+    ExpectNear(Direction(wide, 200, 0), Vec3f(2 * t, t, 1).normalized());
+    ExpectNear(Direction(wide, 0, 100), Vec3f(-2 * t, -t, 1).normalized());
+    ExpectNear(Direction(wide, 200, 100), Vec3f(2 * t, -t, 1).normalized());
+    const Camera tall = MakeTestCamera(FilmOf(100, 200), {FloatParameter("halffov", {30})});
+    ExpectNear(Direction(tall, 0, 0), Vec3f(-t, 2 * t, 1).normalized());
+    ExpectNear(wide.GenerateRay({{3, 4}, {0, 0}}).o, Vec3f::Zero());
+}
+
+TEST(Camera, FollowsScreenWindowAndAspect) {
+    const Camera window =
+        MakeTestCamera(FilmOf(100, 100), {FloatParameter("screenwindow", {-0.5f, 0.25f, -1, 2})});
+    ExpectNear(Direction(window, 0, 0), Vec3f(-0.5f, 2, 1).normalized());
+    ExpectNear(Direction(window, 100, 100), Vec3f(0.25f, -1, 1).normalized());
+    const Camera aspect =
+        MakeTestCamera(FilmOf(100, 100), {FloatParameter("frameaspectratio", {3})});
+    ExpectNear(Direction(aspect, 0, 0), Vec3f(-3, 1, 1).normalized());
+}
+
+// A crop is a part of the same picture.
+TEST(Camera, DoesNotHeedTheCrop) {
+    FilmSettings film = FilmOf(100, 80);
+    const Camera whole = MakeTestCamera(film, {});
+    film.cropMin = {25, 10};
+    film.cropMax = {50, 20};
+    const Camera part = MakeTestCamera(film, {});
+    EXPECT_EQ(Direction(whole, 30.5f, 12.25f), Direction(part, 30.5f, 12.25f));
+}
+
+Mat4d RigidTransform() {
+    const Eigen::Affine3d t = Eigen::Translation3d(3, -2, 5) *
+                              Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized());
+    return t.matrix();
+}
+
+TEST(Camera, StandsWhereItsTransformSays) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const Camera camera = MakeTestCamera(FilmOf(100, 100), {}, worldFromCamera.inverse());
+    const Ray ray = camera.GenerateRay({{20, 70}, {0.5f, 0.5f}});
+    ExpectNear(ray.o, Vec3f(3, -2, 5));
+    ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f(-0.6f, -0.4f, 1).normalized()));
+    EXPECT_NEAR((WorldToCamera(camera) - worldFromCamera.inverse()).norm(), 0, 1e-9);
+
+    // What a ray meets is projected back to where the ray came from.
+    const Vec3f p = ray.o + 7 * ray.d;
+    const Vec3f ndc = TransformPoint(*WorldToNdc(camera, FilmOf(100, 100)), p);
+    EXPECT_NEAR(ndc.x(), 0.2f, 1e-5);
+    EXPECT_NEAR(ndc.y(), 0.7f, 1e-5);
+}
+
+TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const Camera lens =
+        MakeTestCamera(FilmOf(100, 80),
+                       {FloatParameter("lensradius", {0.3f}), FloatParameter("focaldistance", {4})},
+                       worldFromCamera.inverse());
+    const Camera pinhole = MakeTestCamera(FilmOf(100, 80), {}, worldFromCamera.inverse());
+    test::Random random(1);
+    double radius2 = 0;
+    constexpr int kRays = 20000;
+    for (int i = 0; i < kRays; ++i) {
+        const Vec2f film = random.Point().cwiseProduct(Vec2f(100, 80));
+        const Ray ray = lens.GenerateRay({film, random.Point()});
+        ASSERT_NEAR(ray.d.norm(), 1, 1e-5);
+        const auto inCamera = [&](const Vec3f& p) {
+            return TransformPoint(WorldToCamera(lens), p);
+        };
+        const Vec3f o = inCamera(ray.o), d = inCamera(ray.o + ray.d) - o;
+        ASSERT_NEAR(o.z(), 0, 1e-5);
+        ASSERT_LE(o.norm(), 0.3001f);
+        radius2 += o.squaredNorm() / kRays;
+        const Vec3f straight = inCamera(pinhole.position + pinhole.GenerateRay({film, {0, 0}}).d);
+        ASSERT_NEAR((o + d * (4 / d.z()) - straight * (4 / straight.z())).norm(), 0, 2e-4);
+    }
+    EXPECT_NEAR(radius2, 0.3 * 0.3 / 2, 0.001);
+}
+
+TEST(Camera, OrthographicRaysAreParallel) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const FilmSettings film = FilmOf(200, 100);
+    const Camera camera = MakeTestCamera(film, {FloatParameter("screenwindow", {-3, 1, -2, 4})},
+                                         worldFromCamera.inverse(), "orthographic");
+    const Vec2f lens(0.5f, 0.5f);
+    for (const Vec2f& p : {Vec2f(0, 0), Vec2f(200, 0), Vec2f(50, 70)}) {
+        const Ray ray = camera.GenerateRay({p, lens});
+        ExpectNear(ray.o, TransformPoint(worldFromCamera,
+                                         Vec3f(-3 + 4 * p.x() / 200, 4 - 6 * p.y() / 100, 0)));
+        ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f::UnitZ()));
+        // Any point of the ray is projected back to where the ray came from.
+        const Vec3f ndc = TransformPoint(*WorldToNdc(camera, film), Vec3f(ray.o + 3 * ray.d));
+        EXPECT_NEAR(ndc.x(), p.x() / 200, 1e-5);
+        EXPECT_NEAR(ndc.y(), p.y() / 100, 1e-5);
+    }
+    // The shorter axis holds [-1, 1] by default.
+    const Camera wide = MakeTestCamera(film, {}, Mat4d::Identity(), "orthographic");
+    ExpectNear(wide.GenerateRay({{0, 0}, lens}).o, Vec3f(-2, 1, 0));
+}
+
+TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
+    const Camera camera =
+        MakeTestCamera(FilmOf(10, 10),
+                       {FloatParameter("lensradius", {0.2f}), FloatParameter("focaldistance", {3})},
+                       Mat4d::Identity(), "orthographic");
+    test::Random random(2);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec2f p = 10 * random.Point();
+        const Ray ray = camera.GenerateRay({p, random.Point()});
+        ASSERT_LE(ray.o.norm(), 0.2001f);
+        ASSERT_NEAR(ray.d.norm(), 1, 1e-5);
+        const Vec3f focus = ray.o + ray.d * (3 / ray.d.z());
+        ASSERT_NEAR((focus - Vec3f(-1 + p.x() / 5, 1 - p.y() / 5, 3)).norm(), 0, 1e-4);
+    }
+}
+
+TEST(Camera, EnvironmentSeesAllDirections) {
+    const Mat4d worldFromCamera = RigidTransform();
+    const FilmSettings film = FilmOf(40, 20);
+    const Camera camera = MakeTestCamera(film, {FloatParameter("lensradius", {2})},
+                                         worldFromCamera.inverse(), "environment");
+    const auto inCamera = [&](float x, float y) {
+        const Ray ray = camera.GenerateRay({{x, y}, {0.1f, 0.2f}});
+        ExpectNear(ray.o, Vec3f(3, -2, 5));
+        return TransformVector(WorldToCamera(camera), ray.d);
+    };
+    // The first row looks up along y, the middle one around the horizon, from x towards z.
+    for (const float x : {0.f, 17.f}) ExpectNear(inCamera(x, 0), Vec3f(0, 1, 0));
+    ExpectNear(inCamera(0, 10), Vec3f(1, 0, 0));
+    ExpectNear(inCamera(10, 10), Vec3f(0, 0, 1));
+    ExpectNear(inCamera(30, 10), Vec3f(0, 0, -1));
+    ExpectNear(inCamera(5, 20), Vec3f(0, -1, 0));
+    EXPECT_FALSE(WorldToNdc(camera, film).has_value());
+}
+
+TEST(Camera, RefusesNonsense) {
+    for (const float fov : {0.f, -5.f, 180.f, std::nanf("")})
+        EXPECT_TRUE(
+            Contains(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {FloatParameter("fov", {fov})}); }),
+                     "scene.pbrt:3: "));
+    EXPECT_NE(ErrorOf([] { MakeTestCamera(FilmOf(9, 9), {}, Mat4d::Zero()); }), "");
+    EXPECT_NE(ErrorOf([] {
+                  MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 2})});
+              }),
+              "");
+    Description description;
+    description.camera.name = "fisheye";
+    Warnings warnings;
+    EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,179 @@
+#include "stopping/features/model_inputs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "stopping/recordings/training_samples.h"
+#include "stopping/rules/learned.h"
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/signals/block_images.h"
+
+namespace lull {
+namespace {
+
+TEST(ModelSettings, NameFeaturesAndPools) {
+    const std::string features =
+        "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,half_noise,"
+        "detail_masked_noise,attributes26,logspp";
+    EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
+    EXPECT_EQ(PoolNames(ParsePools("mean,rms,p3,p9,q0,q10,q100")), "mean,rms,p3,p9,q0,q10,q100");
+    EXPECT_TRUE(ParsePools("").empty());
+    for (const char* bad : {"", "H3", "H,", ",H", "H,H", "h", "H noise"})
+        EXPECT_THROW(ParseFeatures(bad), std::invalid_argument) << bad;
+    for (const char* bad :
+         {"q", "q101", "q-1", "q5x", "p2", "p10", "p", "mean,mean", "median", "rms,"})
+        EXPECT_THROW(ParsePools(bad), std::invalid_argument) << bad;
+}
+
+TEST(InputVector, PoolsBeforeItScales) {
+    BlockMeasures measures{.spp = 10000};
+    for (int i = 0; i < 100; ++i) {
+        measures.Of(Feature::Noise).push_back(i / 100.0);
+        measures.Of(Feature::Texture).push_back(i);
+        measures.Of(Feature::Lightness).push_back(50);
+    }
+    const std::vector<double> x = InputVector(
+        measures,
+        {.features = {Feature::Noise, Feature::LogSpp, Feature::Texture, Feature::Lightness},
+         .pools = ParsePools("mean,rms,q0,q50,q100")});
+    ASSERT_EQ(x.size(), 16u);
+    EXPECT_NEAR(x[0], std::log(0.496), 1e-12);
+    EXPECT_NEAR(x[1], std::log(std::sqrt(0.32835) + 0.001), 1e-12);
+    EXPECT_NEAR(x[2], std::log(0.001), 1e-12);
+    EXPECT_NEAR(x[3], std::log(0.496), 1e-12);
+    EXPECT_NEAR(x[4], std::log(0.991), 1e-12);
+    EXPECT_NEAR(x[5], 1, 1e-12);
+    EXPECT_NEAR(x[10], std::log1p(99 / 4.0) / 2, 1e-12);
+    EXPECT_NEAR(x[11], 0.5, 1e-12);
+}
+
+TEST(InputVector, PoolsByPowerMeans) {
+    BlockMeasures measures{.spp = 20};
+    measures.Of(Feature::Noise).assign(100, 0.1);
+    measures.Of(Feature::Noise)[7] = 2;
+    const std::vector<double> x =
+        InputVector(measures, {.features = {Feature::Noise}, .pools = ParsePools("mean,rms,p4")});
+    ASSERT_EQ(x.size(), 3u);
+    EXPECT_NEAR(x[0], std::log(0.119 + 0.001), 1e-12);
+    EXPECT_NEAR(x[1], std::log(std::sqrt((4 + 99 * 0.01) / 100) + 0.001), 1e-12);
+    EXPECT_NEAR(x[2], std::log(std::pow((16 + 99 * 1e-4) / 100, 0.25) + 0.001), 1e-12);
+}
+
+TEST(InputVector, GivesEachSubBlock) {
+    const ModelSettings settings = {
+        .m = 4, .features = {Feature::LogSpp, Feature::H, Feature::MaskedNoise}};
+    const std::vector<InputRange> ranges = InputRanges(settings);
+    ASSERT_EQ(ranges.size(), 3u);
+    EXPECT_EQ(ranges[1].begin, 1);
+    EXPECT_EQ(ranges[1].side, 2);
+    EXPECT_EQ(ranges[2].begin, 5);
+    EXPECT_EQ(ranges[2].side, 10);
+    EXPECT_EQ(InputCount(settings), 105);
+
+    BlockMeasures measures{.spp = 20};
+    measures.Of(Feature::H) = {0.1, 0.2, 0.3, 0.4};
+    measures.Of(Feature::MaskedNoise).assign(100, 1);
+    const std::vector<double> x = InputVector(measures, settings);
+    EXPECT_EQ(x[0], 0);
+    EXPECT_EQ(x[3], 0.3);
+    EXPECT_NEAR(x[104], 0.001, 1e-6);
+    measures.Of(Feature::H).pop_back();
+    EXPECT_THROW(InputVector(measures, settings), std::invalid_argument);
+}
+
+TEST(FeatureHistory, NormalisesEntropiesOnly) {
+    FeatureHistory history({.k = 2, .n = 20, .m = 1, .features = {Feature::LogSpp, Feature::H}});
+    history.Add(20, std::vector<double>{0.1, 0.2});
+    history.Add(40, std::vector<double>{0.3, 0.6});
+    Eigen::MatrixXf expected(2, 2);
+    expected << 0.1f, 0.3f, 0, 1;
+    EXPECT_TRUE(history.WindowAt(40)->isApprox(expected, 1e-6f));
+}
+
+TEST(FeatureHistory, NormalisesAttributesAsEntropies) {
+    const ModelSettings settings = {.k = 2,
+                                    .n = 20,
+                                    .m = 1,
+                                    .features = ParseFeatures("attributes26,H"),
+                                    .pools = ParsePools("mean"),
+                                    .snorm = false,
+                                    .bnorm = true};
+    ASSERT_EQ(InputCount(settings), 27);  // attributes are never pooled
+    EXPECT_EQ(NeedOf(settings), ViewNeed::Mean);
+    FeatureHistory history(settings);
+    for (const int spp : {20, 40}) {
+        BlockMeasures measures{.spp = spp};
+        for (int i = 0; i < 26; ++i) measures.Of(Feature::Attributes26).push_back(spp + i);
+        measures.Of(Feature::H) = {0.5};
+        history.Add(spp, InputVector(measures, settings));
+    }
+    const Eigen::MatrixXf window = *history.WindowAt(40);
+    for (int step = 0; step < 2; ++step)
+        for (int i = 0; i < 26; ++i) EXPECT_NEAR(window(i, step), i / 25.0, 1e-6);
+    EXPECT_EQ(window(26, 1), 0);
+}
+
+// What a network is trained on, from a recording, must be what it is given when it judges.
+TEST(ModelInputs, AreThoseOfRecordings) {
+    for (int m : {25, 100}) {
+        ModelSettings settings = {.m = m};
+        settings.features = ParseFeatures(
+            m == 100 ? "H,H1,H2,lightness,deviation,texture,noise,noise_mean,masked_noise,"
+                       "half_noise,detail_masked_noise,attributes26,logspp"
+                     : "H,attributes26,noise,logspp");
+        BlockRecording recording;
+        Recorder recorder(20, 100, 100, &recording);
+        for (int spp = 20; spp <= 100; spp += 20) {
+            const BlockImage block = NoisyBlock(64, 60, 0.5, spp, unsigned(spp));
+            recorder.Observe(block.At(spp));
+            const std::vector<double> live =
+                InputVector(MeasureBlock(block.At(spp), settings), settings);
+            const std::vector<double> recorded =
+                InputVector(MeasuresOf(recording, spp / 20 - 1, settings), settings);
+            ASSERT_EQ(recorded.size(), live.size());
+            for (size_t i = 0; i < live.size(); ++i)
+                EXPECT_NEAR(recorded[i], live[i], 1e-6 * std::max(1.0, live[i]));
+        }
+    }
+}
+
+TEST(Learned, ReadsTheHalfMeanForNoise) {
+    ModelSettings settings = {.k = 2, .m = 25, .features = ParseFeatures("masked_noise,logspp")};
+    settings.pools = ParsePools("rms");
+    Network network;  // a logistic regression on the last step: noise below exp(-2) is not seen
+    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 4), Eigen::VectorXf::Zero(1)});
+    network.dense[0].kernel(0, 2) = 10;
+    network.dense[0].bias[0] = 20;
+    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
+    const auto criterion = MakeVoting(LearnedRule(model, 20));
+    EXPECT_EQ(criterion->Need(20), ViewNeed::MeanAndHalf);
+    int stop = 0;
+    for (int spp = 20; spp <= 10000 && stop == 0; spp += 20) {
+        const BlockImage block = NoisyBlock(40, 40, 0.05, spp, unsigned(spp));
+        if (criterion->Observe(block.At(spp)).stop) stop = spp;
+    }
+    EXPECT_GT(stop, 100);
+    EXPECT_LT(stop, 10000);
+}
+
+TEST(Learned, NeverStopsOnNonsense) {
+    const ModelSettings settings = {
+        .k = 2, .m = 25, .features = ParseFeatures("H,noise,half_noise,texture,deviation")};
+    const auto model = std::make_shared<const Model>(
+        Model{RandomNetwork(InputCount(settings), {4}, 10), settings, ""});
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (float value : {0.f, 1e30f, -1.f, infinity, std::numeric_limits<float>::quiet_NaN()}) {
+        const auto criterion = MakeVoting(LearnedRule(model, 20));
+        const BlockImage block(41, 57, value);
+        for (int spp = 20; spp <= 200; spp += 20) {
+            const Decision decision = criterion->Observe(block.At(spp));
+            EXPECT_TRUE(decision.value >= 0 && decision.value <= 1) << value;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,119 @@
+#include "stopping/features/window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lull {
+namespace {
+
+ModelSettings Plain(int k, int n) {
+    return {.k = k, .n = n, .m = 4, .snorm = false, .bnorm = false};
+}
+
+// Adds the feature (spp, spp + 1, spp + 2, spp + 3) / 1000.
+void Add(FeatureHistory* history, int spp) {
+    std::vector<double> feature;
+    for (int i = 0; i < 4; ++i) feature.push_back((spp + i) / 1000.0);
+    history->Add(spp, feature);
+}
+
+TEST(Normalize, MapsToTheUnitInterval) {
+    const Eigen::ArrayXd values = Eigen::Array3d(0.5, 0.1, 0.3);
+    const Eigen::ArrayXd result = Normalize(values);
+    EXPECT_NEAR(result[0], 1, 1e-15);
+    EXPECT_EQ(result[1], 0);
+    EXPECT_NEAR(result[2], 0.5, 1e-15);
+    // Equal values leave 0 / 2.2e-16, those that differ by little a share of it.
+    EXPECT_TRUE((Normalize(Eigen::Array3d::Constant(0.7)) == 0).all());
+    EXPECT_NEAR(Normalize(Eigen::Array2d(0, 2.220446049250313e-16))[1], 0.5, 1e-12);
+}
+
+TEST(FeatureHistory, TakesEveryNthSpp) {
+    FeatureHistory history(Plain(3, 40));
+    for (int spp = 20; spp <= 80; spp += 20) {
+        Add(&history, spp);
+        EXPECT_FALSE(history.WindowAt(spp)) << spp;
+    }
+    Add(&history, 100);
+    const auto window = history.WindowAt(100);
+    ASSERT_TRUE(window);
+    EXPECT_EQ(window->rows(), 4);
+    EXPECT_EQ(window->cols(), 3);
+    for (int step = 0; step < 3; ++step)
+        for (int i = 0; i < 4; ++i)
+            EXPECT_FLOAT_EQ((*window)(i, step), float(20 + 40 * step + i) / 1000);
+    Add(&history, 120);
+    EXPECT_FLOAT_EQ((*history.WindowAt(120))(0, 0), 0.040f);
+}
+
+TEST(FeatureHistory, IsFullFirstAt300SppWithThePapersSettings) {
+    FeatureHistory history({.m = 4});
+    for (int spp = 20; spp <= 300; spp += 20) {
+        Add(&history, spp);
+        EXPECT_EQ(history.WindowAt(spp).has_value(), spp == 300);
+    }
+    for (int spp = 320; spp <= 2000; spp += 20) {
+        Add(&history, spp);
+        EXPECT_TRUE(history.WindowAt(spp));
+        EXPECT_EQ(history.Entries().size(), 15u);  // no more is kept than can be needed
+    }
+}
+
+TEST(FeatureHistory, HasNoWindowWithAGap) {
+    FeatureHistory history(Plain(3, 40));
+    for (int spp : {20, 100, 140}) Add(&history, spp);
+    EXPECT_FALSE(history.WindowAt(100));
+    EXPECT_FALSE(history.WindowAt(140));
+    Add(&history, 180);
+    EXPECT_TRUE(history.WindowAt(180));
+}
+
+TEST(FeatureHistory, NormalisesFeaturesFirstThenTheWindow) {
+    const std::vector<double> first = {0.1, 0.2, 0.3, 0.5}, second = {0.4, 0.0, 0.8, 0.4};
+    auto window = [&](bool snorm, bool bnorm) {
+        FeatureHistory history({.k = 2, .n = 20, .m = 4, .snorm = snorm, .bnorm = bnorm});
+        history.Add(20, first);
+        history.Add(40, second);
+        return *history.WindowAt(40);
+    };
+    Eigen::MatrixXf expected(4, 2);
+    expected << 0, 1, 1, 0, 0, 1, 1, 0;
+    EXPECT_TRUE(window(true, false).isApprox(expected, 1e-6f));
+    expected << 0, 0.5f, 0.25f, 0, 0.5f, 1, 1, 0.5f;
+    EXPECT_TRUE(window(false, true).isApprox(expected, 1e-6f));
+    expected << 0, 1, 1, 0, 0, 1, 1, 0;
+    EXPECT_TRUE(window(true, true).isApprox(expected, 1e-6f));
+}
+
+TEST(FeatureHistory, NormalisesAConstantWindowToZero) {
+    FeatureHistory history({.k = 3, .n = 20, .m = 4, .snorm = true, .bnorm = true});
+    for (int spp : {20, 40, 60}) history.Add(spp, std::vector<double>(4, 0.3));
+    EXPECT_TRUE(history.WindowAt(60)->isZero(0));
+}
+
+TEST(FeatureHistory, RefusesWhatDoesNotFit) {
+    FeatureHistory history(Plain(3, 40));
+    Add(&history, 40);
+    EXPECT_THROW(Add(&history, 40), std::invalid_argument);
+    EXPECT_THROW(Add(&history, 20), std::invalid_argument);
+    EXPECT_THROW(history.Add(60, std::vector<double>(3)), std::invalid_argument);
+    for (double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(history.Add(60, std::vector<double>(4, bad)), std::invalid_argument);
+}
+
+TEST(ModelSettings, AreChecked) {
+    EXPECT_NO_THROW(CheckSettings({}));
+    EXPECT_THROW(CheckSettings({.k = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.n = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.m = 99}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.votes = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.voteSpacing = -20}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.features = {}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lull
