@@ -49,6 +49,8 @@ bool ResultFiles::WriteElsewhere(const std::string& path, const Writer& write) t
     names.push_back(other);
     return true;
 } catch (const Error&) {
+    std::error_code error;
+    if (fs::remove(folder, error)) folder.clear();  // it is empty
     return false;
 }
 

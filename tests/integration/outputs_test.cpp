@@ -162,13 +162,16 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
 // Where no folder takes one, the others are written all the same.
 TEST(Outputs, FilesBeyondALimitDoNotCostTheOthers) {
     const Inputs directory;
-    const Outcome outcome = RunShell(directory,
-                                     "ulimit -f 4; LULL render scene.pbrt --resolution 200x150 "
-                                     "--block 50 --spp 4 --quiet -o out.exr");
+    const Outcome outcome =
+        RunShell(directory,
+                 "ulimit -f 4; TMPDIR=. LULL render scene.pbrt --resolution 200x150 "
+                 "--block 50 --spp 4 --quiet -o out.exr");
     EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "cannot write \"out.exr\": File too large")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "; lost: \"out.exr\"")) << outcome.err;
     EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
+    for (const auto& [name, bytes] : FilesIn(directory))
+        EXPECT_FALSE(name.starts_with("lull-")) << name;
     EXPECT_TRUE(outcome.out.ends_with("out.thresholds.csv\n")) << outcome.out;
 }
 
