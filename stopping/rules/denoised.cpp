@@ -1,7 +1,5 @@
 #include "stopping/rules/denoised.h"
 
-#include <cmath>
-
 #include "stopping/rules/argument.h"
 
 namespace lull {
@@ -11,6 +9,7 @@ namespace {
 constexpr uint32_t kTag = 0x31534e44;  // "DNS1"
 constexpr int kVotes = 2;
 constexpr int kFirstSpp = 40;
+constexpr double kGrowth = 1.25;
 
 }  // namespace
 
@@ -21,8 +20,7 @@ CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& co
                       .need = ViewNeed::Nothing,
                       .measure = SuppliedMeasure(context, denoisedRuleName),
                       .makeGauge = [](const BlockInfo&) {
-                          return MakeMeasuredGauge(
-                              1, {.firstSpp = kFirstSpp, .growth = std::sqrt(2.0)});
+                          return MakeMeasuredGauge(1, {.firstSpp = kFirstSpp, .growth = kGrowth});
                       }});
 }
 

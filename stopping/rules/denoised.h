@@ -10,7 +10,7 @@ namespace lull {
 inline constexpr const char* denoisedRuleName = "denoised";
 
 // Reads the threshold T, which the context's caution divides. The block is looked at first at 40
-// spp and then wherever the spp have grown by the root of 2, as denoising it takes as long as some
+// spp and then wherever the spp have grown by a quarter, as denoising it takes as long as some
 // samples; it stops when the bound was below T at the last two looks. Throws std::invalid_argument
 // for a bad threshold, and where the program does not measure this.
 CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& context);

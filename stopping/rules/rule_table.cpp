@@ -94,7 +94,7 @@ constexpr Rule kRules[] = {
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when the error that is visible once it is denoised was probably below T@ in "
-              "lightness at two looks in a row, each at 1.4 times the samples of the one before; "
+              "lightness at two looks in a row, each at 1.25 times the samples of the one before; "
               "the default with --denoise",
      .need = ViewNeed::Nothing,
      .compares = RuleTrend::Error,
