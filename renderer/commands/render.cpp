@@ -136,14 +136,25 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
                                          schedule.smallestSide));
 }
 
-void PrintSummary(const RenderResult& result, const Film& film, int cap) {
+// Says which blocks have ended, and how: what a rule was not content with at the cap is not
+// stopped.
+std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
+    const int atCap = BlocksAtCap(result), stopped = result.progress.stoppedBlocks - atCap;
+    if (kind == RuleTrend::Samples)
+        return fmt::format("{} of {} blocks done", stopped + atCap, result.progress.blocks);
+    std::string text = fmt::format("{} of {} blocks stopped", stopped, result.progress.blocks);
+    if (atCap > 0) text += fmt::format(", {} at the cap and not stopped", atCap);
+    return text;
+}
+
+void PrintSummary(const RenderResult& result, const Film& film, int cap, RuleTrend::Kind kind) {
     const Savings savings = ComputeSavings(result, cap);
-    Say("{}{} of {} blocks stopped, median {} spp; {} samples in {}",
+    Say("{}{}, median {} spp; {} samples in {}",
         result.cancelled ? "interrupted: "
         : result.timeUp  ? "the time is up: "
                          : "",
-        result.progress.stoppedBlocks, result.progress.blocks, result.progress.medianSpp,
-        FormatCount(double(savings.samples)), FormatDuration(result.progress.seconds));
+        EndsOf(result, kind), result.progress.medianSpp, FormatCount(double(savings.samples)),
+        FormatDuration(result.progress.seconds));
     if (!result.cancelled && savings.samples < savings.samplesAtCap)
         Say("; against {} spp everywhere {:.1f}% fewer samples, {:.1f}% less time", cap,
             100 * savings.SampleShare(), 100 * savings.SecondShare());
@@ -246,9 +257,9 @@ RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
 
 // Prints what came of it.
 void PrintResult(const RenderSettings& settings, const Provenance& provenance,
-                 const RenderResult& result, const Film& film) {
+                 const RenderResult& result, const Film& film, RuleTrend::Kind kind) {
     if (settings.quiet) return;
-    PrintSummary(result, film, settings.schedule.cap);
+    PrintSummary(result, film, settings.schedule.cap, kind);
     if (!result.shares.empty()) PrintShares(result.shares);
     if (result.timeUp) PrintShortfall(provenance, result);
 }
@@ -323,7 +334,7 @@ ExitCode RunRender(Options options, Job* job) {
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    PrintResult(settings, provenance, result, session.TheFilm());
+    PrintResult(settings, provenance, result, session.TheFilm(), factory.trend.kind);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;

@@ -77,7 +77,7 @@ function showSummary(data) {
   }
   const t = data.totals;
   if (t) parent.append(makeTable("", null, [
-    ["blocks stopped", `${t.stoppedBlocks} of ${t.blocks}`], ["median", showCount(t.medianSpp) + " spp"],
+    ["blocks stopped", `${t.stoppedBlocks} of ${t.blocks}` + (t.blocksAtCap ? `; ${t.blocksAtCap} went to the cap` : "")], ["median", showCount(t.medianSpp) + " spp"],
     ["samples", `${showCount(t.samples)}; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} everywhere`],
     ["time", `${showSeconds(t.seconds)}; of processors ${showSeconds(t.threadSeconds)}, about ${showShare(t.secondsSaved)} less than to the cap`],
     ["the rule took", `${showSeconds(t.criterionSeconds)} of processors, ${showShare(t.criterionSeconds / t.threadSeconds)}`],

@@ -58,6 +58,8 @@ TEST(MakeReport, HoldsBlocksTotalsAndProvenance) {
     EXPECT_EQ(report["provenance"]["estimator"], "combined");
     EXPECT_EQ(report["totals"]["rejectedSamples"], 3);
     EXPECT_EQ(report["totals"]["samplesSaved"], 0.4);
+    EXPECT_EQ(report["totals"]["stoppedBlocks"], 1);
+    EXPECT_EQ(report["totals"]["blocksAtCap"], 1);
     EXPECT_EQ(report["warnings"]["zero-area triangle"], 7);
     const auto& blocks = report["blocks"];
     ASSERT_EQ(blocks.size(), 2u);
