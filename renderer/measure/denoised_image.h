@@ -3,8 +3,8 @@
 
 #include "renderer/denoise/visible_error.h"
 #include "renderer/measure/image_error.h"
-#include "renderer/render/feature_film.h"
 #include "renderer/output/image_io.h"
+#include "renderer/render/feature_film.h"
 #include "renderer/render/schedule.h"
 
 namespace lull {
