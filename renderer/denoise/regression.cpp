@@ -74,20 +74,20 @@ class TileFits {
                 sums[size_t(c)] = LanesIn(colour.At(c, x, y)) * kOwnWeight;
         }
         for (int o = 0; o < int(weights.Offsets().size()); ++o) {
-            const auto [dx, dy] = weights.Offsets()[size_t(o)];
-            if (!HasFits(y + dy)) continue;
+            const PatchWeights::Offset at = weights.Offsets()[size_t(o)];
+            if (!HasFits(y + at.y)) continue;
             const Lanes w = weights.Of(o, x, y, bandwidth);
             if (!(w.maxCoeff() > kLeastWeight)) continue;
             norm += w;
             for (int c = 0; c < kColours; ++c) {
                 const auto unknown = [&](int i) {
-                    return LanesIn(fits.At(i * kColours + c, x + dx, y + dy));
+                    return LanesIn(fits.At(i * kColours + c, x + at.x, y + at.y));
                 };
                 Lanes value = unknown(0);
                 for (int f = 0; f < kFeatures; ++f)
                     value += unknown(1 + f) * LanesIn(features.At(f, x, y));
-                value -= unknown(kSlopeX) * (float(dx) * scale);
-                value -= unknown(kSlopeY) * (float(dy) * scale);
+                value -= unknown(kSlopeX) * (float(at.x) * scale);
+                value -= unknown(kSlopeY) * (float(at.y) * scale);
                 sums[size_t(c)] += w * value;
             }
         }
