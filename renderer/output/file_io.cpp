@@ -72,12 +72,21 @@ bool Create(const fs::path& name, OutputFile* file) {
     return file->fd >= 0;
 }
 
-// Creates the file and locks it. Where somebody is faster to do so, it is theirs to remove.
+// Says whether the name is that of the open file.
+bool IsNamed(int fd, const fs::path& name) {
+    struct stat opened, named;
+    return fstat(fd, &opened) == 0 && lstat(name.c_str(), &named) == 0 &&
+           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// Creates the file and locks it. Where somebody is faster to lock it, it is theirs to remove, and
+// may be gone by the time that the lock is free again.
 bool CreateLocked(const fs::path& name, OutputFile* file) {
     if (!Create(name, file)) return false;
     file->lock = dup(file->fd);  // a lock is given up with the last descriptor
-    if (file->lock >= 0 && flock(file->fd, LOCK_EX | LOCK_NB) == 0) return true;
-    if (errno != EWOULDBLOCK) unlink(name.c_str());
+    const bool isLocked = file->lock >= 0 && flock(file->fd, LOCK_EX | LOCK_NB) == 0;
+    if (isLocked && IsNamed(file->fd, name)) return true;
+    if (!isLocked && errno != EWOULDBLOCK) unlink(name.c_str());
     for (int* open : {&file->fd, &file->lock})
         if (*open >= 0) close(std::exchange(*open, -1));
     file->temporary.clear();
@@ -93,11 +102,7 @@ bool RemoveLeftover(const fs::path& name) {
     if (old.fd < 0) return errno == ENOENT;
     if (flock(old.fd, LOCK_EX | LOCK_NB) != 0) return false;
     // What was locked may have been given its final name in the meantime.
-    struct stat locked, named;
-    if (fstat(old.fd, &locked) != 0) return false;
-    if (lstat(name.c_str(), &named) != 0) return errno == ENOENT;
-    if (locked.st_ino != named.st_ino || locked.st_dev != named.st_dev) return true;
-    return unlink(name.c_str()) == 0;
+    return !IsNamed(old.fd, name) || unlink(name.c_str()) == 0;
 }
 
 // Creates a new file beside `target`. It has always the same name, so that what is left where

@@ -112,8 +112,10 @@ TEST(WriteFileAtomically, TakesManyWritersAtOnce) {
     const std::string path = directory.File("shared.json");
     std::vector<std::thread> writers;
     for (int i = 0; i < 8; ++i)
-        writers.emplace_back(
-            [&, i] { WriteFileAtomically(path, std::string(100000, char('a' + i))); });
+        writers.emplace_back([&, i] {
+            for (int round = 0; round < 20; ++round)
+                WriteFileAtomically(path, std::string(100000, char('a' + i)));
+        });
     for (std::thread& writer : writers) writer.join();
     const std::string text = ReadBytes(path);
     EXPECT_EQ(text, std::string(100000, text.at(0)));
