@@ -8,10 +8,10 @@
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
+#include "renderer/files/outputs.h"
 #include "renderer/measure/denoised_image.h"
-#include "renderer/output/outputs.h"
-#include "renderer/output/progress.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 
