@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "renderer/base/say.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/denoising.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
@@ -264,18 +264,6 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (result.timeUp) PrintShortfall(provenance, result);
 }
 
-// Denoises the image, and says how clean it is.
-DenoisedImage MakeDenoised(const NoisyPicture& picture, const PixelRect& region,
-                           const RenderResult& result, bool quiet) {
-    std::vector<Block> blocks;
-    for (const BlockResult& block : result.blocks) blocks.push_back(block.block);
-    const auto start = std::chrono::steady_clock::now();
-    DenoisedImage image = DenoiseImage(picture, region, blocks);
-    if (!quiet)
-        Say("denoised in {}; {}\n", FormatDuration(SecondsSince(start)), TextOf(image.blocks));
-    return image;
-}
-
 ExitCode RunRender(Options options, Job* job) {
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
@@ -340,7 +328,9 @@ ExitCode RunRender(Options options, Job* job) {
     std::vector<ExrChannel> halves;
     if (session.Features()) {
         const NoisyPicture picture = PictureOf(session.TheFilm(), *session.Features(), region);
-        if (options.denoise) denoised = MakeDenoised(picture, region, result, settings.quiet);
+        if (options.denoise)
+            denoised = DenoiseAndSay(picture, region, MakeBlocks(region, settings.schedule),
+                                     settings.quiet);
         if (options.denoiseLayers) halves = MakeHalfChannels(picture);
     }
     session.TheFilm().DropHalf();  // what follows needs the memory

@@ -35,6 +35,9 @@ struct PictureOrigin {
 void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
                 const RenderResult&, ExtraLayers extra, const PictureFormat&, ResultFiles*);
 
+// Returns the rows of an image, which must outlive that.
+RowSource MeansOf(const RgbImage&);
+
 // Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
 struct ImageOfBlocks {
     const RgbImage& image;
