@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "renderer/base/say.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -47,7 +48,7 @@ std::function<double()> StartClock(const ClockOptions& options) {
         // Of the steady clock, as nobody sets that; of `until`, the one that people look at.
         using Clock = std::chrono::steady_clock;
         return [end = ParseDuration(options.time), start = Clock::now()] {
-            return end - std::chrono::duration<double>(Clock::now() - start).count();
+            return end - SecondsSince(start);
         };
     }
     if (options.until.empty()) return {};

@@ -68,7 +68,7 @@ bool RankChannel::Send() {
 bool RankChannel::Receive(const Handler& handle) {
     bool any = false;
     while (const std::optional<PeerMessage> message = peers.Receive()) {
-        StateReader reader(message->bytes);
+        StateReader reader(message->bytes, "a message of a rank");
         const RankWord word = reader.Get<RankWord>();
         if (word == RankWord::Ping)
             peers.Send(message->from, Pack(RankWord::Alive));
