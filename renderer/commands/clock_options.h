@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 

@@ -7,8 +7,8 @@
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
+#include "renderer/files/outputs.h"
 #include "renderer/measure/image_files.h"
-#include "renderer/output/outputs.h"
 #include "renderer/render/film_picture.h"
 
 namespace lull {

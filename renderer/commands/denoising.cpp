@@ -2,7 +2,7 @@
 
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 

@@ -4,8 +4,8 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/film/display.h"
 #include "renderer/measure/image_files.h"
-#include "renderer/output/display.h"
 
 namespace lull {
 

@@ -4,8 +4,8 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
-#include "renderer/output/film.h"
 #include "renderer/scene/compile.h"
 
 namespace lull {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "renderer/denoise/visible_error.h"
+#include "renderer/film/feature_film.h"
+#include "renderer/image/image_io.h"
 #include "renderer/measure/image_error.h"
-#include "renderer/output/image_io.h"
-#include "renderer/render/feature_film.h"
 #include "renderer/render/schedule.h"
 
 namespace lull {

@@ -1,11 +1,11 @@
 // Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
 #pragma once
 
+#include "renderer/files/result_files.h"
+#include "renderer/image/png_format.h"
 #include "renderer/measure/denoised_image.h"
 #include "renderer/measure/extra_layers.h"
 #include "renderer/measure/image_error.h"
-#include "renderer/output/png_format.h"
-#include "renderer/output/result_files.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 

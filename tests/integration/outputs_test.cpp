@@ -2,7 +2,7 @@
 // be written.
 #include <thread>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::outputs_test {
