@@ -17,7 +17,7 @@ CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& co
     return FactoryOf({.threshold = ParseThreshold(argument) / context.caution,
                       .votes = kVotes,
                       .tag = kTag,
-                      .need = ViewNeed::Nothing,
+                      .need = ViewNeed::Measured,
                       .measure = SuppliedMeasure(context, denoisedRuleName),
                       .makeGauge = [](const BlockInfo&) {
                           return MakeMeasuredGauge(1, {.firstSpp = kFirstSpp, .growth = kGrowth});
