@@ -47,9 +47,9 @@ struct AnswerMessage {
 // Holds what a rank has of a block after a pass.
 struct PartMessage {
     int block;
-    int64_t samples;            // taken since the last part
-    double seconds;             // of processors, for this block
-    double busySeconds;         // of the rank's threads, on the average, since the last part
+    int64_t samples;     // taken since the last part
+    double seconds;      // of processors, for this block
+    double busySeconds;  // of the rank's threads, on the average, since the last part
     // The means of its tiles, then the half means, as far as needed; empty where the sums
     // themselves are, which have been sent before.
     std::vector<float> values;
