@@ -72,7 +72,7 @@ ExitCode RunDenoise(Options options) {
         throw Error("--half " + options.half + ": it is the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
-    const NoisyPicture picture =
+    NoisyPicture picture =
         options.half.empty() ? ReadPicture(exr, options.input)
                              : ReadPicture(exr, options.input, ReadExr(options.half), options.half);
 
@@ -80,9 +80,9 @@ ExitCode RunDenoise(Options options) {
     ScheduleOptions schedule;
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
-    const DenoisedImage denoised = DenoiseAndSay(picture, region, blocks, options.quiet);
-
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
+    const DenoisedImage denoised = DenoiseAndSay(std::move(picture), region, blocks, options.quiet);
+
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));
     std::ranges::move(MakeDenoisedChannels(denoised, noisy), std::back_inserter(exr.channels));

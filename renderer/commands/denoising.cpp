@@ -6,10 +6,10 @@
 
 namespace lull {
 
-DenoisedImage DenoiseAndSay(const NoisyPicture& picture, const PixelRect& region,
+DenoisedImage DenoiseAndSay(NoisyPicture picture, const PixelRect& region,
                             const std::vector<Block>& blocks, bool quiet) {
     const auto start = std::chrono::steady_clock::now();
-    DenoisedImage image = DenoiseImage(picture, region, blocks);
+    DenoisedImage image = DenoiseImage(std::move(picture), region, blocks);
     if (!quiet)
         Say("denoised in {}; {}\n", FormatDuration(SecondsSince(start)), TextOf(image.blocks));
     return image;

@@ -328,6 +328,10 @@ ExitCode RunRender(Options options, Job* job) {
     how.clock = clock;
     Session session(*scene, region, how);
     if (denoiser) denoiser->Show(&session.TheFilm(), session.Features());
+    if (denoiser && display)
+        denoiser->ShowPictures([&](const PixelRect& pixels, std::span<const float> rgb) {
+            display->ShowDenoised(pixels, rgb);
+        });
     session.Resume();
     CatchInterrupts();
     if (!session.Learn()) {
@@ -343,14 +347,14 @@ ExitCode RunRender(Options options, Job* job) {
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;
-    if (session.Features()) {
-        const NoisyPicture picture = PictureOf(session.TheFilm(), *session.Features(), region);
-        if (options.denoise)
-            denoised = DenoiseAndSay(picture, region, MakeBlocks(region, settings.schedule),
-                                     settings.quiet);
-        if (options.denoiseLayers) halves = MakeHalfChannels(picture);
-    }
+    NoisyPicture picture;
+    if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
     session.TheFilm().DropHalf();  // what follows needs the memory
+    if (options.denoiseLayers) halves = MakeHalfChannels(picture);
+    if (options.denoise)
+        denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
+                                 settings.quiet);
+    if (display && denoised) display->ShowDenoised(region, denoised->image.values);
 
     const ResultFiles written = WriteFiles(files, {{*scene, provenance},
                                                    session.TheFilm(),

@@ -10,15 +10,12 @@ constexpr int kSmallest = 10;  // pixels a side of a block whose visible error c
 
 }  // namespace
 
-DenoisedImage DenoiseImage(const NoisyPicture& picture, const PixelRect& region,
+DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
-    const DenoisedPicture denoised = Denoise(picture);
-    DenoisedImage result{{region.Width(), region.Height(), {}}, {}, {}};
-    result.image.values.resize(denoised.picture.values.size());
-    for (int c = 0; c < kColours; ++c)
-        for (size_t i = 0; i < denoised.picture.Area(); ++i)
-            result.image.values[3 * i + size_t(c)] = denoised.picture.Plane(c)[i];
+    DenoisedPicture denoised = Denoise(std::move(picture));
     const EstimatedError error = MeasureError(denoised);
+    DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)}, {}, {}};
+    denoised = {};  // a large picture needs the memory
     result.error = StandardError(error).values;
     for (const Block& block : blocks) {
         const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
