@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
@@ -28,6 +29,28 @@ bool HasLostResults() { return std::ferror(stdout) != 0; }
 void FinishResults() {
     if (std::fflush(stdout) == 0 && !HasLostResults()) return;
     throw Error(std::string("cannot write the results to stdout: ") + std::strerror(errno));
+}
+
+std::string JsonEvent(const std::string& event, const std::string& text, const std::string& key) {
+    const nlohmann::ordered_json json = {{"event", event}, {key, text}};
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void Talk::Note(const std::string& message) const { Say("note", message); }
+
+// On a terminal there may be a line of progress.
+void Talk::Warn(const std::string& message) const {
+    if (isJson)
+        Say("warning", message);
+    else
+        lull::Say("\nlull: warning: {}\n", message);
+}
+
+void Talk::Say(const std::string& event, const std::string& message) const {
+    if (isJson)
+        lull::Say("{}", JsonEvent(event, message));
+    else
+        PrintTalk(message);
 }
 
 void PrintTalk(const std::string& message) { Say("lull: {}\n", message); }
