@@ -60,6 +60,7 @@ Examples:
   lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
+  lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
   lull render scene.pbrt --until 09:00                 # as clean as it gets until then
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
@@ -107,6 +108,11 @@ void AddOptions(CLI::App& app, Options* o) {
     AddPictureOptions(app, &o->pictures);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
+    o->render.checkpoint.mayDiffer = MayDiffer::Stops;
+    app.add_flag("--keep-checkpoint", o->render.checkpoint.isKept,
+                 "Keep it when the render is done, too, to go on with a larger --cap, more\n"
+                 "--caution or another rule")
+        ->needs(app.get_option("--checkpoint"));
     AddChoiceOption<HalfBuffer>(
         app, "--half-buffer", &o->halfBuffer,
         {{"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}},
@@ -322,8 +328,11 @@ ExitCode RunRender(Options options, Job* job) {
     if (display) display->Finish();
     if (talk.isJson) SayEnd(written, result, session.TheFilm().RejectedCount());
     written.Check();
-    if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())
-        std::filesystem::remove(settings.checkpoint.file);
+    const CheckpointOptions& checkpoint = settings.checkpoint;
+    const bool isDone = !result.cancelled && !result.timeUp;
+    if (isDone && !checkpoint.file.empty() && !checkpoint.isKept)
+        std::filesystem::remove(checkpoint.file);
+    if (!isDone && !settings.quiet) talk.Note(HowToGoOn(checkpoint.file));
     return result.cancelled ? kInterrupted : kDone;
 }
 
