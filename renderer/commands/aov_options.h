@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/render/aov_channels.h"
+#include "renderer/film/aov_channels.h"
 
 namespace lull {
 

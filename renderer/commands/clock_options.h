@@ -7,7 +7,7 @@
 #include <string>
 
 #include "renderer/commands/talk.h"
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 

@@ -10,10 +10,10 @@
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/session_options.h"
+#include "renderer/files/file_io.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
-#include "renderer/output/file_io.h"
 
 namespace lull {
 

@@ -5,12 +5,10 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
-#include "renderer/base/say.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
-#include "renderer/measure/denoised_image.h"
-#include "renderer/output/outputs.h"
-#include "renderer/output/progress.h"
+#include "renderer/commands/denoising.h"
+#include "renderer/files/outputs.h"
+#include "renderer/measure/image_files.h"
 #include "renderer/render/film_picture.h"
 
 namespace lull {
@@ -82,30 +80,20 @@ ExitCode RunDenoise(Options options) {
     ScheduleOptions schedule;
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
-    const auto start = std::chrono::steady_clock::now();
-    const DenoisedImage denoised = DenoiseImage(picture, region, blocks);
-    if (!options.quiet)
-        Say("denoised in {}; {}\n", FormatDuration(SecondsSince(start)), TextOf(denoised.blocks));
+    const DenoisedImage denoised = DenoiseAndSay(picture, region, blocks, options.quiet);
 
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
-    for (size_t c = 0; c < 3; ++c) {
-        ExrChannel channel{std::string(1, "RGB"[c]), {}};
-        for (size_t i = c; i < denoised.image.values.size(); i += 3)
-            channel.values.push_back(denoised.image.values[i]);
-        exr.channels.push_back(std::move(channel));
-    }
-    for (ExrChannel& channel : MakeDenoisedChannels(denoised, noisy))
-        exr.channels.push_back(std::move(channel));
+    std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));
+    std::ranges::move(MakeDenoisedChannels(denoised, noisy), std::back_inserter(exr.channels));
     exr.attributes["denoised"] = kDenoisedNote;
-    WriteExr(options.output, exr);
-    WritePng(
-        png,
-        [&](int y, std::span<float> row) {
-            std::copy_n(&denoised.image.values[size_t(y) * row.size()], row.size(), row.begin());
-        },
-        exr.width, exr.height);
-    fmt::print("{}\n{}\n", options.output, png);
+    ResultFiles results;
+    results.Write(options.output, [&](const std::string& file) { WriteExr(file, exr); });
+    results.Write(png, [&](const std::string& file) {
+        WritePng(file, MeansOf(denoised.image), exr.width, exr.height);
+    });
+    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
+    results.Check();
     return kDone;
 }
 

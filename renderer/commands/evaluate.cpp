@@ -9,7 +9,7 @@
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/talk.h"
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 #include "stopping/evaluation/judged_rules.h"
 #include "stopping/rules/rule_table.h"
 

@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/render/learning.h"
+#include "renderer/render/guide_learning.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/scene_options.h"
 #include "renderer/measure/report.h"
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 

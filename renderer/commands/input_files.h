@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "renderer/commands/scene_options.h"
-#include "renderer/output/outputs.h"
+#include "renderer/files/outputs.h"
 #include "stopping/training/training_plan.h"
 
 namespace lull {

@@ -12,9 +12,9 @@
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/judge_options.h"
 #include "renderer/commands/session_options.h"
+#include "renderer/files/file_io.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/study_render.h"
-#include "renderer/output/file_io.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {

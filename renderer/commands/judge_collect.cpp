@@ -5,8 +5,8 @@
 
 #include "renderer/base/say.h"
 #include "renderer/commands/judge_options.h"
-#include "renderer/output/file_io.h"
-#include "renderer/output/outputs.h"
+#include "renderer/files/file_io.h"
+#include "renderer/files/outputs.h"
 #include "renderer/pages/collected_page.h"
 #include "stopping/observers/observer_tables.h"
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "renderer/commands/talk.h"
+#include "renderer/film/display.h"
 #include "renderer/measure/image_files.h"
-#include "renderer/output/display.h"
 
 namespace lull {
 

@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "renderer/base/say.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/clock_options.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/denoising.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
@@ -227,22 +227,6 @@ RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
     return identity;
 }
 
-// Denoises the image, and says how clean it is.
-DenoisedImage MakeDenoised(const NoisyPicture& picture, const PixelRect& region,
-                           const RenderResult& result, const RenderSettings& settings) {
-    std::vector<Block> blocks;
-    for (const BlockResult& block : result.blocks) blocks.push_back(block.block);
-    const auto start = std::chrono::steady_clock::now();
-    DenoisedImage image = DenoiseImage(picture, region, blocks);
-    const std::string text = fmt::format("denoised in {}; {}", FormatDuration(SecondsSince(start)),
-                                         TextOf(image.blocks));
-    if (!settings.quiet && settings.jsonProgress)
-        Say("{}", JsonEvent("note", text));
-    else if (!settings.quiet)
-        Say("{}\n", text);
-    return image;
-}
-
 ExitCode RunRender(Options options, Job* job) {
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
@@ -309,7 +293,9 @@ ExitCode RunRender(Options options, Job* job) {
     std::vector<ExrChannel> halves;
     if (session.Features()) {
         const NoisyPicture picture = PictureOf(session.TheFilm(), *session.Features(), region);
-        if (options.denoise) denoised = MakeDenoised(picture, region, result, settings);
+        if (options.denoise)
+            denoised = DenoiseAndSay(picture, region, MakeBlocks(region, settings.schedule),
+                                     settings.quiet, talk);
         if (options.denoiseLayers) halves = MakeHalfChannels(picture);
     }
     session.TheFilm().DropHalf();  // what follows needs the memory

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
+#include "renderer/files/file_io.h"
 #include "renderer/measure/block_files.h"
 #include "renderer/measure/report.h"
-#include "renderer/output/file_io.h"
 #include "renderer/pages/html_page.h"
 
 namespace lull {

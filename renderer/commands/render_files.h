@@ -1,9 +1,9 @@
 // Writes the files of a render.
 #pragma once
 
+#include "renderer/files/outputs.h"
 #include "renderer/measure/block_observer.h"
 #include "renderer/measure/image_files.h"
-#include "renderer/output/outputs.h"
 
 namespace lull {
 

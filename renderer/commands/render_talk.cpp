@@ -8,7 +8,7 @@
 #include "renderer/base/say.h"
 #include "renderer/measure/report.h"
 #include "renderer/measure/shortfall.h"
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 
 namespace lull {
 

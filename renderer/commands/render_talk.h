@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "renderer/commands/render_settings.h"
-#include "renderer/output/result_files.h"
+#include "renderer/files/result_files.h"
 #include "renderer/render/provenance.h"
 
 namespace lull {

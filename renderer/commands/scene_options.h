@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "renderer/commands/talk.h"
+#include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
-#include "renderer/output/film.h"
 #include "renderer/scene/compile.h"
 
 namespace lull {

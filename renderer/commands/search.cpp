@@ -11,7 +11,7 @@
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

@@ -10,7 +10,7 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/hard_cases/heavy_tails.h"
 

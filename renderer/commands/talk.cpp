@@ -14,7 +14,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

@@ -12,7 +12,7 @@
 #include "renderer/commands/search.h"
 #include "renderer/commands/talk.h"
 #include "renderer/commands/training_printer.h"
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 #include "stopping/base/parallel.h"
 #include "stopping/network/model_file.h"
 

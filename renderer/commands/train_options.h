@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 #include "stopping/training/search_run.h"
 
 namespace lull {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "renderer/output/progress.h"
+#include "renderer/render/progress.h"
 #include "stopping/training/training.h"
 
 namespace lull {

@@ -53,30 +53,18 @@ Halves ScaleFeatures(Halves halves) {
     return halves;
 }
 
-// Returns half the squared difference of the halves: of a pixel of either the variance, with one
-// degree of freedom.
-Planes SquaredDifference(const Halves& halves) {
-    Planes result = halves.a;
-    for (size_t i = 0; i < result.values.size(); ++i) {
-        const float difference = halves.a.values[i] - halves.b.values[i];
-        result.values[i] = difference * difference / 2;
-    }
-    return result;
-}
-
 // Estimates the variance of a pixel of either half: what the samples' squares say of the luminance,
 // shared out by colour, scaled to what the halves differ by in the pixels around, since points that
 // fill space evenly have less noise than their squares say.
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
-    const Planes differences = SquaredDifference(colour);
+    const Planes differences = VarianceOf(colour.a, colour.b);
     if (ofMean.count == 0) return BoxMean(BoxMean(differences, 1), 1);
     Planes variance = differences;
     for (size_t i = 0; i < variance.Area(); ++i) {
-        float mean[kColours], y = 0;
-        for (int c = 0; c < kColours; ++c) {
+        Rgb mean;
+        for (int c = 0; c < kColours; ++c)
             mean[c] = std::max(kLeastLuminance, (colour.a.Plane(c)[i] + colour.b.Plane(c)[i]) / 2);
-            y += mean[c] * (c == 0 ? 0.212671f : c == 1 ? 0.715160f : 0.072169f);
-        }
+        const float y = Luminance(mean);
         const float relative = 2 * Sane(ofMean.values[i]) / (y * y);
         for (int c = 0; c < kColours; ++c)
             variance.Plane(c)[i] = std::min(relative * mean[c] * mean[c], kLargest);

@@ -14,10 +14,11 @@ void AddFiltered(const Planes& image, const PatchGuide& guide, Planes* result) {
     ForEachTile(image.width, image.height, [&](const ImageTile& tile) {
         const PatchWeights weights(guide, tile, 0, kFeaturePatches);
         const Cutout values(tile.Grown(kFeaturePatches.radius), image);
+        std::vector<Lanes> sums(size_t(image.count));
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; x += kLanes) {
                 Lanes norm = Lanes::Zero();
-                std::vector<Lanes> sums(size_t(image.count), norm);
+                std::ranges::fill(sums, norm);
                 for (int o = 0; o < int(weights.Offsets().size()); ++o) {
                     const Lanes w = weights.Of(o, x, y, 1);
                     const auto [dx, dy] = weights.Offsets()[size_t(o)];
@@ -37,12 +38,7 @@ void AddFiltered(const Planes& image, const PatchGuide& guide, Planes* result) {
 }  // namespace
 
 Planes FilterFeatures(const Planes& a, const Planes& b) {
-    Planes variance = a;
-    for (size_t i = 0; i < a.values.size(); ++i) {
-        const float difference = a.values[i] - b.values[i];
-        variance.values[i] = difference * difference / 2;
-    }
-    variance = BoxMean(std::move(variance), 1);
+    Planes variance = BoxMean(VarianceOf(a, b), 1);
     for (float& v : variance.values) v += kLeastFeatureVariance;
     Planes result(a.width, a.height, a.count);
     AddFiltered(a, {b, variance}, &result);

@@ -37,11 +37,11 @@ void Limit(Planes* half, size_t i, float limit) {
 CalmedHalves TakeFireflies(const Planes& a, const Planes& b, float limit) {
     CalmedHalves result{a, b, Planes(a.width, a.height, kColours)};
     Planes distance(a.width, a.height, 1);
+    const Planes counts = BoxSum(Planes(a.width, a.height, 1, 1), kScaleRadius);
     for (int round = 0; round < kRounds; ++round) {
         for (size_t i = 0; i < a.Area(); ++i)
             distance.values[i] = std::abs(LuminanceOf(result.a, i) - LuminanceOf(result.b, i));
-        const Planes around = BoxSum(distance, kScaleRadius),
-                     counts = BoxSum(Planes(a.width, a.height, 1, 1), kScaleRadius);
+        const Planes around = BoxSum(distance, kScaleRadius);
         const Planes mostA = MostAround(result.a), mostB = MostAround(result.b);
         for (size_t i = 0; i < a.Area(); ++i) {
             // The mean of |x| is sqrt(2 / pi) standard deviations; without the pixel itself.

@@ -55,6 +55,15 @@ Planes Filter(Planes image, int radius, bool asMean) {
 
 }  // namespace
 
+Planes VarianceOf(const Planes& a, const Planes& b) {
+    Planes result = a;
+    for (size_t i = 0; i < result.values.size(); ++i) {
+        const float difference = a.values[i] - b.values[i];
+        result.values[i] = difference * difference / 2;
+    }
+    return result;
+}
+
 Planes BoxMean(Planes image, int radius) { return Filter(std::move(image), radius, true); }
 Planes BoxSum(Planes image, int radius) { return Filter(std::move(image), radius, false); }
 

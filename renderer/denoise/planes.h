@@ -32,6 +32,10 @@ inline float LuminanceOf(const Planes& image, size_t i) {
     return Luminance(Rgb(image.Plane(0)[i], image.Plane(1)[i], image.Plane(2)[i]));
 }
 
+// Returns half the squared difference of two images: of a value of either, where they differ by
+// noise alone, the variance, with one degree of freedom.
+Planes VarianceOf(const Planes& a, const Planes& b);
+
 // Return the mean or the sum of each channel over the (2 radius + 1)^2 pixels around, those within
 // the image.
 Planes BoxMean(Planes, int radius);

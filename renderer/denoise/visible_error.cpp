@@ -94,10 +94,9 @@ EstimatedError MeasureError(const DenoisedPicture& denoised) {
         const float scale = square(at.slope);
         // The noise of both halves, and of what is made of them, is in it as products of the two.
         const float squared = (square(x - b) + square(y - a) - square(a - b)) / 2;
-        constexpr float weights[] = {0.212671f, 0.715160f, 0.072169f};
-        float deviation = 0;  // the colours of a path go together
-        for (int c = 0; c < kColours; ++c)
-            deviation += weights[c] * std::sqrt(denoised.variance.Plane(c)[i]);
+        Rgb deviations;
+        for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
+        const float deviation = Luminance(deviations);  // the colours of a path go together
         error.lightness.values[i] = at.lightness;
         error.least.values[i] = scale * square(x - y) / 4;
         error.squared.values[i] = scale * (squared - square(x - y) / 4);

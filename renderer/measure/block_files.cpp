@@ -4,9 +4,9 @@
 
 #include <sstream>
 
-#include "renderer/output/file_io.h"
-#include "renderer/output/image_io.h"
-#include "renderer/output/spp_map.h"
+#include "renderer/files/file_io.h"
+#include "renderer/film/spp_map.h"
+#include "renderer/image/image_io.h"
 #include "stopping/network/human_range.h"
 #include "stopping/rules/thresholds.h"
 

@@ -18,14 +18,8 @@ constexpr int curveSubBlocks = 100;
 constexpr int smallestCurveSide = 10;  // pixels: one to each row of sub-blocks
 
 double MeanEntropy(const BlockView& view) {
-    std::vector<uint8_t> srgb(view.mean.size());
-    EncodeSrgb8(view.mean, srgb);
-    std::vector<double> lightness(view.mean.size() / 3);
-    Lightness(srgb, lightness);
     double sum = 0;
-    for (const SvdEntropy& e :
-         SubBlockEntropies(lightness, view.width, view.height, curveSubBlocks))
-        sum += e.h;
+    for (const SvdEntropy& e : PictureEntropies(view, curveSubBlocks)) sum += e.h;
     return sum / curveSubBlocks;
 }
 

@@ -7,7 +7,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 
 namespace lull {
 

@@ -12,17 +12,8 @@ namespace lull {
 
 namespace {
 
-// Returns the lightness of an image as an 8-bit display shows it.
-std::vector<double> LightnessOf(const RgbImage& image) {
-    std::vector<uint8_t> srgb(image.values.size());
-    EncodeSrgb8(image.values, srgb);
-    std::vector<double> lightness(image.values.size() / 3);
-    Lightness(srgb, lightness);
-    return lightness;
-}
-
 std::vector<float> LightnessError(const RgbImage& image, const RgbImage& reference) {
-    const std::vector<double> a = LightnessOf(image), b = LightnessOf(reference);
+    const std::vector<double> a = LightnessOf(image.values), b = LightnessOf(reference.values);
     std::vector<float> error(a.size());
     for (size_t i = 0; i < a.size(); ++i) error[i] = float(a[i] - b[i]);
     return error;

@@ -40,14 +40,18 @@ std::string TextOf(const std::vector<VisibleError>& blocks) {
         upper[upper.size() / 2], upper.back());
 }
 
-std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage& image,
-                                             std::span<const float> noisy) {
+std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb) {
     std::vector<ExrChannel> channels;
     for (size_t c = 0; c < 3; ++c) {
-        ExrChannel channel{std::string("noisy.") + "RGB" [c], {}};
-        for (size_t i = c; i < noisy.size(); i += 3) channel.values.push_back(noisy[i]);
-        channels.push_back(std::move(channel));
+        ExrChannel& channel = channels.emplace_back(ExrChannel{layer + "RGB" [c], {}});
+        for (size_t i = c; i < rgb.size(); i += 3) channel.values.push_back(rgb[i]);
     }
+    return channels;
+}
+
+std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage& image,
+                                             std::span<const float> noisy) {
+    std::vector<ExrChannel> channels = ColourChannels("noisy.", noisy);
     channels.push_back({"error", image.error});
     return channels;
 }

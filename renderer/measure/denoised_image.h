@@ -2,9 +2,9 @@
 #pragma once
 
 #include "renderer/denoise/visible_error.h"
+#include "renderer/film/feature_film.h"
+#include "renderer/image/image_io.h"
 #include "renderer/measure/image_error.h"
-#include "renderer/output/image_io.h"
-#include "renderer/render/feature_film.h"
 #include "renderer/render/schedule.h"
 
 namespace lull {
@@ -25,6 +25,9 @@ std::string TextOf(const std::vector<VisibleError>&);
 // What the header of an EXR says of R, G, B.
 inline constexpr const char* kDenoisedNote =
     "R, G, B; noisy.R, .G, .B are the means of the samples";
+
+// Returns channels R, G, B of a layer, "noisy." for instance, from the values of each pixel.
+std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb);
 
 // Returns the channels that an EXR has beside R, G, B that are denoised: noisy.R .G .B, the mean of
 // the samples (R, G, B of each pixel), and `error`.

@@ -1,7 +1,7 @@
 // Turns the layers of a render into what its EXR is given beside the image.
 #pragma once
 
-#include "renderer/render/aov_channels.h"
+#include "renderer/film/aov_channels.h"
 #include "renderer/scene/compile.h"
 
 namespace lull {

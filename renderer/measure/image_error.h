@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 
 namespace lull {
 

@@ -127,12 +127,6 @@ RowSource SppOf(const Film& film) {
     };
 }
 
-RowSource MeansOf(const RgbImage& image) {
-    return [&image](int y, std::span<float> row) {
-        std::copy_n(&image.values[size_t(y) * row.size()], row.size(), row.begin());
-    };
-}
-
 // Returns the samples of pixels of blocks that have spp[i] each.
 RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
                 const std::vector<int>& spp) {
@@ -147,6 +141,12 @@ RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
 }
 
 }  // namespace
+
+RowSource MeansOf(const RgbImage& image) {
+    return [&image](int y, std::span<float> row) {
+        std::copy_n(&image.values[size_t(y) * row.size()], row.size(), row.begin());
+    };
+}
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
                 const DenoisedImage* denoised, const RenderResult& result, ExtraLayers extra,

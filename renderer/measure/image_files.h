@@ -1,11 +1,11 @@
 // Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
 #pragma once
 
+#include "renderer/files/result_files.h"
+#include "renderer/image/png_format.h"
 #include "renderer/measure/denoised_image.h"
 #include "renderer/measure/extra_layers.h"
 #include "renderer/measure/image_error.h"
-#include "renderer/output/png_format.h"
-#include "renderer/output/result_files.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 
@@ -34,6 +34,9 @@ struct PictureOrigin {
 // there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
 void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
                 const RenderResult&, ExtraLayers extra, const PictureFormat&, ResultFiles*);
+
+// Returns the rows of an image, which must outlive that.
+RowSource MeansOf(const RgbImage&);
 
 // Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
 struct ImageOfBlocks {

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/image/image_io.h"
 #include "renderer/measure/study.h"
-#include "renderer/output/image_io.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

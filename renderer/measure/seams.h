@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 
 namespace lull {
 

@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "renderer/base/color.h"
-#include "renderer/output/image_io.h"
-#include "renderer/output/spp_map.h"
+#include "renderer/film/spp_map.h"
+#include "renderer/image/image_io.h"
 #include "renderer/pages/embedded.h"
 
 namespace lull {

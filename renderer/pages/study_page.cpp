@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "renderer/base/error.h"
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/pages/html_page.h"
 #include "stopping/base/parallel.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/denoise/visible_error.h"
-#include "renderer/render/feature_film.h"
+#include "renderer/film/feature_film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
 

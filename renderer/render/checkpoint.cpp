@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/output/image_io.h"
-#include "renderer/render/feature_film.h"
+#include "renderer/film/feature_film.h"
+#include "renderer/image/image_io.h"
 
 namespace lull {
 

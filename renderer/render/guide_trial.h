@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "renderer/guiding/guide.h"
 #include "renderer/render/render.h"
-#include "renderer/transport/guide.h"
 
 namespace lull {
 

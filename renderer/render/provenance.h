@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/render/learning.h"
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/path_tracer.h"
 

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "renderer/output/display.h"
-#include "renderer/output/progress.h"
-#include "renderer/render/layers.h"
+#include "renderer/film/display.h"
+#include "renderer/film/layers.h"
+#include "renderer/render/progress.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
 

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 
 namespace lull {
 

@@ -7,8 +7,8 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
-#include "renderer/output/file_io.h"
-#include "renderer/render/learning_state.h"
+#include "renderer/files/file_io.h"
+#include "renderer/render/guide_learning_state.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
 

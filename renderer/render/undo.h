@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "renderer/render/layers.h"
+#include "renderer/film/layers.h"
 
 namespace lull {
 

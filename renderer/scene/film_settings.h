@@ -1,4 +1,4 @@
-// Describes the image that is wanted: its size, crop and scale. (The film itself is in output/.)
+// Describes the image that is wanted: its size, crop and scale. (The film itself is in film/.)
 #pragma once
 
 #include <string>

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "renderer/base/math.h"
-#include "renderer/output/image.h"
+#include "renderer/image/image.h"
 
 namespace lull {
 

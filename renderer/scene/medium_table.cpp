@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "renderer/scene/animated_transform.h"
+#include "renderer/scene/geometry/animated_transform.h"
+#include "renderer/scene/geometry/reach.h"
 #include "renderer/scene/media/presets.h"
-#include "renderer/scene/reach.h"
 
 namespace lull {
 namespace {

@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "renderer/base/sampler.h"
-#include "renderer/scene/accelerator.h"
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/film_settings.h"
 #include "renderer/scene/filter.h"
+#include "renderer/scene/geometry/accelerator.h"
+#include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/light_table.h"
 #include "renderer/scene/material.h"
 #include "renderer/scene/medium_table.h"
-#include "renderer/scene/shape_table.h"
 #include "renderer/scene/texture.h"
 
 namespace lull {

@@ -1,7 +1,7 @@
 // What the loop over a path does at each vertex with a guide, and without.
 #pragma once
 
-#include "renderer/transport/guide_record.h"
+#include "renderer/guiding/guide_record.h"
 #include "renderer/transport/path_state.h"
 
 namespace lull {

@@ -40,11 +40,7 @@ bool NeedsStatistics(const ModelSettings& settings) {
 void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
     if (Needs(settings, Feature::Attributes26)) {
-        std::vector<uint8_t> srgb(view.mean.size());
-        EncodeSrgb8(view.mean, srgb);
-        std::vector<double> lightness(view.mean.size() / 3);
-        Lightness(srgb, lightness);
-        const auto attributes = ComputeAttributes(lightness, view.width, view.height);
+        const auto attributes = ComputeAttributes(LightnessOf(view.mean), view.width, view.height);
         measures->Of(Feature::Attributes26).assign(attributes.begin(), attributes.end());
     }
     if (!NeedsEntropies(settings)) return;

@@ -22,15 +22,6 @@ void Append(std::span<const float> from, std::vector<float>* to) {
     to->insert(to->end(), from.begin(), from.end());
 }
 
-// Returns L of the display image.
-std::vector<double> DisplayedLightness(const BlockView& view) {
-    std::vector<uint8_t> srgb(view.mean.size());
-    EncodeSrgb8(view.mean, srgb);
-    std::vector<double> lightness(view.mean.size() / 3);
-    Lightness(srgb, lightness);
-    return lightness;
-}
-
 // Appends the entropies h4 ... h400, h1 and h2.
 void AppendEntropies(std::span<const double> lightness, int width, int height,
                      std::vector<float>* to) {
@@ -48,7 +39,7 @@ void AppendEntropies(std::span<const double> lightness, int width, int height,
 
 // Computes a record: all channels in their order.
 void AppendRecord(const BlockView& view, std::vector<float>* to) {
-    const std::vector<double> lightness = DisplayedLightness(view);
+    const std::vector<double> lightness = LightnessOf(view.mean);
     AppendEntropies(lightness, view.width, view.height, to);
     const LightnessNoise noise = ComputeLightnessNoise(view);
     const LightnessNoiseStatistics s =

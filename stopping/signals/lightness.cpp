@@ -76,4 +76,12 @@ void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness) {
     }
 }
 
+std::vector<double> LightnessOf(std::span<const float> linear) {
+    std::vector<uint8_t> srgb(linear.size());
+    EncodeSrgb8(linear, srgb);
+    std::vector<double> lightness(linear.size() / 3);
+    Lightness(srgb, lightness);
+    return lightness;
+}
+
 }  // namespace lull

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace lull {
 
@@ -26,6 +27,9 @@ void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);
 // L = 116 f(Y) - 16 with f(t) = cbrt(t) where t > 0.008856 and 7.787 t + 16/116 elsewhere.
 // Throws std::invalid_argument if `srgb` is not three times as long as `lightness`.
 void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness);
+
+// Returns the lightness of linear pixels (R, G, B) as an 8-bit display shows them.
+std::vector<double> LightnessOf(std::span<const float> linear);
 
 // Holds L at a luminance, at least 0, and its derivative there; above white L goes on.
 template <typename Real>

@@ -94,11 +94,7 @@ std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int
 
 std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks) {
     CheckView(view, ViewNeed::Mean);
-    std::vector<uint8_t> srgb(view.mean.size());
-    EncodeSrgb8(view.mean, srgb);
-    std::vector<double> lightness(view.mean.size() / 3);
-    Lightness(srgb, lightness);
-    return SubBlockEntropies(lightness, view.width, view.height, subBlocks);
+    return SubBlockEntropies(LightnessOf(view.mean), view.width, view.height, subBlocks);
 }
 
 }  // namespace lull

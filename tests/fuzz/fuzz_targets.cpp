@@ -3,20 +3,20 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "renderer/image/image_io.h"
 #include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
-#include "renderer/output/image_io.h"
 #include "renderer/scene/cameras/lens_file.h"
+#include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
-#include "renderer/scene/shape_table.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/observers/observers.h"
 #include "stopping/rules/thresholds.h"
 #include "stopping/training/search.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "tests/fuzz/fuzz_targets.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 namespace {

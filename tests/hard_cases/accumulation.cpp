@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

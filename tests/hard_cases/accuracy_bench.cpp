@@ -7,7 +7,7 @@
 #include <Eigen/SVD>
 #include <random>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 #include "renderer/scene/image_lookup.h"
 #include "stopping/rules/learned.h"
 #include "stopping/signals/lightness.h"

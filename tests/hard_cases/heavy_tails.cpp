@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "renderer/output/film.h"
+#include "renderer/film/film.h"
 #include "stopping/rules/criterion.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "tests/hard_cases/known_scene.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 

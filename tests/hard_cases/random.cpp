@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "renderer/base/sampling.h"
-#include "renderer/scene/shapes/mesh.h"
-#include "renderer/scene/shapes/quadric.h"
+#include "renderer/scene/geometry/shapes/mesh.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
 #include "tests/hard_cases/known_scene.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

@@ -11,7 +11,7 @@
 #include "stopping/signals/svd_entropy.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/signals/block_images.h"
 

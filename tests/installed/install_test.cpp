@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
 
 namespace lull {

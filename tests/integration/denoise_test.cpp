@@ -1,7 +1,7 @@
 // Denoises renders: by the render itself, afterwards, and those of others.
 #include <map>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull {

@@ -1,7 +1,7 @@
 // Judges rules and thresholds as a user would.
 #include <cmath>
 
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 #include "stopping/recordings/dataset.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"

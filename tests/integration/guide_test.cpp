@@ -1,7 +1,7 @@
 // Lets the program learn where light comes from, as a user would.
 #include <nlohmann/json.hpp>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::guide_test {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <random>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::interruption_test {

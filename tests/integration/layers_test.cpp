@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
-#include "tests/renderer/output/viewer_server.h"
+#include "tests/renderer/film/viewer_server.h"
 
 namespace lull {
 namespace {

@@ -2,7 +2,7 @@
 // be written.
 #include <thread>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::outputs_test {
@@ -155,6 +155,22 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
               ReadImage(directory.File("whole.exr")).texels);
     for (const char* extension : {".png", ".spp.png", ".thresholds.csv"})
         EXPECT_TRUE(fs::exists(directory.File(std::string("out") + extension))) << extension;
+}
+
+TEST(Outputs, DenoisedPicturesThatCannotBeWrittenGoElsewhere) {
+    const Inputs directory;
+    ASSERT_EQ(
+        RunLull(directory, fmt::format("render {} --denoise-layers -o in.exr", kOptions)).exitCode,
+        0);
+    fs::create_symlink("/dev/full", directory.File("out.exr"));
+    const Outcome outcome = RunShell(directory, "TMPDIR=. LULL denoise in.exr -o out.exr");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    const std::string place = outcome.out.substr(0, outcome.out.find('\n'));
+    EXPECT_TRUE(place.ends_with("/out.exr")) << place;
+    EXPECT_TRUE(fs::exists(directory.File(place)));
+    EXPECT_TRUE(outcome.out.ends_with("\nout.png\n")) << outcome.out;
+    EXPECT_TRUE(fs::exists(directory.File("out.png")));
 }
 
 // Where no folder takes one, the others are written all the same.

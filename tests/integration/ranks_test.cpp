@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "stopping/recordings/dataset.h"
 #include "tests/integration/run_and_signal.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 

@@ -1,6 +1,6 @@
 // Takes the streams from the program that it talks to: no render is lost by that, and no result
 // without a word.
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 #include "stopping/network/model_file.h"
 #include "tests/integration/run_and_signal.h"
 #include "tests/stopping/recordings/made_up_recordings.h"

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "renderer/image/image_io.h"
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/output/image_io.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "renderer/output/file_io.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 namespace {

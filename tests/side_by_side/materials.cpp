@@ -6,9 +6,9 @@
 
 #include "renderer/base/color.h"
 #include "renderer/bsdf/microfacet.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
+#include "renderer/image/image_io.h"
 #include "renderer/input/spectrum.h"
-#include "renderer/output/image_io.h"
 
 namespace lull {
 namespace {

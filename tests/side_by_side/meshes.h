@@ -1,7 +1,7 @@
 // Turns lull's shapes into triangles for glTF.
 #pragma once
 
-#include "renderer/scene/shape_table.h"
+#include "renderer/scene/geometry/shape_table.h"
 
 namespace lull {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "renderer/image/image_io.h"
 #include "renderer/input/scene_edits.h"
-#include "renderer/output/image_io.h"
 
 namespace lull {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/decompression.h"
 #include "renderer/input/gltf/validation.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/parameters.h"
 
 namespace lull {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "renderer/base/error.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 
 namespace lull {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/base/error.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 
 namespace lull {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/input/ply/ply_header.h"
 
 namespace lull {

@@ -1,7 +1,7 @@
 // Puts what ranks say to each other (peers.h) into bytes.
 #pragma once
 
-#include "renderer/render/layers.h"
+#include "renderer/film/layers.h"
 #include "renderer/render/schedule.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/base/sampling.h"
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/scene/cameras/lens_file.h"
 
 namespace lull {

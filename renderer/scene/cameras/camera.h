@@ -3,9 +3,9 @@
 #pragma once
 
 #include "renderer/input/description.h"
-#include "renderer/scene/animated_transform.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/film_settings.h"
+#include "renderer/scene/geometry/animated_transform.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/input/number_file.h"
 
 namespace lull {

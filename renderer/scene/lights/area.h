@@ -1,9 +1,9 @@
 #pragma once
 
+#include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/lights/emission_map.h"
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
-#include "renderer/scene/shape_table.h"
 
 namespace lull {
 

@@ -1,7 +1,7 @@
 // Varies the emission of a mesh over its surface.
 #pragma once
 
-#include "renderer/scene/coverage.h"
+#include "renderer/scene/geometry/coverage.h"
 
 namespace lull {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "renderer/base/sampling.h"
-#include "renderer/output/image.h"
+#include "renderer/image/image.h"
 
 namespace lull {
 

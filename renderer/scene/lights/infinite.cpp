@@ -1,7 +1,7 @@
 #include "renderer/scene/lights/infinite.h"
 
 #include "renderer/base/color.h"
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_color.h"
 
 namespace lull {

@@ -1,6 +1,6 @@
 #include "renderer/scene/lights/light_image.h"
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/scene/image_lookup.h"
 
 namespace lull {

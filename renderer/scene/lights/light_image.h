@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "renderer/image/image.h"
 #include "renderer/input/description.h"
-#include "renderer/output/image.h"
 
 namespace lull {
 

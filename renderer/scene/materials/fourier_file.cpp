@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "renderer/input/file_contents.h"
+#include "renderer/files/file_contents.h"
 
 namespace lull {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "renderer/base/color.h"
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 
 namespace lull {
 

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/image/image.h"
 #include "renderer/input/description.h"
-#include "renderer/output/image.h"
 #include "renderer/scene/textures/mip_pyramid.h"
 
 namespace lull {

@@ -33,5 +33,13 @@ TEST(Planes, AreNotSpoiledByBrightValues) {
     EXPECT_FLOAT_EQ(mean.Row(0, 10)[50], 1e-3f);
 }
 
+TEST(Planes, VaryByHalfTheirSquaredDifference) {
+    Planes a(3, 2, 2, 1), b(3, 2, 2, 1);
+    b.Row(1, 1)[2] = -3;
+    Planes expected(3, 2, 2);
+    expected.Row(1, 1)[2] = 8;
+    EXPECT_EQ(VarianceOf(a, b).values, expected.values);
+}
+
 }  // namespace
 }  // namespace lull

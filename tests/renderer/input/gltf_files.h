@@ -10,7 +10,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/input/gltf_loader.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/input/pbrt_parser.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull::scene_hash_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "renderer/input/pbrt_parser.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 

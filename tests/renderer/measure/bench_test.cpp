@@ -5,7 +5,7 @@
 #include "renderer/base/error.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/criterion.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/measure/study_render.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {

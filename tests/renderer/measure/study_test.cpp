@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/output/image_io.h"
-#include "tests/renderer/output/test_files.h"
+#include "renderer/image/image_io.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 namespace {

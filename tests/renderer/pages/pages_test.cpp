@@ -3,8 +3,8 @@
 #include "renderer/pages/bench_page.h"
 #include "renderer/pages/comparison_page.h"
 #include "renderer/pages/embedded.h"
-#include "tests/renderer/output/add_sample.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/film/add_sample.h"
 
 namespace lull {
 namespace {

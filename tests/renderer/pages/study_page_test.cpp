@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/pages/collected_page.h"
 #include "renderer/pages/embedded.h"
 #include "renderer/pages/html_page.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 namespace {

@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "renderer/render/checkpoint.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull::aov_test {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "stopping/base/state.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull::checkpoint_test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/render/layers.h"
+#include "renderer/film/layers.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {

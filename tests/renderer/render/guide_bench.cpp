@@ -12,8 +12,8 @@
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
 #include "renderer/input/pbrt_parser.h"
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/guide_trial.h"
-#include "renderer/render/learning.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bench_scenes.h"
 

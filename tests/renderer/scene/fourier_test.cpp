@@ -6,7 +6,7 @@
 #include "renderer/scene/materials/fourier_file.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull::test {
 namespace {

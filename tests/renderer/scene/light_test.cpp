@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/image/image_io.h"
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/output/image_io.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "renderer/scene/phase.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull {

@@ -2,9 +2,9 @@
 
 #include <random>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/scene/textures/mip_pyramid.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/marble.h"

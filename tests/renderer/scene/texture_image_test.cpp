@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/color.h"
-#include "renderer/output/image_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/scene/image_lookup.h"
 #include "renderer/scene/textures/texture_image.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull {

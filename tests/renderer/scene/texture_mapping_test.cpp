@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/scene/textures/mapping.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull {

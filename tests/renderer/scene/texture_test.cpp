@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull::texture_test {

@@ -5,7 +5,7 @@
 #include "renderer/bsdf/fresnel_moments.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull::furnace_test {

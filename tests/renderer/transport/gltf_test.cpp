@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/color.h"
+#include "renderer/image/image_io.h"
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/output/image_io.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/input/gltf_files.h"
 #include "tests/renderer/transport/pixel_statistics.h"

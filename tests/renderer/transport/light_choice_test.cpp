@@ -4,7 +4,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/scene/accelerator_internal.h"
+#include "renderer/scene/geometry/accelerator_internal.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "renderer/image/image_io.h"
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/output/image_io.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 #include "tests/shared_folder.h"

@@ -63,6 +63,15 @@ TEST(Lightness, HasTheKnownValues) {
     EXPECT_NEAR(LightnessOf(1, 1, 1), 116 * 7.787 / 12.92 / 255, 1e-4);  // the linear part
 }
 
+TEST(Lightness, IsThatOfDisplayedColours) {
+    const std::vector<float> linear = {0, 0, 0, 7, 1, 2, 0.2140411f, -1, 0};
+    const std::vector<double> lightness = LightnessOf(linear);
+    ASSERT_EQ(lightness.size(), 3u);
+    EXPECT_EQ(lightness[0], 0);
+    EXPECT_NEAR(lightness[1], 100, 1e-9);
+    EXPECT_EQ(lightness[2], LightnessOf(127, 0, 0));
+}
+
 TEST(Lightness, RefusesOtherLengths) {
     std::vector<uint8_t> srgb(5);
     std::vector<double> lightness(2);

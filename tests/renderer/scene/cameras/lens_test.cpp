@@ -5,7 +5,7 @@
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/cameras/lens_file.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/output/test_files.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/texture_builder.h"
 
 namespace lull {

@@ -1,0 +1,251 @@
+#include "renderer/files/file_io.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+namespace fs = std::filesystem;
+
+// What AtomicFile holds. It has linkage, and so must these.
+namespace file_io {
+
+// Owns a descriptor and, while `temporary` is not empty, the file of that name.
+struct OutputFile {
+    int fd = -1;
+    int lock = -1;  // another descriptor of the same file, which keeps it locked
+    fs::path temporary;
+
+    OutputFile() = default;
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile() {
+        if (!temporary.empty()) unlink(temporary.c_str());
+        for (const int open : {fd, lock})
+            if (open >= 0) close(open);
+    }
+};
+
+// Says what is at the end of the links of `path`: the place to write to, and its status.
+struct Target {
+    fs::path path;
+    fs::file_status status;
+};
+
+}  // namespace file_io
+
+namespace {
+
+using file_io::OutputFile, file_io::Target;
+
+[[noreturn]] void Fail(const std::string& path, const std::string& reason) {
+    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+}
+
+[[noreturn]] void FailWithErrno(const std::string& path, int error = errno) {
+    Fail(path, std::strerror(error));
+}
+
+// Returns the name of a file beside `target`, hidden and with its extension, so that whoever
+// watches the directory does not take it for a result. The stem is cut short so that a name that is
+// just allowed leads to one that is, too.
+fs::path BesideTarget(const fs::path& target, const std::string& tag) {
+    return target.parent_path() / fmt::format(".{}.{}{}", target.stem().string().substr(0, 128),
+                                              tag, target.extension().string().substr(0, 32));
+}
+
+// Creates the file; returns false, with errno, where there is one or it cannot be created.
+bool Create(const fs::path& name, OutputFile* file) {
+    file->fd = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file->fd >= 0) file->temporary = name;
+    return file->fd >= 0;
+}
+
+// Says whether the name is that of the open file.
+bool IsNamed(int fd, const fs::path& name) {
+    struct stat opened, named;
+    return fstat(fd, &opened) == 0 && lstat(name.c_str(), &named) == 0 &&
+           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// Creates the file and locks it. Where somebody is faster to lock it, it is theirs to remove, and
+// may be gone by the time that the lock is free again.
+bool CreateLocked(const fs::path& name, OutputFile* file) {
+    if (!Create(name, file)) return false;
+    file->lock = dup(file->fd);  // a lock is given up with the last descriptor
+    const bool isLocked = file->lock >= 0 && flock(file->fd, LOCK_EX | LOCK_NB) == 0;
+    if (isLocked && IsNamed(file->fd, name)) return true;
+    if (!isLocked && errno != EWOULDBLOCK) unlink(name.c_str());
+    for (int* open : {&file->fd, &file->lock})
+        if (*open >= 0) close(std::exchange(*open, -1));
+    file->temporary.clear();
+    errno = EWOULDBLOCK;
+    return false;
+}
+
+// Removes what a writer that was killed has left; returns false where somebody is writing to it, or
+// that cannot be known.
+bool RemoveLeftover(const fs::path& name) {
+    OutputFile old;
+    old.fd = open(name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (old.fd < 0) return errno == ENOENT;
+    if (flock(old.fd, LOCK_EX | LOCK_NB) != 0) return false;
+    // What was locked may have been given its final name in the meantime.
+    return !IsNamed(old.fd, name) || unlink(name.c_str()) == 0;
+}
+
+// Creates a new file beside `target`. It has always the same name, so that what is left where
+// writers are killed does not grow; where another writer has that, or the file system knows no
+// locks, one of its own.
+void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
+    const fs::path common = BesideTarget(target, "tmp");
+    for (int attempt = 0; attempt < 10; ++attempt) {
+        if (CreateLocked(common, file)) return;
+        if (errno != EEXIST || !RemoveLeftover(common)) break;
+    }
+    static std::atomic<unsigned> serial = 0;  // tells apart the writers of one process
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        if (Create(BesideTarget(target, fmt::format("{}-{}", getpid(), serial++)), file)) return;
+        if (errno != EEXIST) break;
+    }
+    FailWithErrno(path);
+}
+
+// Calls write(bytes, done), which returns what it has written, until all is.
+template <typename Write>
+void WriteAll(const std::string& path, std::span<const std::byte> bytes, const Write& write) {
+    for (size_t done = 0; done < bytes.size();) {
+        const ssize_t written = write(bytes.subspan(done), done);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) FailWithErrno(path);
+        done += size_t(written);
+    }
+}
+
+// Closes with the error checked: network file systems report a full disk only here.
+void Close(const std::string& path, OutputFile* file) {
+    const int fd = file->fd;
+    file->fd = -1;
+    if (close(fd) != 0 && errno != EINTR) FailWithErrno(path);
+}
+
+// Makes a rename last; some file systems cannot, which harms no one.
+void SyncDirectory(const fs::path& directory) {
+    const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    fsync(fd);
+    close(fd);
+}
+
+Target FindTarget(const std::string& path) {
+    if (path.empty()) throw Error("cannot write: the file name is empty");
+    std::error_code error;
+    Target target;
+    target.path = fs::weakly_canonical(fs::absolute(path), error);
+    if (error) Fail(path, error.message());
+    target.status = fs::status(target.path, error);
+    if (fs::is_directory(target.status)) Fail(path, "it is a directory");
+    if (path.back() == '/') Fail(path, "it names a directory");
+    const fs::path directory = target.path.parent_path();
+    const fs::file_status parent = fs::status(directory, error);
+    if (!fs::exists(parent))
+        Fail(path, fmt::format("the directory \"{}\" does not exist", directory.string()));
+    if (!fs::is_directory(parent))
+        Fail(path, fmt::format("\"{}\" is no directory", directory.string()));
+    return target;
+}
+
+bool IsSpecial(const Target& target) {
+    return fs::exists(target.status) && !fs::is_regular_file(target.status);
+}
+
+void WriteDirectly(const std::string& path, const Target& target,
+                   std::span<const std::byte> bytes) {
+    OutputFile file;
+    file.fd = open(target.path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file.fd < 0) FailWithErrno(path);
+    WriteAll(path, bytes, [&](std::span<const std::byte> rest, size_t) {
+        return write(file.fd, rest.data(), rest.size());
+    });
+    Close(path, &file);
+}
+
+}  // namespace
+
+struct AtomicFile::State {
+    std::string path;
+    Target target;
+    OutputFile file;                // the new one; none where the target is special
+    std::vector<std::byte> direct;  // what a special target is to get
+};
+
+AtomicFile::AtomicFile(const std::string& path) : state(std::make_unique<State>()) {
+    state->path = path;
+    state->target = FindTarget(path);
+    if (IsSpecial(state->target)) return;
+    const fs::file_status& old = state->target.status;
+    OpenTemporary(path, state->target.path, &state->file);
+    if (fs::exists(old) && fchmod(state->file.fd, mode_t(old.permissions() & fs::perms::mask)) != 0)
+        FailWithErrno(path);
+}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::WriteAt(int64_t offset, std::span<const std::byte> bytes) {
+    if (IsSpecial(state->target)) {
+        state->direct.resize(std::max(state->direct.size(), size_t(offset) + bytes.size()));
+        std::copy(bytes.begin(), bytes.end(), state->direct.begin() + offset);
+        return;
+    }
+    WriteAll(state->path, bytes, [&](std::span<const std::byte> rest, size_t done) {
+        return pwrite(state->file.fd, rest.data(), rest.size(), offset + off_t(done));
+    });
+}
+
+void AtomicFile::Commit() {
+    const std::string& path = state->path;
+    if (IsSpecial(state->target)) return WriteDirectly(path, state->target, state->direct);
+    OutputFile& file = state->file;
+    if (fsync(file.fd) != 0 && errno != EINVAL) FailWithErrno(path);
+    Close(path, &file);
+    if (rename(file.temporary.c_str(), state->target.path.c_str()) != 0) FailWithErrno(path);
+    file.temporary.clear();
+    if (file.lock >= 0) close(std::exchange(file.lock, -1));
+    SyncDirectory(state->target.path.parent_path());
+}
+
+std::string AtomicFile::Temporary() const { return state->file.temporary.string(); }
+
+void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes) {
+    AtomicFile file(path);
+    file.WriteAt(0, bytes);
+    file.Commit();
+}
+
+void WriteFileAtomically(const std::string& path, std::string_view text) {
+    WriteFileAtomically(path, std::as_bytes(std::span(text)));
+}
+
+void CheckWritable(const std::string& path) {
+    const Target target = FindTarget(path);
+    if (IsSpecial(target)) {
+        if (access(target.path.c_str(), W_OK) != 0) FailWithErrno(path);
+        return;
+    }
+    // Permission bits do not tell all (read-only mounts, quotas); creating a file does.
+    OutputFile probe;
+    OpenTemporary(path, target.path, &probe);
+}
+
+}  // namespace lull

@@ -1,0 +1,70 @@
+#include "renderer/film/aov_film.h"
+
+#include <fmt/format.h>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+namespace {
+
+struct NamedLayer {
+    const char* name;
+    bool AovSet::*wanted;
+};
+constexpr std::array<NamedLayer, 7> kLayers = {{{"albedo", &AovSet::albedo},
+                                                {"normal", &AovSet::normal},
+                                                {"depth", &AovSet::depth},
+                                                {"position", &AovSet::position},
+                                                {"object", &AovSet::object},
+                                                {"material", &AovSet::material},
+                                                {"noise", &AovSet::noise}}};
+
+}  // namespace
+
+std::string NameOf(const AovSet& set) {
+    std::string names;
+    for (const NamedLayer& layer : kLayers) {
+        if (!(set.*layer.wanted)) continue;
+        if (!names.empty()) names += ',';
+        names += layer.name;
+    }
+    return names;
+}
+
+std::string TextOf(const AovSet& set) {
+    return NameOf(set) + (set.throughSpecular ? " through specular" : "");
+}
+
+AovSet ParseAovs(const std::string& names) {
+    AovSet set;
+    for (size_t begin = 0; begin <= names.size();) {
+        const size_t end = std::min(names.find(',', begin), names.size());
+        const std::string name = names.substr(begin, end - begin);
+        const auto layer = std::find_if(kLayers.begin(), kLayers.end(),
+                                        [&](const NamedLayer& l) { return l.name == name; });
+        if (layer == kLayers.end())
+            throw Error(
+                fmt::format("there is no layer \"{}\", but albedo, normal, depth, position, "
+                            "object, material and noise, with commas between them",
+                            name));
+        set.*layer->wanted = true;
+        begin = end + 1;
+    }
+    return set;
+}
+
+void AovFilm::Copy(const PixelRect& rect, std::vector<AovPixel>* to) const {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
+        const AovPixel* row = &At({rect.min.x(), y});
+        to->insert(to->end(), row, row + rect.Width());
+    }
+}
+
+const AovPixel* AovFilm::Set(const AovPixel* from, const PixelRect& rect) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y, from += rect.Width())
+        std::copy_n(from, rect.Width(), &At({rect.min.x(), y}));
+    return from;
+}
+
+}  // namespace lull

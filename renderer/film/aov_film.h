@@ -1,0 +1,93 @@
+// Sums up the first hits of paths: the layers beside the image that denoisers and compositors read
+// ("arbitrary output variables").
+#pragma once
+
+#include <string>
+
+#include "renderer/base/color.h"
+#include "renderer/film/film.h"
+#include "renderer/transport/first_hit.h"
+
+namespace lull {
+
+// Says which layers are wanted, and how.
+struct AovSet {
+    bool albedo = false, normal = false, depth = false, position = false, object = false,
+         material = false, noise = false;
+    // Look through surfaces that have only perfectly specular lobes, to what is seen in them.
+    bool throughSpecular = false;
+
+    bool Any() const { return FirstHits() || noise; }
+    // Says whether any layer needs first hits; noise does not.
+    bool FirstHits() const { return albedo || normal || depth || position || object || material; }
+    bool operator==(const AovSet&) const = default;
+};
+
+// Names the layers: "albedo,normal,..." in the order above, without throughSpecular.
+std::string NameOf(const AovSet&);
+// Says the same in words, with throughSpecular, for checkpoints and headers.
+std::string TextOf(const AovSet&);
+
+// Reads such names, in any order. Throws Error naming the first unknown one, or if there is none.
+AovSet ParseAovs(const std::string& names);
+
+// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+struct AovPixel {
+    std::array<double, 3> albedo = {}, normal = {}, position = {};
+    double depth = 0;
+    double squares = 0;                 // of the samples' luminance
+    uint32_t hits = 0;                  // samples with a first hit
+    uint32_t object = 0, material = 0;  // of the sample nearest to the centre
+    float nearest = kInfinity;          // its FirstHit::offset2
+
+    void Add(const FirstHit& hit, const Rgb& radiance) {
+        const double y = Luminance(radiance);
+        squares += y * y;
+        for (int c = 0; c < 3; ++c) {
+            albedo[c] += double(hit.weight * hit.albedo[c]);
+            normal[c] += double(hit.weight * hit.normal[c]);
+        }
+        if (hit.found) {
+            ++hits;
+            depth += double(hit.depth);
+            for (int c = 0; c < 3; ++c) position[c] += double(hit.position[c]);
+        }
+        if (hit.offset2 < nearest) {
+            nearest = hit.offset2;
+            object = hit.object;
+            material = hit.material;
+        }
+    }
+    bool operator==(const AovPixel&) const = default;
+};
+
+// Holds these pixels for the region of a Film, which has their sample counts. Different pixels can
+// be changed by different threads at the same time.
+class AovFilm {
+  public:
+    AovFilm(const PixelRect& region, const AovSet& wanted)
+        : region(region), wanted(wanted), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+
+    const PixelRect& Region() const { return region; }
+    const AovSet& Wanted() const { return wanted; }
+    AovPixel& At(const Vec2i& p) { return pixels[Index(p)]; }
+    const AovPixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
+    std::span<const AovPixel> Pixels() const { return pixels; }
+
+    // Appends the pixels of a rectangle, row by row.
+    void Copy(const PixelRect&, std::vector<AovPixel>* to) const;
+    // Sets them; returns what follows them in `from`.
+    const AovPixel* Set(const AovPixel* from, const PixelRect&);
+
+  private:
+    size_t Index(const Vec2i& p) const {
+        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
+               size_t(p.x() - region.min.x());
+    }
+
+    PixelRect region;
+    AovSet wanted;
+    std::vector<AovPixel> pixels;
+};
+
+}  // namespace lull

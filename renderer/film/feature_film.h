@@ -1,0 +1,51 @@
+// Sums up what a denoiser fits colours to: features of what paths meet first, by halves of the
+// samples.
+#pragma once
+
+#include "renderer/film/aov_film.h"
+
+namespace lull {
+
+// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+struct FeaturePixel {
+    // Albedo R, G, B, normal X, Y, Z, weighted by the pixel filter as the image is, and one over
+    // the depth, which is 0 where nothing is met. Of the samples that are in the half (InHalf()),
+    // and of the others.
+    std::array<std::array<float, 7>, 2> sums = {};
+    float squares = 0;  // of all samples' luminance
+
+    void Add(const FirstHit& hit, const Rgb& radiance, bool inHalf) {
+        std::array<float, 7>& sum = sums[inHalf ? 0 : 1];
+        for (size_t c = 0; c < 3; ++c) {
+            sum[c] += hit.weight * hit.albedo[int(c)];
+            sum[3 + c] += hit.weight * hit.normal[int(c)];
+        }
+        if (hit.found && hit.depth > 0) sum[6] += 1 / std::max(hit.depth, 1e-12f);
+        const float y = Luminance(radiance);
+        squares += y * y;
+    }
+    bool operator==(const FeaturePixel&) const = default;
+};
+
+// Holds these pixels of the region that a Film beside it has: 60 bytes a pixel. Different pixels
+// can be changed by different threads at the same time.
+class FeatureFilm {
+  public:
+    explicit FeatureFilm(const PixelRect& region)
+        : region(region), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+
+    const PixelRect& Region() const { return region; }
+    FeaturePixel& At(const Vec2i& p) { return pixels[Index(p)]; }
+    const FeaturePixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
+
+  private:
+    size_t Index(const Vec2i& p) const {
+        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
+               size_t(p.x() - region.min.x());
+    }
+
+    PixelRect region;
+    std::vector<FeaturePixel> pixels;
+};
+
+}  // namespace lull

@@ -1,0 +1,165 @@
+#include "renderer/guiding/guide_refine.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kMaxQuadDepth = 10;
+
+using Masses = std::array<double, 4>;
+
+// Holds a quadtree and the light in its quadrants.
+struct Quadtree {
+    std::vector<QuadNode> nodes;
+    std::vector<Masses> light;  // 0 where a quadrant has children
+};
+
+// Makes the quadtree of one leaf.
+class TreeBuilder {
+  public:
+    TreeBuilder(const GuideState& state, const GuideLeaf& leaf, float share, bool cuts)
+        : nodes(&state.guide.quads[leaf.firstNode]),
+          sums(&state.record.sums[4 * size_t(leaf.firstNode)]),
+          masses(leaf.nodeCount),
+          total(SumOf(0)),
+          least(share * total),
+          cuts(cuts) {}
+
+    // Returns an empty tree where nothing was recorded.
+    Quadtree Build() {
+        if (total > 0) Place(masses[0], nodes[0].child, 0);
+        return std::move(built);
+    }
+
+  private:
+    // Fills in the masses of an old node and of those below.
+    double SumOf(uint32_t node) {
+        for (size_t q = 0; q < 4; ++q) {
+            const uint16_t child = nodes[node].child[q];
+            masses[node][q] = child ? SumOf(child) : double(sums[4 * node + q]);
+        }
+        const Masses& m = masses[node];
+        return m[0] + m[1] + m[2] + m[3];
+    }
+
+    // Makes a node of these masses, and what is below: of the old nodes where there are some, else
+    // even. Returns its place.
+    uint16_t Place(const Masses& mass, const std::array<uint16_t, 4>& below, int depth) {
+        const size_t place = built.nodes.size();
+        built.nodes.emplace_back();
+        built.light.push_back(mass);
+        const double sum = mass[0] + mass[1] + mass[2] + mass[3];
+        for (size_t q = 0; q < 4; ++q) {
+            if (sum > 0) built.nodes[place].share[q] = float(mass[q] / sum);
+            if (!(mass[q] > least) || depth + 1 >= kMaxQuadDepth || (!below[q] && !cuts)) continue;
+            const double m = mass[q] / 4;
+            const uint16_t child = below[q]
+                                       ? Place(masses[below[q]], nodes[below[q]].child, depth + 1)
+                                       : Place({m, m, m, m}, {}, depth + 1);
+            built.nodes[place].child[q] = child;
+            built.light[place][q] = 0;
+        }
+        return uint16_t(place);
+    }
+
+    const QuadNode* nodes;  // the old tree
+    const uint64_t* sums;
+    std::vector<Masses> masses;
+    const double total, least;
+    const bool cuts;
+    Quadtree built;
+};
+
+float BestFraction(const GuideRecord::LeafSums& sums) {
+    const auto least = std::min_element(sums.cost.begin(), sums.cost.end());
+    return GuideRecord::kFractions[size_t(least - sums.cost.begin())];
+}
+
+size_t BytesOf(const GuideState& state) { return state.guide.Bytes() + state.record.Bytes(); }
+
+// Copies the tree over space, with new quadtrees. Gives up when the copy gets too large, while
+// something can be done about it.
+class Refinement {
+  public:
+    Refinement(const GuideState& old, const RefineOptions& options, bool cuts)
+        : old(old), options(options), cuts(cuts) {}
+
+    GuideState Make() {
+        made.guide.lower = old.guide.lower;
+        made.guide.side = old.guide.side;
+        made.guide.nodes.resize(1);
+        Copy(0, 0);
+        return std::move(made);
+    }
+
+  private:
+    uint32_t MakeChildren(uint32_t node) {
+        const auto children = uint32_t(made.guide.nodes.size());
+        made.guide.nodes[node] = children;
+        made.guide.nodes.resize(children + 2);
+        return children;
+    }
+
+    void Copy(uint32_t from, uint32_t to) {
+        if (cuts && BytesOf(made) > options.maxBytes && options.quadrantShare <= 1) return;
+        const uint32_t node = old.guide.nodes[from];
+        if (!(node & Guide::kIsLeaf)) {
+            const uint32_t children = MakeChildren(to);
+            Copy(node, children);
+            Copy(node + 1, children + 1);
+            return;
+        }
+        const uint32_t index = node & ~Guide::kIsLeaf;
+        GuideLeaf leaf = old.guide.leaves[index];
+        const GuideRecord::LeafSums& sums = old.record.leaves[index];
+        Quadtree tree = TreeBuilder(old, leaf, options.quadrantShare, cuts).Build();
+        leaf.fraction = tree.nodes.empty() ? 0 : options.knowsFractions ? BestFraction(sums) : 0.5f;
+        if (tree.nodes.empty()) tree = {{QuadNode()}, {Masses()}};
+        Place(to, leaf, double(sums.vertices), 1, tree);
+    }
+
+    // Puts a leaf at a node, cut as often as its vertices ask for; `part` is what it has of the old
+    // one.
+    void Place(uint32_t node, GuideLeaf leaf, double vertices, double part, const Quadtree& tree) {
+        if (cuts && vertices > options.leafVertices && leaf.depth < Guide::kMaxDepth) {
+            const uint32_t children = MakeChildren(node);
+            ++leaf.depth;
+            for (uint32_t i = 0; i < 2; ++i)
+                Place(children + i, leaf, vertices / 2, part / 2, tree);
+            return;
+        }
+        Guide& guide = made.guide;
+        guide.nodes[node] = Guide::kIsLeaf | uint32_t(guide.leaves.size());
+        leaf.firstNode = uint32_t(guide.quads.size());
+        leaf.nodeCount = uint32_t(tree.nodes.size());
+        guide.leaves.push_back(leaf);
+        guide.quads.insert(guide.quads.end(), tree.nodes.begin(), tree.nodes.end());
+        made.record.leaves.push_back({uint64_t(vertices), {}});
+        for (const Masses& light : tree.light)
+            for (const double sum : light) made.record.sums.push_back(uint64_t(sum * part));
+    }
+
+    const GuideState& old;
+    const RefineOptions& options;
+    const bool cuts;
+    GuideState made;
+};
+
+}  // namespace
+
+GuideState Refine(const GuideState& state, const RefineOptions& options) {
+    // In the end no leaf is cut and all quadtrees are single nodes, which is less than there was.
+    RefineOptions coarser = options;
+    for (;;) {
+        GuideState made = Refinement(state, coarser, true).Make();
+        if (BytesOf(made) <= options.maxBytes || coarser.quadrantShare > 1) return made;
+        coarser.leafVertices *= 1.5;
+        coarser.quadrantShare *= 1.25f;
+    }
+}
+
+Guide FreezeGuide(const GuideState& state, const RefineOptions& options) {
+    return std::move(Refinement(state, options, false).Make().guide);
+}
+
+}  // namespace lull

@@ -1,0 +1,28 @@
+// Makes the next guide of what has been recorded.
+#pragma once
+
+#include "renderer/guiding/guide_record.h"
+
+namespace lull {
+
+struct RefineOptions {
+    double leafVertices = 4000;   // a leaf over space that has seen more is cut
+    float quadrantShare = 0.02f;  // a quadrant with more of its tree's light is cut
+    size_t maxBytes = 32u << 20;  // of guide and record; leaves are made coarser until they fit
+    bool knowsFractions = true;   // else leaves get fraction 0.5, as their cost says nothing yet
+};
+
+struct GuideState {
+    Guide guide;
+    GuideRecord record;  // of all that has been found so far
+};
+
+// Returns a guide whose densities are those of the record, and whose trees have been cut, and
+// uncut, to suit them. The light of the record is in the new one, for what is recorded next to add
+// to; its costs are not, which are the old guide's.
+GuideState Refine(const GuideState& state, const RefineOptions& options);
+
+// Returns the guide alone, with trees no finer than what has been recorded.
+Guide FreezeGuide(const GuideState& state, const RefineOptions& options);
+
+}  // namespace lull

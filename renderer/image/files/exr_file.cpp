@@ -1,0 +1,200 @@
+#include "renderer/image/files/exr_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfVersion.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "renderer/image/files/exr_channels.h"
+#include "renderer/image/files/exr_threads.h"
+
+namespace lull {
+
+namespace {
+
+// OpenEXR's messages begin with the name of the file, which is not known here.
+constexpr const char* kName = "the file";
+
+std::runtime_error WithoutName(const std::exception& e) {
+    const std::string message = e.what(), name = std::string("\"") + kName + "\". ";
+    const size_t at = message.find(name);
+    return std::runtime_error(at == std::string::npos ? message : message.substr(at + name.size()));
+}
+
+Vec2i ExtentOf(const Imath::Box2i& box) {
+    // As 64 bits, since a file may say anything.
+    const auto side = [](int64_t min, int64_t max) {
+        return int(std::clamp<int64_t>(max - min + 1, 0, std::numeric_limits<int>::max()));
+    };
+    return {side(box.min.x, box.max.x), side(box.min.y, box.max.y)};
+}
+
+const Imf::Channel& ChannelOf(const Imf::Header& header, const std::string& name) {
+    return header.channels()[name.c_str()];
+}
+
+std::map<std::string, ExrAttribute> AttributesOf(const Imf::Header& header) {
+    std::map<std::string, ExrAttribute> attributes;
+    for (auto a = header.begin(); a != header.end(); ++a) {
+        const Imf::Attribute* value = &a.attribute();
+        if (const auto* s = dynamic_cast<const Imf::StringAttribute*>(value)) {
+            attributes[a.name()] = s->value();
+        } else if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(value)) {
+            attributes[a.name()] = i->value();
+        } else if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(value)) {
+            attributes[a.name()] = f->value();
+        } else if (const auto* m = dynamic_cast<const Imf::M44fAttribute*>(value)) {
+            using RowMajor = Eigen::Matrix<float, 4, 4, Eigen::RowMajor>;
+            attributes[a.name()] =
+                Mat4d(Eigen::Map<const RowMajor>(m->value().getValue()).cast<double>());
+        }
+    }
+    return attributes;
+}
+
+}  // namespace
+
+struct ExrFile::Parts {
+    class MemoryStream final : public Imf::IStream {
+      public:
+        explicit MemoryStream(std::span<const std::byte> bytes)
+            : Imf::IStream(kName), bytes(bytes) {}
+
+        bool read(char into[], int size) override {
+            if (position > bytes.size() || size < 0 || size_t(size) > bytes.size() - position)
+                throw std::runtime_error("it is cut short");
+            std::memcpy(into, bytes.data() + position, size_t(size));
+            position += size_t(size);
+            return position < bytes.size();
+        }
+        uint64_t tellg() override { return position; }
+        void seekg(uint64_t to) override { position = to; }
+
+      private:
+        std::span<const std::byte> bytes;
+        uint64_t position = 0;
+    };
+
+    MemoryStream stream;
+    Imf::MultiPartInputFile file;
+
+    explicit Parts(std::span<const std::byte> bytes)
+        : stream(bytes), file(stream, UseExrThreads()) {}
+    const Imf::Header& Header() const { return file.header(0); }
+};
+
+ExrFile::ExrFile(std::span<const std::byte> bytes) try : parts(std::make_unique<Parts>(bytes)) {
+    const Imf::Header& header = parts->Header();
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw std::runtime_error("deep images are not modelled");
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+            throw std::runtime_error(std::string("subsampled channels are not modelled (") +
+                                     c.name() + ")");
+        channels.push_back(c.name());
+    }
+    if (channels.empty()) throw std::runtime_error("it has no channels");
+    SortChannels(&channels);
+} catch (const std::exception& e) {
+    throw WithoutName(e);
+}
+
+ExrFile::~ExrFile() = default;
+
+ExrImage ExrFile::Header() const {
+    const Imf::Header& header = parts->Header();
+    const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
+    ExrImage image;
+    const Vec2i size = ExtentOf(data);
+    image.width = size.x();
+    image.height = size.y();
+    image.origin = {data.min.x - display.min.x, data.min.y - display.min.y};
+    image.displaySize = ExtentOf(display);
+    image.attributes = AttributesOf(header);
+    return image;
+}
+
+bool ExrFile::IsHalf(const std::string& channel) const {
+    return ChannelOf(parts->Header(), channel).type == Imf::HALF;
+}
+
+void ExrFile::Read(TexelType type, size_t count, void* texels) try {
+    const Imf::Header& header = parts->Header();
+    const Imath::Box2i window = header.dataWindow();
+    const Vec2i size = ExtentOf(window);
+    const size_t bytes = SizeOf(type), pixel = bytes * count, row = pixel * size_t(size.x());
+    const auto isInteger = [&](size_t c) {
+        return ChannelOf(header, channels[c]).type == Imf::UINT;
+    };
+    auto* begin = static_cast<char*>(texels);
+    Imf::FrameBuffer frame;
+    for (size_t c = 0; c < count; ++c)
+        frame.insert(channels[c], Imf::Slice::Make(type == TexelType::Half ? Imf::HALF
+                                                   : isInteger(c)          ? Imf::UINT
+                                                                           : Imf::FLOAT,
+                                                   begin + bytes * c, window, pixel, row));
+    Imf::InputPart part(parts->file, 0);
+    part.setFrameBuffer(frame);
+    part.readPixels(window.min.y, window.max.y);
+
+    for (size_t c = 0; c < count; ++c) {
+        if (!isInteger(c)) continue;
+        for (size_t i = 0; i < size_t(size.x()) * size_t(size.y()); ++i) {
+            char* at = begin + i * pixel + bytes * c;
+            uint32_t integer;
+            std::memcpy(&integer, at, sizeof(integer));
+            const float value = float(integer) * 0x1p-32f;
+            std::memcpy(at, &value, sizeof(value));
+        }
+    }
+} catch (const std::exception& e) {
+    throw WithoutName(e);
+}
+
+namespace {
+
+class ExrPicture final : public ImageFile {
+  public:
+    explicit ExrPicture(std::span<const std::byte> bytes) : file(bytes) {
+        const std::vector<std::string>& names = file.Channels();
+        const ExrImage header = file.Header();
+        const auto alpha = std::ranges::find_if(names, IsAlpha);
+        shape = {header.width, header.height,
+                 CountChannels(int(names.size()),
+                               alpha == names.end() ? -1 : int(alpha - names.begin())),
+                 std::ranges::all_of(names, [&](const auto& name) { return file.IsHalf(name); })
+                     ? TexelType::Half
+                     : TexelType::Float};
+    }
+    ImageShape Shape() const override { return shape; }
+    void Read(void* texels) override { file.Read(shape.type, size_t(shape.channels), texels); }
+
+  private:
+    ExrFile file;
+    ImageShape shape;
+};
+
+}  // namespace
+
+bool IsExr(std::span<const std::byte> bytes) {
+    return bytes.size() >= 4 && Imf::isImfMagic(reinterpret_cast<const char*>(bytes.data()));
+}
+
+std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes) {
+    return std::make_unique<ExrPicture>(bytes);
+}
+
+}  // namespace lull

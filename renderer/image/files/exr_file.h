@@ -1,0 +1,43 @@
+// Reads OpenEXR files: scan lines and tiles (at full size), and the first of several parts.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/formats/image_file.h"
+#include "renderer/image/image_io.h"
+
+namespace lull {
+
+// Says whether bytes begin like an EXR.
+bool IsExr(std::span<const std::byte> bytes);
+
+// Holds an EXR of which only the header has been read.
+class ExrFile {
+  public:
+    // The bytes must outlive it. Throws std::runtime_error, or what OpenEXR throws, with the
+    // reason: no EXR, deep data, or channels of fewer pixels than others.
+    explicit ExrFile(std::span<const std::byte> bytes);
+    ~ExrFile();
+
+    // Returns an image without channels.
+    ExrImage Header() const;
+    // Lists the channels as SortChannels() does.
+    const std::vector<std::string>& Channels() const { return channels; }
+    bool IsHalf(const std::string& channel) const;
+    // Reads the first `count` channels side by side, as halves, if all are, or as floats; integers
+    // become 0 to 1. Throws as the constructor does.
+    void Read(TexelType type, size_t count, void* texels);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts;
+    std::vector<std::string> channels;
+};
+
+// Opens an EXR as a picture: halves where all channels are. As OpenPng() otherwise.
+std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes);
+
+}  // namespace lull

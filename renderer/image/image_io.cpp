@@ -1,0 +1,176 @@
+#include "renderer/image/image_io.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+
+#include "renderer/base/error.h"
+#include "renderer/base/memory.h"
+#include "renderer/image/files/exr_file.h"
+#include "renderer/image/files/other_formats.h"
+#include "renderer/image/files/png_file.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kMaxSide = 1 << 16;
+// No format here packs texels tighter than this on average; deflate ends near 1000 to 1.
+constexpr size_t kMaxCompression = 4000;
+constexpr size_t kAlwaysAllowed = size_t(64) << 20;
+constexpr size_t kSignature = 8;  // tells PNG and EXR from the rest
+
+[[noreturn]] void FailToRead(const std::string& path, const std::string& reason) {
+    throw Error(OneLine(fmt::format("cannot read image \"{}\": {}", path, reason)));
+}
+
+// Refuses what no honest file holds before any memory is taken for it.
+void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape) {
+    const std::string size = fmt::format("{}x{}x{}", shape.width, shape.height, shape.channels);
+    if (shape.width < 1 || shape.height < 1 || shape.channels < 1 || shape.width > kMaxSide ||
+        shape.height > kMaxSide)
+        FailToRead(path, "its size of " + size + " is absurd");
+    const size_t bytes =
+        size_t(shape.width) * size_t(shape.height) * size_t(shape.channels) * SizeOf(shape.type);
+    if (bytes > kAlwaysAllowed && bytes / kMaxCompression > fileSize)
+        FailToRead(path, "it is too short for its size of " + size);
+    // As read, and once more as a texture keeps it.
+    CheckMemory(int64_t(2 * bytes), fmt::format("image \"{}\" of {}", path, size),
+                "use a smaller version of it");
+}
+
+std::vector<std::byte> ReadBytes(const std::string& path, std::ifstream& in, size_t size) {
+    std::vector<std::byte> bytes(size);
+    in.seekg(0);
+    in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+    if (!in) FailToRead(path, "it cannot be read, or is cut short");
+    return bytes;
+}
+
+// Holds a file that has been found: its bytes where the program reads its format itself.
+struct FoundFile {
+    std::string path;
+    size_t size = 0;
+    std::vector<std::byte> bytes;
+
+    explicit FoundFile(const std::string& path) : path(path) {
+        std::error_code error;
+        const auto status = std::filesystem::status(path, error);
+        if (!std::filesystem::exists(status)) FailToRead(path, "no such file");
+        if (std::filesystem::is_directory(status)) FailToRead(path, "it is a directory");
+        if (!std::filesystem::is_regular_file(status)) FailToRead(path, "it is no regular file");
+        size = size_t(std::filesystem::file_size(path, error));
+        std::ifstream in(path, std::ios::binary);
+        if (error || !in) FailToRead(path, "it cannot be opened");
+        bytes = ReadBytes(path, in, std::min(size, kSignature));
+        if (IsPng(bytes) || IsExr(bytes)) bytes = ReadBytes(path, in, size);
+    }
+};
+
+std::unique_ptr<ImageFile> Open(const FoundFile& file) {
+    if (IsPng(file.bytes)) return OpenPng(file.bytes);
+    if (IsExr(file.bytes)) return OpenExr(file.bytes);
+    return OpenOtherFormat(file.path);
+}
+
+std::unique_ptr<ImageFile> Open(const std::string& type, std::span<const std::byte> bytes) {
+    if (IsPng(bytes)) return OpenPng(bytes);
+    if (IsExr(bytes)) return OpenExr(bytes);
+    if (bytes.empty()) throw std::runtime_error("it is empty");
+    return OpenOtherFormat("memory." + type, bytes);
+}
+
+// Reads what `open` opens. Errors get the name here that no reader knows.
+template <typename Open>
+Image Read(const std::string& name, size_t fileSize, const Open& open) try {
+    const std::unique_ptr<ImageFile> file = open();
+    const ImageShape shape = file->Shape();
+    CheckSize(name, fileSize, shape);
+    Image image{shape.width, shape.height, shape.channels, {}};
+    if (shape.type == TexelType::Half) image.texels = std::vector<Half>();
+    if (shape.type == TexelType::Float) image.texels = std::vector<float>();
+    std::visit(
+        [&](auto& texels) {
+            texels.resize(size_t(shape.width) * size_t(shape.height) * size_t(shape.channels));
+            file->Read(texels.data());
+        },
+        image.texels);
+    return image;
+} catch (const Error&) {
+    throw;
+} catch (const std::exception& e) {
+    FailToRead(name, e.what());
+}
+
+// Turns a picture into what an EXR of its values would be.
+ExrImage ExrOf(const Image& picture) {
+    ExrImage image;
+    image.width = picture.width;
+    image.height = picture.height;
+    image.displaySize = {picture.width, picture.height};
+    const size_t count = size_t(picture.channels);
+    for (size_t c = 0; c < count; ++c) {
+        ExrChannel& channel = image.channels.emplace_back();
+        channel.name = count < 3 ? std::string(1, "YA"[c]) : std::string(1, "RGBA"[c]);
+        std::visit(
+            [&](const auto& texels) {
+                constexpr bool isBytes = sizeof(texels[0]) == 1;
+                for (size_t i = c; i < texels.size(); i += count)
+                    channel.values.push_back(float(texels[i]) * (isBytes ? 1 / 255.f : 1.f));
+            },
+            picture.texels);
+    }
+    return image;
+}
+
+ExrImage ReadExr(const FoundFile& found) try {
+    ExrFile file(found.bytes);
+    ExrImage image = file.Header();
+    const std::vector<std::string>& names = file.Channels();
+    const size_t count = names.size();
+    CheckSize(found.path, found.size, {image.width, image.height, int(count), TexelType::Float});
+    std::vector<float> interleaved(size_t(image.width) * size_t(image.height) * count);
+    file.Read(TexelType::Float, count, interleaved.data());
+    for (size_t c = 0; c < count; ++c) {
+        ExrChannel& channel = image.channels.emplace_back();
+        channel.name = names[c];
+        channel.isHalf = file.IsHalf(names[c]);
+        channel.values.resize(interleaved.size() / count);
+        for (size_t i = 0; i < channel.values.size(); ++i)
+            channel.values[i] = interleaved[i * count + c];
+    }
+    return image;
+} catch (const Error&) {
+    throw;
+} catch (const std::exception& e) {
+    FailToRead(found.path, e.what());
+}
+
+}  // namespace
+
+Image ReadImage(const std::string& path) {
+    const FoundFile file(path);
+    return Read(path, file.size, [&] { return Open(file); });
+}
+
+Image ReadImage(const std::string& name, const std::string& type,
+                std::span<const std::byte> bytes) {
+    return Read(name, bytes.size(), [&] { return Open(type, bytes); });
+}
+
+const ExrChannel* ExrImage::Find(const std::string& name) const {
+    for (const ExrChannel& c : channels)
+        if (c.name == name) return &c;
+    return nullptr;
+}
+
+ExrImage ReadExr(const std::string& path) {
+    const FoundFile file(path);
+    if (IsExr(file.bytes)) return ReadExr(file);
+    return ExrOf(Read(path, file.size, [&] { return Open(file); }));
+}
+
+}  // namespace lull

@@ -1,0 +1,81 @@
+// Reads and writes image files. The formats are in files/; OpenImageIO is in a module of its own
+// (renderer/formats), which is loaded for files that are neither PNG nor OpenEXR.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/image/image.h"
+
+namespace lull {
+
+// Reads the first image of a file: PNG, OpenEXR, or any other format that OpenImageIO knows. 8-bit,
+// half and float texels stay as they are, everything else becomes float (16-bit integers: 0 to 1).
+// Values are neither linearised nor multiplied by alpha. Of 4 or more channels the first 4 are read
+// if the last of these is alpha, else the first 3; an EXR's data window is the image, as in
+// pbrt-v3. Throws Error with the path and the reason: missing, unreadable, truncated, larger than
+// 2^16 a side, too short for its size, or a format whose module is not installed.
+Image ReadImage(const std::string& path);
+
+// Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,
+// and `name` stands for the path in messages.
+Image ReadImage(const std::string& name, const std::string& type, std::span<const std::byte> bytes);
+
+// Holds one channel of an EXR, row-major over the data window.
+struct ExrChannel {
+    std::string name;
+    std::vector<float> values;
+    bool isHalf = false;  // stored in 16 bits; infinite where a float is too large
+};
+
+// A matrix is in pbrt's convention: applied to column vectors, stored row by row.
+using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
+
+// Holds the contents of an EXR file.
+struct ExrImage {
+    int width = 0, height = 0;     // of the data window
+    Vec2i origin = Vec2i::Zero();  // of the data window, within the display window
+    Vec2i displaySize{0, 0};       // the display window starts at (0, 0); 0: as the data window
+    std::vector<ExrChannel> channels;
+    std::map<std::string, ExrAttribute> attributes;
+
+    // Returns the channel of that name, or null.
+    const ExrChannel* Find(const std::string& name) const;
+};
+
+// Writes a scan-line EXR with ZIP compression, whole or not at all (see WriteFileAtomically).
+// Throws Error with the path and the reason.
+void WriteExr(const std::string& path, const ExrImage& image);
+
+// Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
+using RowSource = std::function<void(int y, std::span<float> values)>;
+
+// Does the same with channels of `image` that have no values: they come row by row, from the top.
+void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
+
+// Reads an EXR with all its channels and those attributes that ExrAttribute can hold; of another
+// format what ReadImage() reads, as channels R, G, B, A or Y, A. Throws Error as that does.
+ExrImage ReadExr(const std::string& path);
+
+// Encodes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,
+// rounded, clamped to [0, 255]; NaN is black. Throws Error.
+std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height);
+
+// Encodes 8-bit sRGB pixels (R, G, B, rows from the top) as they are, as small as PNG can. Throws
+// Error.
+std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
+
+// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
+// sRGB. Throw Error.
+void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
+void WritePng(const std::string& path, const RowSource& rows, int width, int height);
+void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height);
+
+// Returns the 8-bit display value of a linear value; NaN is black.
+uint8_t Encode8Bit(float linear);
+
+}  // namespace lull

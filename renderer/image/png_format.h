@@ -1,0 +1,22 @@
+// Writes PNGs other than 8-bit sRGB.
+#pragma once
+
+#include "renderer/image/image_io.h"
+#include "renderer/image/tone_map.h"
+
+namespace lull {
+
+// Says how a PNG shows linear RGB.
+struct PngFormat {
+    int bits = 8;  // a component, or 16
+    ToneMap toneMap = ToneMap::None;
+    std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
+};
+
+// Write sRGB PNGs in this format, whole or not at all, otherwise as WritePng() does. Throw Error.
+void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
+              const PngFormat& format);
+void WritePng(const std::string& path, const RowSource& rows, int width, int height,
+              const PngFormat& format);
+
+}  // namespace lull

@@ -1,0 +1,145 @@
+#include "renderer/render/guide_learning_state.h"
+
+#include <stdexcept>
+
+#include "stopping/base/state.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t kTag = 0x31756c67;
+
+constexpr const char* kDamaged = "its guide is damaged";
+
+[[noreturn]] void Refuse() { throw std::runtime_error(kDamaged); }
+
+void PutGuide(const Guide& guide, StateWriter* writer) {
+    writer->Put(
+        std::array<float, 4>{guide.lower.x(), guide.lower.y(), guide.lower.z(), guide.side});
+    writer->PutVector(guide.nodes);
+    writer->PutVector(guide.leaves);
+    writer->PutVector(guide.quads);
+}
+
+void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
+    if (leaf.nodeCount == 0 || leaf.nodeCount > guide.quads.size() ||
+        leaf.firstNode > guide.quads.size() - leaf.nodeCount)
+        Refuse();
+    for (uint32_t i = 0; i < leaf.nodeCount; ++i) {
+        const QuadNode& node = guide.quads[leaf.firstNode + i];
+        float sum = 0;
+        for (size_t q = 0; q < 4; ++q) {
+            if (!(node.share[q] >= 0)) Refuse();
+            sum += node.share[q];
+            if (node.child[q] != 0 && (node.child[q] <= i || node.child[q] >= leaf.nodeCount))
+                Refuse();
+        }
+        if (!(std::abs(sum - 1) < 1e-3f)) Refuse();
+    }
+}
+
+// Finds what would take a walk through the trees out of bounds.
+void CheckGuide(const Guide& guide) {
+    if (guide.nodes.empty()) {
+        if (!guide.leaves.empty() || !guide.quads.empty()) Refuse();
+        return;
+    }
+    if (!(guide.side > 0 && guide.side < kInfinity) || !guide.lower.allFinite()) Refuse();
+    std::vector<int> depth(guide.nodes.size(), -1);
+    depth[0] = 0;
+    for (size_t i = 0; i < guide.nodes.size(); ++i) {
+        const uint32_t node = guide.nodes[i];
+        if (depth[i] < 0 || depth[i] > Guide::kMaxDepth) Refuse();
+        if (node & Guide::kIsLeaf) {
+            if ((node & ~Guide::kIsLeaf) >= guide.leaves.size()) Refuse();
+            continue;
+        }
+        if (node <= i || size_t(node) + 1 >= guide.nodes.size()) Refuse();
+        depth[node] = depth[node + 1] = depth[i] + 1;
+    }
+    for (const GuideLeaf& leaf : guide.leaves) {
+        if (!(leaf.fraction >= 0 && leaf.fraction < 1) || leaf.depth > Guide::kMaxDepth) Refuse();
+        CheckQuadtree(guide, leaf);
+    }
+}
+
+Guide GetGuide(StateReader* reader) {
+    Guide guide;
+    const auto cube = reader->Get<std::array<float, 4>>();
+    guide.lower = Vec3f(cube[0], cube[1], cube[2]);
+    guide.side = cube[3];
+    guide.nodes = reader->GetVector<uint32_t>(kDamaged);
+    guide.leaves = reader->GetVector<GuideLeaf>(kDamaged);
+    guide.quads = reader->GetVector<QuadNode>(kDamaged);
+    CheckGuide(guide);
+    return guide;
+}
+
+void PutFigures(const GuideFigures& f, StateWriter* writer) {
+    writer->Put(uint8_t(f.isUsed));
+    writer->PutVector(std::vector<char>(f.why.begin(), f.why.end()));
+    writer->Put(std::array<int32_t, 3>{f.rounds, f.samples, f.leaves});
+    writer->Put(f.bytes);
+    writer->Put(std::array<double, 4>{f.seconds, f.variance, f.varianceError, f.vertices});
+}
+
+GuideFigures GetFigures(StateReader* reader) {
+    GuideFigures f;
+    f.isUsed = reader->Get<uint8_t>() != 0;
+    const auto why = reader->GetVector<char>(kDamaged);
+    f.why.assign(why.begin(), why.end());
+    const auto counts = reader->Get<std::array<int32_t, 3>>();
+    f.rounds = counts[0];
+    f.samples = counts[1];
+    f.leaves = counts[2];
+    f.bytes = reader->Get<int64_t>();
+    const auto values = reader->Get<std::array<double, 4>>();
+    f.seconds = values[0];
+    f.variance = values[1];
+    f.varianceError = values[2];
+    f.vertices = values[3];
+    return f;
+}
+
+}  // namespace
+
+std::vector<std::byte> SaveLearning(const Learning& learning) {
+    StateWriter writer;
+    writer.Put(kTag);
+    writer.Put(int32_t(learning.round));
+    writer.Put(learning.usual);
+    writer.Put(uint8_t(learning.isDone));
+    PutFigures(learning.figures, &writer);
+    PutGuide(learning.guide, &writer);
+    PutGuide(learning.state.guide, &writer);
+    writer.PutVector(learning.state.record.sums);
+    writer.PutVector(learning.state.record.leaves);
+    return std::move(writer.bytes);
+}
+
+Learning RestoreLearning(std::span<const std::byte> bytes) {
+    StateReader reader(bytes);
+    Learning learning;
+    if (reader.Get<uint32_t>() != kTag) Refuse();
+    learning.round = reader.Get<int32_t>();
+    learning.usual = reader.Get<double>();
+    learning.isDone = reader.Get<uint8_t>() != 0;
+    learning.figures = GetFigures(&reader);
+    learning.guide = GetGuide(&reader);
+    GuideState& state = learning.state;
+    state.guide = GetGuide(&reader);
+    state.record.sums = reader.GetVector<uint64_t>(kDamaged);
+    state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
+    reader.Finish();
+    const bool fits = state.record.sums.size() == 4 * state.guide.quads.size() &&
+                      state.record.leaves.size() == state.guide.leaves.size();
+    const bool isComplete = learning.isDone
+                                ? learning.figures.isUsed == !learning.guide.nodes.empty()
+                                : learning.round > 0 && learning.round < 24 && learning.usual > 0 &&
+                                      !state.guide.nodes.empty();
+    if (!fits || !isComplete) Refuse();
+    return learning;
+}
+
+}  // namespace lull

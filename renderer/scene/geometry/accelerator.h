@@ -1,0 +1,35 @@
+// Finds what a ray hits. With accelerator_internal.h the only place that knows Embree.
+#pragma once
+
+#include <memory>
+
+#include "renderer/scene/geometry/shape_table.h"
+
+namespace lull {
+
+class Accelerator {
+  public:
+    Accelerator();
+    ~Accelerator();
+    Accelerator(Accelerator&&) noexcept;
+    Accelerator& operator=(Accelerator&&) noexcept;
+
+    // Builds over the shapes with `threads` threads (0: all). `shapes` and `textures` must outlive
+    // the accelerator and stay where they are. Throws Error when memory runs out.
+    Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads);
+
+    // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
+    bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;
+
+    // Says whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
+    bool Occluded(const Ray& ray, float time = 0) const;
+
+    // For programs that measure Embree itself, see accelerator_internal.h.
+    struct Implementation;
+    const Implementation& Internals() const { return *implementation; }
+
+  private:
+    std::unique_ptr<Implementation> implementation;
+};
+
+}  // namespace lull

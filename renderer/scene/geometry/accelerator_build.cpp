@@ -1,0 +1,241 @@
+// Builds what the accelerator traces rays through.
+#include <fmt/format.h>
+
+#include "renderer/scene/geometry/accelerator_internal.h"
+#include "renderer/scene/geometry/coverage.h"
+
+namespace lull {
+namespace {
+
+// Receives every error of Embree, so that its calls need not be checked one by one.
+void ReportEmbreeError(void*, RTCError, const char* message) {
+    throw Error(fmt::format("the acceleration structure could not be built: {}",
+                            message ? message : "unknown error"));
+}
+
+Ray RayOf(const RTCRay& r) {
+    return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
+}
+
+// Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
+// random from one ray or one primitive to another (mixing by Stafford 2011, variant 13).
+float NumberOf(const RTCRay& ray, const RTCHit& hit) {
+    uint64_t state = 0;
+    const auto mix = [&](uint64_t bits) {
+        state = (state ^ bits) + 0x9e3779b97f4a7c15ull;
+        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
+        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
+        state ^= state >> 31;
+    };
+    const auto pair = [](float a, float b) {
+        return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
+    };
+    mix(pair(ray.org_x, ray.org_y));
+    mix(pair(ray.org_z, ray.dir_x));
+    mix(pair(ray.dir_y, ray.dir_z));
+    mix(uint64_t(hit.geomID) << 32 | hit.primID);
+    mix(hit.instID[0]);
+    return float(state >> 40) * 0x1p-24f;
+}
+
+bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
+    const Shape& shape = user.shapes->shapes[user.shape];
+    const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
+                  ray.org_z + ray.tfar * ray.dir_z);
+    const float share = CoverageAt(shape, *user.textures, p, hit.primID, hit.u, hit.v);
+    return share <= 0 || (share < 1 && NumberOf(ray, hit) >= share);
+}
+
+bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool isShadow) {
+    const Shape& shape = user.shapes->shapes[user.shape];
+    const TextureContext context{
+        {ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
+         ray.org_z + ray.tfar * ray.dir_z},
+        user.shapes->Uv(user.shape, hit.primID, hit.u, hit.v)};
+    const auto isZero = [&](const std::optional<FloatTexture>& alpha) {
+        return alpha && user.textures->Evaluate(*alpha, context) == 0;
+    };
+    return isZero(shape.alpha) || (isShadow && isZero(shape.shadowAlpha));
+}
+
+void FilterByAlpha(const RTCFilterFunctionNArguments* args, bool isShadow) {
+    if (IsCutOut(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                 *reinterpret_cast<const RTCRay*>(args->ray),
+                 *reinterpret_cast<const RTCHit*>(args->hit), isShadow))
+        args->valid[0] = 0;
+}
+
+std::optional<float> IntersectQuadric(const ShapeUser& user, const Ray& ray) {
+    const auto& geometry = user.shapes->shapes[user.shape].geometry;
+    if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) return Intersect(*sphere, ray);
+    if (const Disk* disk = std::get_if<Disk>(&geometry)) return Intersect(*disk, ray);
+    return Intersect(std::get<Revolved>(geometry), ray);
+}
+
+std::optional<CurveHit> IntersectCurve(const ShapeUser& user, uint32_t primitive, const Ray& ray) {
+    return Intersect(std::get<Curves>(user.shapes->shapes[user.shape].geometry), primitive, ray);
+}
+
+void ShapeBoundsCallback(const RTCBoundsFunctionArguments* args) {
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    const auto& geometry = user.shapes->shapes[user.shape].geometry;
+    const Bounds3f b = std::visit(
+        [&]<typename G>(const G& g) {
+            if constexpr (std::is_same_v<G, Mesh>)
+                return Bounds3f();  // meshes have bounds of Embree's own
+            else if constexpr (std::is_same_v<G, Curves>)
+                return g.WorldBounds(args->primID);
+            else
+                return g.WorldBounds();
+        },
+        geometry);
+    *args->bounds_o = PaddedBounds(b);
+}
+
+}  // namespace
+
+void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    const auto t = IntersectQuadric(user, RayOf(rayHit->ray));
+    if (!t) return;
+    rayHit->ray.tfar = *t;
+    rayHit->hit.u = rayHit->hit.v = 0;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
+void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (IntersectQuadric(user, RayOf(*ray))) ray->tfar = -kInfinity;
+}
+
+void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto hit = IntersectCurve(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                                    args->primID, RayOf(rayHit->ray));
+    if (!hit) return;
+    rayHit->ray.tfar = hit->t;
+    rayHit->hit.u = hit->u;
+    rayHit->hit.v = hit->v;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
+void OccludedCurveCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (IntersectCurve(user, args->primID, RayOf(*ray))) ray->tfar = -kInfinity;
+}
+
+void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
+void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, true); }
+
+void FilterByCoverage(const RTCFilterFunctionNArguments* args) {
+    if (IsUncovered(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                    *reinterpret_cast<const RTCRay*>(args->ray),
+                    *reinterpret_cast<const RTCHit*>(args->hit)))
+        args->valid[0] = 0;
+}
+
+EmbreeScene Accelerator::Implementation::NewScene() {
+    EmbreeScene scene(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    return scene;
+}
+
+void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shapes, int index) {
+    const Shape& shape = shapes.shapes[index];
+    if (shape.IsInvisible() || shape.PrimitiveCount() == 0) return;
+    const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
+    RTCGeometry geometry =
+        rtcNewGeometry(device.get(), mesh ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserData(geometry, &users[index]);
+    if (mesh) {
+        // Embree reads the vertices where they are; it may read 4 bytes past the last one,
+        // for which the loader keeps a spare vertex.
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh->p.data(), 0, sizeof(Vec3f), mesh->p.size() - 1);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh->triangles.data(), 0, 3 * sizeof(uint32_t),
+                                   mesh->triangles.size());
+    } else {
+        const bool isCurve = std::holds_alternative<Curves>(shape.geometry);
+        rtcSetGeometryUserPrimitiveCount(geometry, shape.PrimitiveCount());
+        rtcSetGeometryBoundsFunction(geometry, ShapeBoundsCallback, nullptr);
+        rtcSetGeometryIntersectFunction(
+            geometry, isCurve ? IntersectCurveCallback : IntersectQuadricCallback);
+        rtcSetGeometryOccludedFunction(geometry,
+                                       isCurve ? OccludedCurveCallback : OccludedQuadricCallback);
+    }
+    if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
+    if (mesh && (shape.alpha || shape.shadowAlpha))
+        rtcSetGeometryOccludedFilterFunction(geometry, FilterOcclusionByAlpha);
+    if (mesh && shape.coverage) {
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterByCoverage);
+        rtcSetGeometryOccludedFilterFunction(geometry, FilterByCoverage);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, unsigned(index));
+    rtcReleaseGeometry(geometry);
+}
+
+void Accelerator::Implementation::AttachInstance(const Instance& instance, int index) {
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, objects[instance.object].get());
+    const Eigen::Matrix<float, 3, 4> m =
+        instance.worldFromInstance.topRows<3>().cast<float>();  // column-major
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(world.get(), geometry, unsigned(shapeCount + index));
+    rtcReleaseGeometry(geometry);
+}
+
+void Accelerator::Implementation::AttachMoving(const ShapeTable& shapes, int index) {
+    const Instance& instance = shapes.instances[index];
+    movingUsers.push_back(std::make_unique<MovingUser>(MovingUser{
+        &shapes, index, objects[instance.object].get(),
+        BoundMotion(shapes.motions[instance.motion], shapes.ObjectBounds(instance.object))}));
+    movingUsers.back()->Attach(device.get(), world.get(), unsigned(shapeCount + index));
+}
+
+Accelerator::Accelerator() = default;
+Accelerator::~Accelerator() = default;
+Accelerator::Accelerator(Accelerator&&) noexcept = default;
+Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
+
+Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads)
+    : implementation(std::make_unique<Implementation>()) {
+    Implementation& impl = *implementation;
+    impl.device.reset(
+        rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr));
+    if (!impl.device) throw Error("Embree does not run on this machine");
+    rtcSetDeviceErrorFunction(impl.device.get(), ReportEmbreeError, nullptr);
+
+    impl.shapeCount = int(shapes.shapes.size());
+    for (int i = 0; i < impl.shapeCount; ++i) impl.users.push_back({&shapes, &textures, i});
+    for (const Object& object : shapes.objects) {
+        impl.objects.push_back(impl.NewScene());
+        for (int i = 0; i < object.shapeCount; ++i)
+            impl.Attach(impl.objects.back().get(), shapes, object.firstShape + i);
+        rtcCommitScene(impl.objects.back().get());
+    }
+    impl.world = impl.NewScene();
+    for (int i = 0; i < shapes.worldShapeCount; ++i) impl.Attach(impl.world.get(), shapes, i);
+    for (size_t i = 0; i < shapes.instances.size(); ++i)
+        if (shapes.instances[i].motion < 0)
+            impl.AttachInstance(shapes.instances[i], int(i));
+        else
+            impl.AttachMoving(shapes, int(i));
+    rtcCommitScene(impl.world.get());
+}
+
+}  // namespace lull

@@ -1,0 +1,110 @@
+// Owns the geometry of a scene: shapes, object definitions and instances.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "renderer/scene/geometry/animated_transform.h"
+#include "renderer/scene/geometry/reach.h"
+#include "renderer/scene/geometry/shapes/curves.h"
+#include "renderer/scene/geometry/shapes/mesh.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
+#include "renderer/scene/geometry/shapes/revolved.h"
+#include "renderer/scene/material.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+// Says how much of a surface is there (glTF's alpha modes). With a cutoff a point is there or not;
+// without, rays hit it at random, by a number derived from the ray itself, so that the right share
+// passes.
+struct Coverage {
+    FloatTexture alpha;
+    float factor = 1;
+    float cutoff = -1;  // negative: none
+    bool secondUv = false, vertexAlpha = false;
+};
+
+struct Shape {
+    std::variant<Mesh, Sphere, Disk, Revolved, Curves> geometry;
+    int material = -1;
+    int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
+    std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)
+    std::optional<Coverage> coverage;                // of meshes
+
+    bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }
+    uint32_t PrimitiveCount() const;
+};
+
+// Holds a range of ShapeTable::shapes that is placed as a whole.
+struct Object {
+    int firstShape = 0, shapeCount = 0;
+};
+
+struct Instance {
+    int object = -1;
+    int motion = -1;                             // into ShapeTable::motions; -1: does not move
+    Mat4d worldFromInstance, instanceFromWorld;  // of one that moves: when the shutter opens
+};
+
+struct Hit {
+    float t;
+    float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v
+    int shape;
+    uint32_t primitive;
+    int instance;  // -1: the shape stands in the world itself
+};
+
+struct ShapeTable {
+    std::vector<Shape> shapes;  // those of the world, then those of the objects
+    int worldShapeCount = 0;
+    std::vector<Object> objects;
+    std::vector<Instance> instances;
+    std::vector<std::vector<AnimatedTransform>> motions;  // each outermost first
+    Bounds3f bounds;                                      // of everything placed, world
+    // The distance from the origin within which all else has to lie that rays start from or go to,
+    // so that they can be followed into all instances.
+    float reach = kFarthest;
+
+    // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
+    // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
+    // Zero-area triangles are dropped with a counted warning, and what lies beyond kFarthest is an
+    // Error. Lights are given to shapes later.
+    ShapeTable(const Description&, const TextureTable&, bool substitute, Warnings&);
+    ShapeTable() = default;
+
+    size_t TriangleCount() const;  // instances counted as often as they are placed
+
+    // Fills in the interaction at a hit of `ray`, all but what `needs` leaves out. `time` is that
+    // of the ray, from 0 where the shutter opens to 1; it matters to what moves only.
+    void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
+                  SurfaceInteraction* interaction, float time = 0) const;
+
+    // Returns the instance, which moves, as it stands at `time`.
+    Instance InstanceAt(const Instance& instance, float time) const;
+    // Returns where an object's shapes are, in its own space.
+    Bounds3f ObjectBounds(int object) const;
+
+    // Returns the light whose surface was hit, -1 for none.
+    int LightAt(const Hit& hit) const {
+        const int first = shapes[hit.shape].firstLight;
+        return first < 0 ? -1 : first + int(hit.primitive);
+    }
+
+    // Returns the texture coordinates of a hit, for alpha textures.
+    Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
+
+  private:
+    void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
+    void LimitReach(std::span<const FileLoc> placesOfInstances);
+    void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
+                        SurfaceInteraction*) const;
+    // `instance` is null for what stands in the world itself.
+    void InteractIn(const Instance* instance, const Ray&, const Hit&, SurfaceNeeds,
+                    SurfaceInteraction*) const;
+};
+
+// Carries a ray from the world into the space of the instance; its parameter stays the same.
+Ray IntoInstance(const Instance& instance, const Ray& ray);
+
+}  // namespace lull

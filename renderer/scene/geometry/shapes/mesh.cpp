@@ -1,0 +1,176 @@
+#include "renderer/scene/geometry/shapes/mesh.h"
+
+#include "renderer/base/sampling.h"
+
+namespace lull {
+namespace {
+
+// Meshes without uv have pbrt-v3's: (0,0), (1,0), (1,1).
+std::array<Vec2f, 3> Uvs(const Mesh& mesh, const std::array<uint32_t, 3>& v) {
+    if (mesh.uv.empty()) return {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1)};
+    return {mesh.uv[v[0]], mesh.uv[v[1]], mesh.uv[v[2]]};
+}
+
+template <typename T, size_t N>
+std::array<T, N> Interpolate(const std::vector<std::array<T, N>>& values,
+                             const std::array<uint32_t, 3>& v, float b1, float b2) {
+    std::array<T, N> sum;
+    for (size_t i = 0; i < N; ++i)
+        sum[i] = (1 - b1 - b2) * values[v[0]][i] + b1 * values[v[1]][i] + b2 * values[v[2]][i];
+    return sum;
+}
+
+// Replaces the shading tangents by those of the vertices, at right angles to the normal.
+void UseVertexTangents(const std::array<float, 4>& tangent, SurfaceInteraction* hit) {
+    const Vec3f t(tangent[0], tangent[1], tangent[2]);
+    const Vec3f s = t - hit->ns * hit->ns.dot(t);
+    const float length = s.norm();
+    if (!(length > 1e-6f * t.norm())) return;
+    hit->dpdu = s / length;
+    hit->dpdv = std::copysign(1.f, tangent[3]) * hit->ns.cross(hit->dpdu);
+}
+
+// Computes tangents and, where asked for, derivatives of the normal as pbrt-v3's triangles have
+// them (its signs included: bump maps show them).
+void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, SurfaceNeeds needs,
+                     SurfaceInteraction* hit) {
+    const auto uv = Uvs(mesh, v);
+    const Vec2f duv02 = uv[0] - uv[2], duv12 = uv[1] - uv[2];
+    const Vec3f dp02 = mesh.p[v[0]] - mesh.p[v[2]], dp12 = mesh.p[v[1]] - mesh.p[v[2]];
+    const float determinant = duv02[0] * duv12[1] - duv02[1] * duv12[0];
+    const bool degenerate = std::abs(determinant) < 1e-8f;
+    if (!degenerate) {
+        hit->dpdu = (duv12[1] * dp02 - duv02[1] * dp12) / determinant;
+        hit->dpdv = (duv02[0] * dp12 - duv12[0] * dp02) / determinant;
+    }
+    if (degenerate || hit->dpdu.cross(hit->dpdv).squaredNorm() == 0)
+        CoordinateSystem(UnitOf(dp02.cross(dp12)), &hit->dpdu, &hit->dpdv);
+    hit->dndu = hit->dndv = Vec3f::Zero();
+    hit->surfaceDpdu = hit->dpdu;
+    hit->surfaceDpdv = hit->dpdv;
+    if (mesh.n.empty()) return;
+
+    // Make an orthonormal shading frame out of dpdu and the interpolated normal.
+    Vec3f s = hit->dpdu.normalized();
+    Vec3f t = s.cross(hit->ns);
+    if (const float length2 = t.squaredNorm(); length2 > 0) {
+        t /= std::sqrt(length2);
+        s = t.cross(hit->ns);
+    } else {
+        CoordinateSystem(hit->ns, &s, &t);
+    }
+    if (needs & kNeedsNormalDerivatives) {
+        const Vec3f dn02 = mesh.n[v[0]] - mesh.n[v[2]], dn12 = mesh.n[v[1]] - mesh.n[v[2]];
+        if (!degenerate) {
+            hit->dndu = (duv12[1] * dn02 - duv02[1] * dn12) / determinant;
+            hit->dndv = (duv02[0] * dn12 - duv12[0] * dn02) / determinant;
+        }
+    }
+    hit->dpdu = s;
+    hit->dpdv = mesh.reverseOrientation ? Vec3f(-t) : t;
+}
+
+// Returns the weights of a point that is as far from the triangle's edges as its coordinates can be
+// wrong by, and no more than eight times as far from the one given. A point on an edge could
+// otherwise come to lie in the plane of the triangle beyond that edge, or behind it, and rays that
+// start there would leave a closed mesh. Slivers, less than a quarter as high as long, get a part
+// of that distance.
+Eigen::Array3f KeepInside(Eigen::Array3f b, const Vec3f& p0, const Vec3f& p1, const Vec3f& p2,
+                          const Vec3f& error) {
+    constexpr float kLargest = 1.f / 64;  // weight that is looked at, and that is given
+    if (b.minCoeff() >= kLargest) return b;
+    const float length2 =
+        std::max({(p1 - p0).squaredNorm(), (p2 - p1).squaredNorm(), (p0 - p2).squaredNorm()});
+    const float least = std::min(kLargest, 4 * error.maxCoeff() / std::sqrt(length2));
+    if (b.minCoeff() >= least) return b;
+    b = b.max(least);
+    return b / b.sum();
+}
+
+}  // namespace
+
+void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
+                    SurfaceInteraction* hit) const {
+    const auto& v = triangles[triangle];
+    const Vec3f &p0 = p[v[0]], &p1 = p[v[1]], &p2 = p[v[2]];
+    const float b0 = 1 - b1 - b2;
+    // The sum of the weighted vertices would bound the error of the point itself, but that of
+    // Embree's distance to this triangle comes from all of the vertices, also from a far one that
+    // has no weight here.
+    hit->pError = Gamma(7) * p0.cwiseAbs().cwiseMax(p1.cwiseAbs()).cwiseMax(p2.cwiseAbs());
+    const Eigen::Array3f inside = KeepInside({b0, b1, b2}, p0, p1, p2, hit->pError);
+    hit->p = inside[0] * p0 + inside[1] * p1 + inside[2] * p2;
+    hit->n = UnitOf((p0 - p2).cross(p1 - p2));
+    if (flipNormals) hit->n = -hit->n;
+    hit->ns = hit->n;
+    if (!n.empty()) {
+        // The interpolated normal decides the side of the geometric one.
+        const Vec3f sum = b0 * n[v[0]] + b1 * n[v[1]] + b2 * n[v[2]];
+        if (const float length2 = sum.squaredNorm(); length2 > 0)
+            hit->ns = sum / std::sqrt(length2);
+    }
+    if (needs & kNeedsUv) {
+        const auto uvs = Uvs(*this, v);
+        hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+    }
+    if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint)) {
+        ComputeTangents(*this, v, needs, hit);
+        if (!tangents.empty()) UseVertexTangents(Interpolate(tangents, v, b1, b2), hit);
+    }
+    if (needs & (kNeedsSecondUv | kNeedsColor)) {
+        hit->uv1 = Uv1(triangle, b1, b2);
+        const auto c = Color(triangle, b1, b2);
+        hit->color = Rgb(c[0], c[1], c[2]);
+    }
+    if (!n.empty()) {
+        if (reverseOrientation) hit->ns = -hit->ns;
+        hit->n = FaceForward(hit->n, hit->ns);
+    }
+}
+
+Vec2f Mesh::Uv(uint32_t triangle, float b1, float b2) const {
+    const auto uvs = Uvs(*this, triangles[triangle]);
+    return (1 - b1 - b2) * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+}
+
+Vec2f Mesh::Uv1(uint32_t triangle, float b1, float b2) const {
+    if (uv1.empty()) return Uv(triangle, b1, b2);
+    const auto& v = triangles[triangle];
+    return (1 - b1 - b2) * uv1[v[0]] + b1 * uv1[v[1]] + b2 * uv1[v[2]];
+}
+
+std::array<float, 4> Mesh::Color(uint32_t triangle, float b1, float b2) const {
+    if (colors.empty()) return {1, 1, 1, 1};
+    return Interpolate(colors, triangles[triangle], b1, b2);
+}
+
+float Mesh::Area(uint32_t triangle) const {
+    const auto& v = triangles[triangle];
+    return 0.5f * LengthOf((p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]));
+}
+
+TriangleSampler Mesh::Sampler(uint32_t triangle) const {
+    const auto& v = triangles[triangle];
+    const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
+    const float twiceArea = LengthOf(cross);
+    Vec3f normal = cross / twiceArea;
+    if (!n.empty())
+        normal = FaceForward(normal, n[v[0]] + n[v[1]] + n[v[2]]);
+    else if (flipNormals)
+        normal = -normal;
+    return {p[v[0]], p[v[1]], p[v[2]], normal, 2 / twiceArea};
+}
+
+std::optional<ShapeSample> TriangleSampler::Sample(const Vec3f& from, const Vec2f& u) const {
+    const Vec2f b = SampleUniformTriangle(u);
+    const Vec3f q0 = b.x() * p0, q1 = b.y() * p1, q2 = (1 - b.x() - b.y()) * p2;
+    ShapeSample sample;
+    sample.p = q0 + q1 + q2;
+    sample.pError = Gamma(6) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
+    sample.n = n;
+    sample.pdf = SolidAnglePdf(areaPdf, from, sample.p, n);
+    if (!(sample.pdf > 0)) return {};
+    return sample;
+}
+
+}  // namespace lull

@@ -1,0 +1,276 @@
+#include "renderer/scene/geometry/shapes/shape_factory.h"
+
+#include <fmt/format.h>
+
+#include "renderer/input/loop_subdivision.h"
+#include "renderer/input/ply_loader.h"
+#include "renderer/scene/geometry/shapes/curve_reader.h"
+#include "renderer/scene/geometry/shapes/patches.h"
+#include "renderer/scene/geometry/shapes/placement.h"
+
+namespace lull {
+namespace {
+
+template <typename Vector>
+std::vector<Vector> VectorsOf(std::span<const float> values) {
+    constexpr int n = Vector::RowsAtCompileTime;
+    std::vector<Vector> vectors(values.size() / n);
+    for (size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = Eigen::Map<const Vector>(values.data() + n * i);
+    return vectors;
+}
+
+// Gathers indices three by three, with each checked.
+std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size_t vertexCount) {
+    const auto indices = entity.parameters.GetInts("indices");
+    if (indices.empty() || indices.size() % 3 != 0)
+        throw Error(entity.loc, fmt::format("\"indices\" has {} values; a mesh needs three for "
+                                            "each triangle",
+                                            indices.size()));
+    std::vector<std::array<uint32_t, 3>> triangles(indices.size() / 3);
+    for (size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] < 0 || size_t(indices[i]) >= vertexCount)
+            throw Error(entity.loc,
+                        fmt::format("index {} is out of range: the mesh has {} vertices",
+                                    indices[i], vertexCount));
+        triangles[i / 3][i % 3] = uint32_t(indices[i]);
+    }
+    return triangles;
+}
+
+std::vector<Vec3f> PositionsOf(const ShapeEntity& entity) {
+    const auto positions =
+        VectorsOf<Vec3f>(entity.parameters.GetFloats(ParameterType::Point3, "P"));
+    if (positions.empty())
+        throw Error(entity.loc, "the mesh has no vertices: \"point P\" is missing");
+    for (const Vec3f& p : positions)
+        if (!p.allFinite()) throw Error(entity.loc, "a vertex of the mesh is not finite");
+    return positions;
+}
+
+MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    MeshData data;
+    data.positions = PositionsOf(entity);
+    data.triangles = TrianglesOf(entity, data.positions.size());
+    // Texture coordinates come under two names and two types.
+    for (const char* name : {"uv", "st"})
+        for (const ParameterType type : {ParameterType::Point2, ParameterType::Float})
+            if (data.uvs.empty()) data.uvs = VectorsOf<Vec2f>(params.GetFloats(type, name));
+    if (data.uvs.size() < data.positions.size()) {
+        if (!data.uvs.empty())
+            warnings.Add(entity.loc, "too few \"uv\" for the mesh; they are left out");
+        data.uvs.clear();
+    } else {
+        data.uvs.resize(data.positions.size());
+    }
+    data.normals = VectorsOf<Vec3f>(params.GetFloats(ParameterType::Normal, "N"));
+    if (!data.normals.empty() && data.normals.size() != data.positions.size()) {
+        warnings.Add(entity.loc, "as many \"N\" as \"P\" are needed; the normals are left out");
+        data.normals.clear();
+    }
+    params.GetInts("faceIndices");  // only Ptex reads them
+    return data;
+}
+
+// Gathers values four by four, one a vertex; none where their number is wrong.
+std::vector<std::array<float, 4>> FoursOf(const ShapeEntity& entity, const char* name,
+                                          size_t vertexCount) {
+    const auto values = entity.parameters.GetFloats(ParameterType::Float, name);
+    if (values.size() != 4 * vertexCount) return {};
+    std::vector<std::array<float, 4>> fours(vertexCount);
+    for (size_t i = 0; i < values.size(); ++i) fours[i / 4][i % 4] = values[i];
+    return fours;
+}
+
+MeshData SubdividedMesh(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    const int levels = params.GetInt("levels", params.GetInt("nlevels", 3));
+    params.GetString("scheme", "loop");
+    return LoopSubdivide(params.GetFloats(ParameterType::Point3, "P"), params.GetInts("indices"),
+                         levels, entity.loc);
+}
+
+// Reads what only glTF's meshes have, four numbers a vertex and two of the second texture
+// coordinates: "color", "tangent", "uv1".
+void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* mesh) {
+    mesh->colors = FoursOf(entity, "color", vertexCount);
+    mesh->tangents = FoursOf(entity, "tangent", vertexCount);
+    const auto uv1 = entity.parameters.GetFloats(ParameterType::Float, "uv1");
+    if (uv1.size() == 2 * vertexCount) mesh->uv1 = VectorsOf<Vec2f>(uv1);
+    for (auto& t : mesh->tangents) {
+        const Vec3f along = TransformVector(entity.worldFromObject, Vec3f(t[0], t[1], t[2]));
+        // A mirror turns the cross product of normal and tangent round, not the other tangent.
+        t = {along.x(), along.y(), along.z(), Mirrors(entity.worldFromObject) ? -t[3] : t[3]};
+    }
+}
+
+// Carries the mesh to its place and drops triangles without area, which no ray can hit and no
+// light can shine from.
+Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
+    const Mat4d& m = entity.worldFromObject;
+    const Mat4d inverse = m.inverse();
+    Mesh mesh;
+    mesh.reverseOrientation = entity.reverseOrientation;
+    mesh.flipNormals = entity.reverseOrientation != Mirrors(m);
+    for (Vec3f& p : data.positions) {
+        p = TransformPoint(m, p);
+        if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
+    }
+    for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
+    ReadExtraAttributes(entity, data.positions.size(), &mesh);
+    mesh.p = std::move(data.positions);
+    mesh.n = std::move(data.normals);
+    mesh.uv = std::move(data.uvs);
+    mesh.triangles = std::move(data.triangles);
+    std::erase_if(mesh.triangles, [&](const auto& v) {
+        const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
+        const float twiceArea = LengthOf((p1 - p0).cross(p2 - p0));
+        if (std::isfinite(twiceArea) && std::isfinite(2 / twiceArea)) return false;
+        warnings.Add(entity.loc, "zero-area triangle left out");
+        return true;
+    });
+    mesh.p.push_back(Vec3f::Zero());  // the accelerator reads past the last vertex
+    return mesh;
+}
+
+float PhiMaxOf(const Parameters& params) {
+    return std::clamp(params.GetFloat("phimax", 360), 0.f, 360.f) * kPi / 180;
+}
+
+Sphere MakeSphere(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    Sphere sphere;
+    float scale;
+    sphere.place = PlacementOf(entity, &scale);
+    const float r = params.GetFloat("radius", 1);
+    if (!(r > 0) || !std::isfinite(r))
+        throw Error(entity.loc, fmt::format("a sphere's radius has to be positive; it is {}", r));
+    const float z0 = params.GetFloat("zmin", -r), z1 = params.GetFloat("zmax", r);
+    sphere.radius = scale * r;
+    sphere.zMin = scale * std::clamp(std::min(z0, z1), -r, r);
+    sphere.zMax = scale * std::clamp(std::max(z0, z1), -r, r);
+    sphere.phiMax = PhiMaxOf(params);
+    if (!(sphere.Area() > 0))
+        throw Error(entity.loc, "the sphere has no area left by its clipping");
+    return sphere;
+}
+
+Disk MakeDisk(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    Disk disk;
+    float scale;
+    disk.place = PlacementOf(entity, &scale);
+    disk.height = scale * params.GetFloat("height", 0);
+    disk.radius = scale * params.GetFloat("radius", 1);
+    disk.innerRadius = scale * params.GetFloat("innerradius", 0);
+    disk.phiMax = PhiMaxOf(params);
+    if (!(disk.radius > 0) || !(disk.innerRadius >= 0) || !(disk.Area() > 0))
+        throw Error(entity.loc, "the disk has no area; \"radius\" has to be above \"innerradius\"");
+    return disk;
+}
+
+Revolved MakeRevolved(const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    if (entity.areaLight && entity.name != "cylinder")
+        throw Error(entity.loc,
+                    fmt::format("a light of shape \"{}\" is not modelled; pbrt-v3 cannot "
+                                "sample it either, a mesh is",
+                                entity.name));
+    float scale;
+    const QuadricPlacement place = PlacementOf(entity, &scale);
+    const float phiMax = PhiMaxOf(params);
+    const auto size = [&](const char* name, float otherwise) {
+        return scale * params.GetFloat(name, otherwise);
+    };
+    Revolved shape;
+    if (entity.name == "cylinder") {
+        shape = MakeCylinder(size("radius", 1), size("zmin", -1), size("zmax", 1), phiMax);
+    } else if (entity.name == "cone") {
+        shape = MakeCone(size("radius", 1), size("height", 1), phiMax);
+        if (shape.end.z() <= 0) throw Error(entity.loc, "a cone's \"height\" has to be positive");
+    } else if (entity.name == "paraboloid") {
+        shape = MakeParaboloid(size("radius", 1), size("zmin", 0), size("zmax", 1), phiMax);
+    } else {
+        shape = MakeHyperboloid(scale * params.GetPoint3("p1", Vec3f(0, 0, 0)),
+                                scale * params.GetPoint3("p2", Vec3f(1, 1, 1)), phiMax);
+    }
+    shape.place = place;
+    if (!HasArea(shape))
+        throw Error(entity.loc, fmt::format("the {} has no area; its sizes and the range of its "
+                                            "heights have to be positive and finite",
+                                            entity.name));
+    return shape;
+}
+
+// Reads an alpha parameter, in which only 0 matters: such points are cut out.
+std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeEntity& entity,
+                                      const char* name) {
+    const FloatTexture alpha = textures.GetFloat(entity, name, 1);
+    if (alpha.IsConstant() && alpha.constant != 0) return {};
+    return alpha;
+}
+
+// Reads "coverage", the share of the mesh that is there, times "coveragefactor" and, with
+// "coveragecolors", the alpha of the vertices' colours; "alphacutoff" makes it all or nothing.
+// Nothing is returned where all of it is there.
+std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEntity& entity) {
+    const Parameters& params = entity.parameters;
+    Coverage coverage{textures.GetFloat(entity, "coverage", 1),
+                      params.GetFloat("coveragefactor", 1), params.GetFloat("alphacutoff", -1),
+                      params.GetInt("coverageuv", 0) == 1, params.GetBool("coveragecolors", false)};
+    const bool isConstant = coverage.alpha.IsConstant() && !coverage.vertexAlpha;
+    const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1;
+    if (isConstant && coverage.factor * coverage.alpha.constant >= enough) return {};
+    return coverage;
+}
+
+}  // namespace
+
+Shape MakeShape(const Description& description, const ShapeEntity& entity,
+                const TextureTable& textures, bool substitute, Warnings& warnings) {
+    Shape shape;
+    shape.material = entity.material;
+    const Parameters& params = entity.parameters;
+    const auto mesh = [&](MeshData data) {
+        shape.alpha = ReadAlpha(textures, entity, "alpha");
+        shape.shadowAlpha = ReadAlpha(textures, entity, "shadowalpha");
+        shape.coverage = ReadCoverage(textures, entity);
+        shape.geometry = PlaceMesh(std::move(data), entity, warnings);
+    };
+    if (entity.name == "plymesh") {
+        const std::string file = params.GetString("filename", "");
+        if (file.empty()) throw Error(entity.loc, "plymesh needs a \"filename\"");
+        mesh(LoadPly(ResolvePath(description, file), warnings, entity.loc));
+    } else if (entity.name == "trianglemesh") {
+        mesh(TriangleMesh(entity, warnings));
+    } else if (entity.name == "loopsubdiv") {
+        mesh(SubdividedMesh(entity));
+    } else if (entity.name == "sphere") {
+        shape.geometry = MakeSphere(entity);
+    } else if (entity.name == "disk") {
+        shape.geometry = MakeDisk(entity);
+    } else if (entity.name == "cylinder" || entity.name == "cone" || entity.name == "paraboloid" ||
+               entity.name == "hyperboloid") {
+        shape.geometry = MakeRevolved(entity);
+    } else if (entity.name == "heightfield") {
+        shape.geometry = PlaceMesh(HeightfieldMesh(entity), entity, warnings);
+    } else if (entity.name == "nurbs") {
+        shape.geometry = PlaceMesh(NurbsMesh(entity), entity, warnings);
+    } else if (entity.name == "curve") {
+        shape.geometry = ReadCurves(entity, warnings);
+    } else {
+        const std::string message = fmt::format(
+            "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, heightfield, nurbs, "
+            "sphere, disk, cylinder, cone, paraboloid, hyperboloid and curve are",
+            entity.name);
+        if (!substitute) throw Error(entity.loc, message);
+        warnings.Add(entity.loc, message + "; it is left out");
+        shape.geometry = Mesh{};
+        return shape;
+    }
+    params.ReportUnused("Shape \"" + entity.name + "\"", warnings);
+    return shape;
+}
+
+}  // namespace lull

@@ -1,0 +1,121 @@
+#include "renderer/base/sampling.h"
+#include "renderer/scene/geometry/shapes/quadric_internal.h"
+
+namespace lull {
+namespace {
+
+bool IsClipped(const Sphere& sphere, const Eigen::Vector3d& p) {
+    return (sphere.zMin > -sphere.radius && p.z() < sphere.zMin) ||
+           (sphere.zMax < sphere.radius && p.z() > sphere.zMax) ||
+           (sphere.phiMax < 2 * kPi && Azimuth(p.x(), p.y()) > sphere.phiMax);
+}
+
+Vec3f Center(const Sphere& sphere) {
+    return sphere.place.worldFromShape.topRightCorner<3, 1>().cast<float>();
+}
+
+// Takes points of the sphere itself as inside, whatever side rounding has put them on: the cone
+// that the sphere subtends is a whole hemisphere there, and would hold nothing but the point.
+bool IsInside(const Sphere& sphere, const Vec3f& p) {
+    const Vec3f center = Center(sphere);
+    const float rounding =
+        Gamma(16) * (p.lpNorm<Eigen::Infinity>() + center.lpNorm<Eigen::Infinity>());
+    return (p - center).squaredNorm() <= Sqr(sphere.radius + rounding);
+}
+
+// Returns 1 - cos of the half angle that the sphere subtends, without cancellation.
+float OneMinusCosMax(float sin2Max) { return sin2Max / (1 + SafeSqrt(1 - sin2Max)); }
+
+}  // namespace
+
+Bounds3f Sphere::WorldBounds() const {
+    return TransformBounds(place.worldFromShape, Vec3f(-radius, -radius, zMin),
+                           Vec3f(radius, radius, zMax));
+}
+
+std::optional<float> Intersect(const Sphere& sphere, const Ray& worldRay) {
+    // Solve |o + t d|^2 = r^2 about the point of closest approach: the discriminant is formed from
+    // the distance there, which is stable for far origins (Haines et al. 2019, Ray Tracing Gems,
+    // chapter 7).
+    const ShapeRay ray(sphere.place, worldRay);
+    const double a = ray.d.squaredNorm(), b = -ray.o.dot(ray.d);
+    const double r = sphere.radius;
+    const Eigen::Vector3d closest = ray.o + (b / a) * ray.d;
+    const double discriminant = r * r - closest.squaredNorm();
+    if (!(discriminant >= 0)) return {};
+    const double c = ray.o.squaredNorm() - r * r;
+    const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+    double t0 = q != 0 ? c / q : 0, t1 = q / a;
+    if (t0 > t1) std::swap(t0, t1);
+    for (const double t : {t0, t1})
+        if (t > 0 && t < worldRay.tMax && !IsClipped(sphere, ray(t))) return float(t);
+    return {};
+}
+
+void Interact(const Sphere& sphere, const Ray& worldRay, float t, SurfaceNeeds needs,
+              SurfaceInteraction* hit) {
+    const float r = sphere.radius;
+    Vec3f p = (ShapeRay(sphere.place, worldRay)(t).normalized() * double(r)).cast<float>();
+    if (p.x() == 0 && p.y() == 0) p.x() = 1e-5f * r;
+    const float thetaMin = std::acos(std::clamp(std::min(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
+    const float thetaMax = std::acos(std::clamp(std::max(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
+    const float theta = std::acos(std::clamp(p.z() / r, -1.f, 1.f));
+    const float zRadius = std::hypot(p.x(), p.y());
+    const float cosPhi = p.x() / zRadius, sinPhi = p.y() / zRadius;
+    const float dTheta = thetaMax - thetaMin, phiMax = sphere.phiMax;
+    if (needs & (kNeedsUv | kNeedsSecondUv))
+        hit->uv = {Azimuth(p.x(), p.y()) / phiMax, (theta - thetaMin) / dTheta};
+    hit->dpdu = {-phiMax * p.y(), phiMax * p.x(), 0};
+    hit->dpdv = dTheta * Vec3f(p.z() * cosPhi, p.z() * sinPhi, -r * std::sin(theta));
+    if (needs & kNeedsNormalDerivatives) {
+        // The normal is p / r up to its sign, so its derivatives are those of p.
+        const float sign = hit->dpdu.cross(hit->dpdv).dot(p) < 0 ? -1.f : 1.f;
+        hit->dndu = sign / r * hit->dpdu;
+        hit->dndv = sign / r * hit->dpdv;
+    } else {
+        hit->dndu = hit->dndv = Vec3f::Zero();
+    }
+    FinishQuadricHit(sphere.place, p, Gamma(5) * p.cwiseAbs(), needs, hit);
+}
+
+std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const Vec2f& u) {
+    const Vec3f center = Center(sphere);
+    ShapeSample sample;
+    if (IsInside(sphere, from)) {
+        const Vec3f p = sphere.radius * SampleUniformSphere(u);
+        std::tie(sample.p, sample.pError) =
+            TransformWithError(sphere.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
+        sample.n = TransformNormal(sphere.place.shapeFromWorld, p).normalized();
+        sample.pdf = SolidAnglePdf(1 / sphere.Area(), from, sample.p, sample.n);
+    } else {
+        // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2, in 1 - cos, which
+        // keeps its digits for small cones).
+        const float distance = (center - from).norm();
+        const Vec3f axis = (center - from) / distance;
+        Vec3f s, t;
+        CoordinateSystem(axis, &s, &t);
+        const float sinMax = sphere.radius / distance, sin2Max = Sqr(sinMax);
+        const float oneMinusCosMax = OneMinusCosMax(sin2Max);
+        const float x = oneMinusCosMax * u.x();  // 1 - cos(theta)
+        const float sin2 = x * (2 - x);
+        const float cosAlpha = sin2 / sinMax + (1 - x) * SafeSqrt(1 - sin2 / sin2Max);
+        const float sinAlpha = SafeSqrt(1 - Sqr(cosAlpha));
+        const float phi = u.y() * 2 * kPi;
+        sample.n = -(sinAlpha * std::cos(phi) * s + sinAlpha * std::sin(phi) * t + cosAlpha * axis);
+        sample.p = center + sphere.radius * sample.n;
+        sample.pError = Gamma(5) * sample.p.cwiseAbs();
+        sample.pdf = 1 / (2 * kPi * oneMinusCosMax);
+    }
+    if (sphere.place.reverseOrientation) sample.n = -sample.n;
+    if (!(sample.pdf > 0) || !std::isfinite(sample.pdf)) return {};
+    return sample;
+}
+
+float Pdf(const Sphere& sphere, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
+    if (IsInside(sphere, from)) return SolidAnglePdf(1 / sphere.Area(), from, p, n);
+    const float sin2Max = Sqr(sphere.radius) / (Center(sphere) - from).squaredNorm();
+    const float pdf = 1 / (2 * kPi * OneMinusCosMax(sin2Max));
+    return std::isfinite(pdf) ? pdf : 0;
+}
+
+}  // namespace lull

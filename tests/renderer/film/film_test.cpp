@@ -1,0 +1,169 @@
+#include "renderer/film/film.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/film/add_sample.h"
+
+namespace lull {
+namespace {
+
+TEST(InHalf, SplitsEveryMultipleOfFourSamplesEvenly) {
+    uint32_t inHalf = 0;
+    for (uint32_t n = 0; n <= 10000; ++n) {
+        if (n % 4 == 0) {
+            ASSERT_EQ(inHalf, n / 2) << n;
+        }
+        inHalf += InHalf(n);
+    }
+}
+
+TEST(InHalf, FollowsTheParityOfTheOddBits) {
+    const bool expected[] = {0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0};
+    for (uint32_t k = 0; k < 16; ++k) EXPECT_EQ(InHalf(k), expected[k]) << k;
+    EXPECT_TRUE(InHalf(0x80000000u));
+    EXPECT_FALSE(InHalf(0x40000000u));
+}
+
+TEST(HalfCount, CountsAnyNumberOfSamples) {
+    uint32_t inHalf = 0;
+    for (uint32_t n = 0; n <= 5000; ++n) {
+        ASSERT_EQ(HalfCount(n), inHalf) << n;
+        inHalf += InHalf(n);
+    }
+}
+
+TEST(FilmPixel, KeepsSumsOfAllAndOfTheHalf) {
+    FilmPixel pixel;
+    Rgb all(0, 0, 0), half(0, 0, 0);
+    for (uint32_t k = 0; k < 20; ++k) {
+        const Rgb radiance(float(k), float(2 * k), 1);
+        pixel.Add(radiance, k == 7);
+        all += radiance;
+        if (InHalf(k)) half += radiance;
+    }
+    EXPECT_EQ(pixel.count, 20u);
+    EXPECT_EQ(pixel.rejected, 1u);
+    EXPECT_TRUE((pixel.Mean() == all / 20).all());
+    EXPECT_TRUE((pixel.HalfMean() == half / 10).all());
+}
+
+TEST(FilmPixel, HasMeansFromTheFirstSampleOn) {
+    FilmPixel pixel;
+    EXPECT_TRUE(IsBlack(pixel.Mean()));
+    EXPECT_TRUE(IsBlack(pixel.HalfMean()));
+    pixel.Add(Rgb(1, 2, 3), false);
+    EXPECT_TRUE((pixel.Mean() == Rgb(1, 2, 3)).all());
+    EXPECT_TRUE((pixel.HalfMean() == Rgb(1, 2, 3)).all());
+}
+
+// A float sum would have stopped growing at 2^24.
+TEST(FilmPixel, LosesNothingOverManySamples) {
+    FilmPixel pixel;
+    pixel.sum = {0x1p24, 0x1p24, 0x1p24};
+    pixel.Add(Rgb(1, 1, 1), false);
+    EXPECT_EQ(pixel.sum[0], 0x1p24 + 1);
+}
+
+TEST(Film, AddressesPixelsOfTheFullImage) {
+    Film film({{10, 20}, {14, 23}});
+    for (int y = 20; y < 23; ++y)
+        for (int x = 10; x < 14; ++x) AddTo(&film, {x, y}, Rgb(float(x), float(y), 0));
+    const std::vector<float> mean = film.MeanImage();
+    ASSERT_EQ(mean.size(), 4u * 3u * 3u);
+    EXPECT_EQ(mean[0], 10);
+    EXPECT_EQ(mean[1], 20);
+    EXPECT_EQ(mean[3 * 5], 11);  // the second pixel of the second row
+    EXPECT_EQ(mean[3 * 5 + 1], 21);
+    EXPECT_EQ(film.SampleCount(), 12);
+    EXPECT_EQ(film.SppImage(), std::vector<float>(12, 1));
+}
+
+TEST(Film, ExtractsRectanglesIntoBuffersOfAnyFormerSize) {
+    Film film({{0, 0}, {5, 4}});
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x)
+            for (int k = 0; k < 4; ++k)
+                AddTo(&film, {x, y}, Rgb(float(x), float(y), InHalf(k) ? 2.f : 0.f));
+    FilmView view;
+    film.Extract({{0, 0}, {5, 4}}, true, &view);
+    film.Extract({{2, 1}, {4, 3}}, true, &view);
+    EXPECT_EQ(view.width, 2);
+    EXPECT_EQ(view.height, 2);
+    EXPECT_EQ(view.mean, (std::vector<float>{2, 1, 1, 3, 1, 1, 2, 2, 1, 3, 2, 1}));
+    EXPECT_EQ(view.halfMean, (std::vector<float>{2, 1, 2, 3, 1, 2, 2, 2, 2, 3, 2, 2}));
+    film.Extract({{2, 1}, {4, 3}}, false, &view);
+    EXPECT_TRUE(view.halfMean.empty());
+}
+
+TEST(Film, CountsRejectedSamples) {
+    Film film({{0, 0}, {2, 1}});
+    AddTo(&film, {0, 0}, Rgb(0, 0, 0), true);
+    AddTo(&film, {1, 0}, Rgb(0, 0, 0), true);
+    AddTo(&film, {1, 0}, Rgb(1, 1, 1));
+    EXPECT_EQ(film.RejectedCount(), 2);
+}
+
+// Adds `samples` to all pixels, block by block and in these tile by tile.
+void AddByTiles(Film* film, const TileGrid& grid, int samples) {
+    const PixelRect& all = film->Region();
+    const auto forEachPart = [](const PixelRect& whole, int size, const auto& visit) {
+        for (int y = whole.min.y(); y < whole.max.y(); y += size)
+            for (int x = whole.min.x(); x < whole.max.x(); x += size)
+                visit(PixelRect{{x, y}, Vec2i(x + size, y + size).cwiseMin(whole.max)});
+    };
+    forEachPart(all, grid.blockSize, [&](const PixelRect& block) {
+        forEachPart(block, grid.tileSize, [&](const PixelRect& tile) {
+            forEachPart(tile, 1, [&](const PixelRect& pixel) {
+                FilmPixel sums = film->At(pixel.min);
+                const uint32_t end = sums.count + uint32_t(samples);
+                while (sums.count < end)
+                    sums.Add(Rgb(float(pixel.min.x()), float(pixel.min.y()), float(sums.count)),
+                             (pixel.min.x() + pixel.min.y()) % 3 == 0);
+                film->Set(pixel.min, sums);
+            });
+        });
+    });
+}
+
+// What is known by tile is what is known by pixel.
+TEST(Film, KeepsTheSameByTiles) {
+    const PixelRect region{{3, 5}, {40, 31}};
+    for (const TileGrid grid : {TileGrid{25, 8}, {10, 16}, {1, 8}, {200, 8}, {8, 8}}) {
+        Film byTile(region, {.grid = grid}), byPixel(region);
+        for (const int samples : {20, 7}) {
+            AddByTiles(&byTile, grid, samples);
+            AddByTiles(&byPixel, grid, samples);
+        }
+        for (int y = region.min.y(); y < region.max.y(); ++y)
+            for (int x = region.min.x(); x < region.max.x(); ++x) {
+                const FilmPixel a = byTile.At({x, y}), b = byPixel.At({x, y});
+                ASSERT_EQ(a.sum, b.sum);
+                ASSERT_EQ(a.halfSum, b.halfSum);
+                ASSERT_EQ(a.count, 27u);
+            }
+        EXPECT_EQ(byTile.RejectedCount(), byPixel.RejectedCount());
+        EXPECT_EQ(byTile.SampleCount(), byPixel.SampleCount());
+        EXPECT_EQ(byTile.MeanImage(), byPixel.MeanImage());
+        EXPECT_EQ(byTile.SppImage(), byPixel.SppImage());
+    }
+}
+
+TEST(Film, LeavesOutTheHalfWhereItIsNotWanted) {
+    const PixelRect region{{0, 0}, {800, 600}};
+    const TileGrid grid{200, 8};
+    EXPECT_EQ(Film::Bytes(region, {grid, true}), region.Area() * 48 + 100 * 75 * 8);
+    EXPECT_EQ(Film::Bytes(region, {grid, false}), region.Area() * 24 + 100 * 75 * 8);
+
+    Film film({{0, 0}, {2, 1}}, {.withHalf = false});
+    for (int k = 0; k < 4; ++k) AddTo(&film, {1, 0}, Rgb(1, 2, float(k)));
+    FilmView view;
+    film.Extract(film.Region(), false, &view);
+    EXPECT_EQ(view.mean, (std::vector<float>{0, 0, 0, 1, 2, 1.5f}));
+    EXPECT_THROW(film.Extract(film.Region(), true, &view), std::logic_error);
+    Film other({{0, 0}, {2, 1}});
+    other.DropHalf();
+    EXPECT_THROW(other.Extract(other.Region(), true, &view), std::logic_error);
+}
+
+}  // namespace
+}  // namespace lull

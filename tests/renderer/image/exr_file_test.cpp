@@ -1,0 +1,105 @@
+// EXRs that lull does not write itself, as OpenEXR writes them.
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "renderer/image/files/exr_channels.h"
+#include "renderer/image/image_io.h"
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+namespace {
+
+std::vector<std::string> Sorted(std::vector<std::string> names) {
+    SortChannels(&names);
+    return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(ExrChannels, AreSortedAsColoursAndAsVectors) {
+    EXPECT_EQ(Sorted({"A", "B", "G", "R", "Z"}), (Names{"R", "G", "B", "A", "Z"}));
+    EXPECT_EQ(Sorted({"A", "Y", "spp"}), (Names{"Y", "A", "spp"}));
+    EXPECT_EQ(Sorted({"alpha", "blue", "Green", "red"}), (Names{"red", "Green", "blue", "alpha"}));
+    EXPECT_EQ(Sorted({"A", "X", "Y", "Z"}), (Names{"X", "Y", "Z", "A"}));
+    EXPECT_EQ(Sorted({"B", "G", "N.A", "N.X", "N.Z", "R", "a.b.G", "a.b.R", "spp"}),
+              (Names{"R", "G", "B", "spp", "N.X", "N.Z", "N.A", "a.b.R", "a.b.G"}));
+    EXPECT_TRUE(IsAlpha("diffuse.Alpha"));
+    EXPECT_FALSE(IsAlpha("spp"));
+}
+
+// Holds what all files below hold: 7x5 texels of one channel.
+struct OneChannel {
+    TemporaryDirectory directory;
+    std::string path = directory.File("a.exr");
+    Imf::Header header{7, 5};
+    std::vector<float> values = std::vector<float>(35);
+
+    OneChannel() { std::iota(values.begin(), values.end(), 1.f); }
+    Imf::FrameBuffer Frame(Imf::PixelType type, const void* texels) const {
+        Imf::FrameBuffer frame;
+        frame.insert("Y", Imf::Slice::Make(type, texels, header.dataWindow()));
+        return frame;
+    }
+};
+
+TEST(ExrFile, ReadsTiles) {
+    OneChannel file;
+    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    file.header.setTileDescription(Imf::TileDescription(4, 2, Imf::MIPMAP_LEVELS));
+    {
+        Imf::TiledOutputFile out(file.path.c_str(), file.header);
+        out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
+        for (int level = 0; level < out.numLevels(); ++level)
+            out.writeTiles(0, out.numXTiles(level) - 1, 0, out.numYTiles(level) - 1, level);
+    }
+    const Image image = ReadImage(file.path);
+    EXPECT_EQ(image.width, 7);
+    EXPECT_EQ(image.height, 5);
+    EXPECT_EQ(std::get<std::vector<float>>(image.texels), file.values);
+    EXPECT_EQ(ReadExr(file.path).Find("Y")->values, file.values);
+}
+
+TEST(ExrFile, TurnsIntegersIntoZeroToOne) {
+    OneChannel file;
+    file.header.channels().insert("Y", Imf::Channel(Imf::UINT));
+    std::vector<uint32_t> integers(35, 1u << 30);
+    integers[34] = 0xffffffff;
+    {
+        Imf::OutputFile out(file.path.c_str(), file.header);
+        out.setFrameBuffer(file.Frame(Imf::UINT, integers.data()));
+        out.writePixels(5);
+    }
+    const auto texels = std::get<std::vector<float>>(ReadImage(file.path).texels);
+    EXPECT_EQ(texels[0], 0.25f);
+    EXPECT_EQ(texels[34], 1);
+    EXPECT_EQ(ReadExr(file.path).Find("Y")->values, texels);
+}
+
+TEST(ExrFile, RefusesDeepAndSubsampledData) {
+    OneChannel file;
+    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    file.header.channels().insert("RY", Imf::Channel(Imf::HALF, 7, 5));
+    { Imf::OutputFile(file.path.c_str(), file.header); }
+    const std::string subsampled = ErrorOf([&] { ReadImage(file.path); });
+    EXPECT_TRUE(Contains(subsampled, "a.exr\": subsampled channels are not modelled (RY)"))
+        << subsampled;
+
+    file.header.channels() = Imf::ChannelList();
+    file.header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    file.header.setType(Imf::DEEPSCANLINE);
+    file.header.compression() = Imf::ZIPS_COMPRESSION;
+    { Imf::DeepScanLineOutputFile(file.path.c_str(), file.header); }
+    const std::string deep = ErrorOf([&] { ReadExr(file.path); });
+    EXPECT_TRUE(Contains(deep, "deep images are not modelled")) << deep;
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,380 @@
+#include "renderer/image/image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "renderer/base/color.h"
+#include "renderer/image/png_format.h"
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+namespace {
+
+// The files below are written out byte by byte, so that nothing but the reader is tested.
+constexpr const char* kGreyPng =  // 2x2: 0 64 / 128 255
+    "89504e470d0a1a0a0000000d494844520000000200000002080000000057dd52f80000000e4944415478da63607060"
+    "68"
+    "f80f00030501c0535b159f0000000049454e44ae426082";
+constexpr const char* kBilevelPng =  // 2x1, 1 bit: black, white
+    "89504e470d0a1a0a0000000d4948445200000002000000010100000000dc5942270000000a4944415478da63700000"
+    "00"
+    "42004184bf8e620000000049454e44ae426082";
+constexpr const char* kRgbPng =  // 2x2: 10 20 30, 40 50 60 / 70 80 90, 100 110 255
+    "89504e470d0a1a0a0000000d494844520000000200000002080200000"
+    "0fdd49a73000000164944415478da63e01291d330b261700b884ac9fb0f000f9f0394069395e30000000049454e44a"
+    "e42"
+    "6082";
+constexpr const char* kRgbaPng =  // 2x1: 200 100 50 0, 10 20 30 128
+    "89504e470d0a1a0a0000000d4948445200000002000000010806000000f4227f8a000000114944415478da63389162"
+    "c4"
+    "c02522d700000b51021b23ebbbf20000000049454e44ae426082";
+constexpr const char* kPalettePng =  // 2x1: 40 50 60, 10 20 30
+    "89504e470d0a1a0a0000000d4948445200000002000000010803000000c3fc8fb800000006504c54450a141e28323c"
+    "d5"
+    "1bb4e90000000b4944415478da63606400000005000242c2449f0000000049454e44ae426082";
+constexpr const char* kRgb16Png =  // 2x1: 0 65535 32768, 1 257 1000
+    "89504e470d0a1a0a0000000d49484452000000020000000110020000002bd0349e000000154944415478da636060f8"
+    "ff"
+    "bf818181919191f9050017f4036df9b8f7a40000000049454e44ae426082";
+constexpr const char*
+    kInterlacedPng =  // 3x2, grey and alpha, 16 bits, gamma 1: 1000 x + 7 y, 65535 - x - y
+    "89504e470d0a1a0a0000000d494844520000000300000002100400000110ea42440000000467414d41000186a031"
+    "e8965f000000274944415478da011c00e3ff000000ffff0007d0fffd0003e8fffe000007fffe03effffd07d7fffc"
+    "bf280f854a63612d0000000049454e44ae426082";
+constexpr const char* kTransparentPng =  // 5x1, indices 0 1 2 3 0 of 2 bits; index 1 is transparent
+    "89504e470d0a1a0a0000000d49484452000000050000000102030000006b908c600000000c504c54450a141e2832"
+    "3c46505a646e78c64877df0000000274524e53ff00e5b7304a0000000b4944415478da63906600000039001cfd48"
+    "606b0000000049454e44ae426082";
+constexpr const char* kHugePng =  // claims to be 60000x60000, holds 10 bytes
+    "89504e470d0a1a0a0000000d494844520000ea600000ea6008020000000fb0e2150000000b49444154789c63608001"
+    "00"
+    "000a00017f80745e0000000049454e44ae426082";
+
+template <typename T>
+const std::vector<T>& Texels(const Image& image) {
+    return std::get<std::vector<T>>(image.texels);
+}
+
+void ExpectNear(const std::vector<float>& a, const std::vector<float>& b, float tolerance) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
+}
+
+// Makes an image whose values all differ and are halves.
+ExrImage MakeExr(int width, int height, const std::vector<std::string>& names, bool isHalf) {
+    ExrImage image{width, height, Vec2i::Zero(), {0, 0}, {}, {}};
+    for (size_t c = 0; c < names.size(); ++c) {
+        ExrChannel& channel = image.channels.emplace_back(ExrChannel{names[c], {}, isHalf});
+        for (int i = 0; i < width * height; ++i)
+            channel.values.push_back(float(i) * 0.25f + float(c) * 64);
+    }
+    return image;
+}
+
+Image ReadFromBytes(const std::string& name, std::string_view bytes) {
+    const TemporaryDirectory directory;
+    return ReadImage(directory.Write(name, bytes));
+}
+
+TEST(ReadImage, ReadsEightBitPng) {
+    const Image grey = ReadFromBytes("grey.png", FromHex(kGreyPng));
+    EXPECT_EQ(grey.width, 2);
+    EXPECT_EQ(grey.height, 2);
+    EXPECT_EQ(grey.channels, 1);
+    EXPECT_EQ(Texels<uint8_t>(grey), (std::vector<uint8_t>{0, 64, 128, 255}));
+    EXPECT_EQ(grey.Bytes(), 4u);
+
+    EXPECT_EQ(Texels<uint8_t>(ReadFromBytes("bits.png", FromHex(kBilevelPng))),
+              (std::vector<uint8_t>{0, 255}));
+
+    const Image rgb = ReadFromBytes("rgb.png", FromHex(kRgbPng));
+    EXPECT_EQ(rgb.channels, 3);
+    EXPECT_EQ(Texels<uint8_t>(rgb),
+              (std::vector<uint8_t>{10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 255}));
+
+    const Image palette = ReadFromBytes("palette.png", FromHex(kPalettePng));
+    EXPECT_EQ(palette.channels, 3);
+    EXPECT_EQ(Texels<uint8_t>(palette), (std::vector<uint8_t>{40, 50, 60, 10, 20, 30}));
+}
+
+TEST(ReadImage, LeavesAlphaUnassociated) {
+    const Image rgba = ReadFromBytes("rgba.png", FromHex(kRgbaPng));
+    EXPECT_EQ(rgba.channels, 4);
+    EXPECT_EQ(Texels<uint8_t>(rgba), (std::vector<uint8_t>{200, 100, 50, 0, 10, 20, 30, 128}));
+}
+
+TEST(ReadImage, UndoesInterlacingAndPalettes) {
+    // The gamma that the file names changes nothing.
+    const Image interlaced = ReadFromBytes("a.png", FromHex(kInterlacedPng));
+    EXPECT_EQ(interlaced.width, 3);
+    EXPECT_EQ(interlaced.channels, 2);
+    std::vector<float> expected;
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+            for (const int v : {1000 * x + 7 * y, 65535 - x - y})
+                expected.push_back(float(v) / 65535);
+    ExpectNear(Texels<float>(interlaced), expected, 1e-7f);
+
+    const Image transparent = ReadFromBytes("a.png", FromHex(kTransparentPng));
+    EXPECT_EQ(transparent.channels, 4);
+    EXPECT_EQ(Texels<uint8_t>(transparent),
+              (std::vector<uint8_t>{10, 20,  30,  255, 40,  50,  60, 0,  70, 80,
+                                    90, 255, 100, 110, 120, 255, 10, 20, 30, 255}));
+}
+
+// The format is that of the bytes, whatever the name.
+TEST(ReadImage, KnowsFormatsByTheirBytes) {
+    EXPECT_EQ(ReadFromBytes("grey.jpg", FromHex(kGreyPng)).channels, 1);
+    EXPECT_EQ(ReadFromBytes("grey", FromHex(kGreyPng)).channels, 1);
+    const std::string png = FromHex(kGreyPng), pfm = "PF\n1 1\n-1.0\n" + std::string(12, '\0');
+    EXPECT_EQ(ReadImage("inside", "jpg", std::as_bytes(std::span(png))).channels, 1);
+    EXPECT_EQ(ReadFromBytes("really.png", pfm).channels, 3);
+}
+
+TEST(ReadImage, TurnsSixteenBitsIntoFloat) {
+    const Image image = ReadFromBytes("deep.png", FromHex(kRgb16Png));
+    EXPECT_EQ(image.channels, 3);
+    const std::vector<float> expected = {
+        0, 1, 32768 / 65535.f, 1 / 65535.f, 257 / 65535.f, 1000 / 65535.f};
+    ExpectNear(Texels<float>(image), expected, 1e-7f);
+}
+
+TEST(ReadImage, ReadsTgaFromEitherCorner) {
+    // 1x2, 24 bits, BGR; the first row stored is the lower one unless bit 5 is set.
+    const std::string head("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\2\0\x18", 17);
+    const std::string texels = "\1\2\3\4\5\6";
+    EXPECT_EQ(Texels<uint8_t>(ReadFromBytes("a.tga", head + std::string(1, '\0') + texels)),
+              (std::vector<uint8_t>{6, 5, 4, 3, 2, 1}));
+    EXPECT_EQ(Texels<uint8_t>(ReadFromBytes("a.tga", head + '\x20' + texels)),
+              (std::vector<uint8_t>{3, 2, 1, 6, 5, 4}));
+}
+
+TEST(ReadImage, ReadsJpeg) {
+    // One 8x8 block with no AC coefficients: Y = 200, Cb = 112, Cr = 144; quantiser 8.
+    const std::string jpeg = FromHex("ffd8ffdb004300") + std::string(64, '\x08') +
+                             FromHex(
+                                 "ffc00011080008000803011100021100031100"
+                                 "ffc4001500010100000000000000000000000000000705"
+                                 "ffc40014100100000000000000000000000000000000"
+                                 "ffda000c03010002000300003f00484f507fffd9");
+    const Image image = ReadFromBytes("a.jpg", jpeg);
+    EXPECT_EQ(image.width, 8);
+    EXPECT_EQ(image.channels, 3);
+    const auto& texels = Texels<uint8_t>(image);
+    EXPECT_NEAR(texels[0], 200 + 1.402 * 16, 1);
+    EXPECT_NEAR(texels[1], 200 + 0.344 * 16 - 0.714 * 16, 1);
+    EXPECT_NEAR(texels[8 * 8 * 3 - 1], 200 - 1.772 * 16, 1);
+}
+
+TEST(ReadImage, ReadsRadianceHdr) {
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+    const Image image = ReadFromBytes("a.hdr", header + FromHex("8040208180808084"));
+    EXPECT_EQ(image.channels, 3);
+    const std::vector<float> expected = {1, 0.5f, 0.25f, 8, 8, 8};
+    ExpectNear(Texels<float>(image), expected, 0.04f);
+}
+
+TEST(ReadImage, ReadsPfmTopDown) {
+    const float values[6] = {1, 2, 3, -4, 5e6f, 6};  // the lower row comes first
+    std::string pfm = "PF\n1 2\n-1.0\n";
+    pfm.append(reinterpret_cast<const char*>(values), sizeof(values));
+    EXPECT_EQ(Texels<float>(ReadFromBytes("a.pfm", pfm)),
+              (std::vector<float>{-4, 5e6f, 6, 1, 2, 3}));
+}
+
+TEST(ReadImage, SaysWhatIsWrong) {
+    const TemporaryDirectory directory;
+    const auto read = [](const std::string& path) { return ErrorOf([&] { ReadImage(path); }); };
+    EXPECT_TRUE(Contains(read("/nowhere/a.png"), "/nowhere/a.png"));
+    EXPECT_TRUE(Contains(read("/nowhere/a.png"), "no such file"));
+    EXPECT_TRUE(Contains(read(directory.path.string()), "directory"));
+    EXPECT_TRUE(Contains(read(directory.Write("text.png", "hello")), "text.png"));
+    EXPECT_TRUE(Contains(read(directory.Write("a.unknown", "hello")), "a.unknown"));
+    EXPECT_TRUE(Contains(read(directory.Write("empty.exr", "")), "empty.exr"));
+    const std::string cut = read(directory.Write("cut.png", FromHex(kRgbPng).substr(0, 50)));
+    EXPECT_TRUE(Contains(cut, "cut.png\": it is cut short")) << cut;
+    EXPECT_TRUE(Contains(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3"));
+}
+
+TEST(ReadImage, RefusesWhatIsCutShort) {
+    const TemporaryDirectory directory;
+    WriteExr(directory.File("a.exr"), MakeExr(3, 40, {"R", "G", "B"}, true));
+    const auto refuse = [&](const std::string& bytes, size_t most) {
+        for (size_t size = 8; size < most; ++size)
+            EXPECT_THROW(ReadImage("cut", "", std::as_bytes(std::span(bytes.data(), size))), Error)
+                << size << " of " << bytes.size();
+        EXPECT_NO_THROW(ReadImage("whole", "", std::as_bytes(std::span(bytes))));
+    };
+    const std::string exr = ReadBytes(directory.File("a.exr"));
+    refuse(exr, exr.size());
+    // The last bytes of a PNG are checksums and the end, which nobody waits for.
+    for (const char* png : {kRgbPng, kRgb16Png, kInterlacedPng}) {
+        const std::string bytes = FromHex(png);
+        refuse(bytes, bytes.size() - 24);
+    }
+}
+
+TEST(ReadImage, RefusesAbsurdSizesOfExr) {
+    const TemporaryDirectory directory;
+    WriteExr(directory.File("a.exr"), MakeExr(3, 40, {"R", "G", "B"}, true));
+    const std::string exr = ReadBytes(directory.File("a.exr"));
+    const std::string key("dataWindow\0box2i\0\x10\0\0\0", 21);
+    const size_t at = exr.find(key) + key.size();
+    ASSERT_GT(at, key.size());
+    for (const std::array<int, 4>& window : {std::array<int, 4>{0, 0, 65535, 65535},
+                                             {0, 0, 65536, 0},
+                                             {0, 0, 0x7ffffffe, 0x7ffffffe},
+                                             {-0x7fffffff, -0x7fffffff, 0x7fffffff, 0x7fffffff},
+                                             {0, 5, 10, 0},
+                                             {0, 0, 59999, 59999}}) {
+        std::string bytes = exr;
+        std::memcpy(&bytes[at], window.data(), sizeof(window));
+        const std::string path = directory.Write("b.exr", bytes);
+        EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(path); }), "b.exr\": ")) << window[2];
+        EXPECT_TRUE(Contains(ErrorOf([&] { ReadExr(path); }), "b.exr\": ")) << window[2];
+    }
+}
+
+TEST(Exr, KeepsHalfAndFloat) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.exr");
+    WriteExr(path, MakeExr(3, 2, {"R", "G", "B"}, true));
+    const Image half = ReadImage(path);
+    EXPECT_EQ(half.channels, 3);
+    EXPECT_EQ(Texels<Half>(half)[0], Half(0));
+    EXPECT_EQ(Texels<Half>(half)[3 * 5 + 2], Half(5 * 0.25f + 128));
+
+    WriteExr(path, MakeExr(3, 2, {"R", "G", "B"}, false));
+    EXPECT_EQ(Texels<float>(ReadImage(path))[3 * 5 + 2], 5 * 0.25f + 128);
+
+    WriteExr(path, MakeExr(3, 2, {"Y"}, true));
+    EXPECT_EQ(ReadImage(path).channels, 1);
+    WriteExr(path, MakeExr(3, 2, {"R", "G", "B", "A"}, true));
+    EXPECT_EQ(ReadImage(path).channels, 4);
+    EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+TEST(Exr, RoundTripsChannelsAttributesAndWindows) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.exr");
+    ExrImage image = MakeExr(5, 4, {"R", "G", "B"}, true);
+    image.channels.push_back({"spp", std::vector<float>(20, 9980), false});
+    image.channels.push_back({"variance.R", std::vector<float>(20, 1e-20f), false});
+    image.channels[0].values[7] = 1e6f;  // too large for half
+    image.channels[3].values[3] = 123456.75f;
+    image.origin = {10, 20};
+    image.displaySize = {100, 50};
+    Mat4d matrix;
+    matrix << 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16.5;
+    image.attributes = {{"worldToCamera", matrix},
+                        {"worldToNDC", Mat4d(2 * matrix)},
+                        {"sampler", std::string("sobol")},
+                        {"rejectedSamples", 17},
+                        {"renderTimeSeconds", 1.5f}};
+    WriteExr(path, image);
+
+    const ExrImage read = ReadExr(path);
+    EXPECT_EQ(read.width, 5);
+    EXPECT_EQ(read.height, 4);
+    EXPECT_EQ(read.origin, Vec2i(10, 20));
+    EXPECT_EQ(read.displaySize, Vec2i(100, 50));
+    ASSERT_EQ(read.channels.size(), 5u);
+    for (const ExrChannel& c : image.channels) {
+        const ExrChannel* same = read.Find(c.name);
+        ASSERT_NE(same, nullptr) << c.name;
+        EXPECT_EQ(same->isHalf, c.isHalf) << c.name;
+        if (c.name == "R")
+            EXPECT_EQ(same->values[7], kInfinity);
+        else
+            EXPECT_EQ(same->values, c.values) << c.name;
+    }
+    EXPECT_EQ(read.Find("Z"), nullptr);
+    for (const auto& [name, value] : image.attributes) {
+        ASSERT_TRUE(read.attributes.count(name)) << name;
+        EXPECT_EQ(read.attributes.at(name), value) << name;
+    }
+    // As a picture, the file is its first three channels.
+    EXPECT_EQ(ReadImage(path).channels, 3);
+
+    // Other programs must find the matrix under this very name, row by row as pbrt writes it.
+    const std::string bytes = ReadBytes(path);
+    const std::string key("worldToCamera\0m44f\0\x40\0\0\0", 23);
+    const size_t at = bytes.find(key);
+    ASSERT_NE(at, std::string::npos);
+    float values[16];
+    std::memcpy(values, bytes.data() + at + key.size(), sizeof(values));
+    EXPECT_EQ(values[1], 2);
+    EXPECT_EQ(values[15], 16.5f);
+    EXPECT_NE(bytes.find(std::string("worldToNDC\0m44f\0", 16)), std::string::npos);
+    EXPECT_NE(bytes.find(std::string("compression\0compression\0\1\0\0\0\3", 29)),
+              std::string::npos);
+}
+
+TEST(Exr, RefusesToWriteWhatDoesNotFit) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.Write("a.exr", "old");
+    ExrImage image = MakeExr(2, 2, {"R", "G", "B"}, true);
+    image.channels[1].values.pop_back();
+    EXPECT_THROW(WriteExr(path, image), Error);
+    EXPECT_THROW(WriteExr(path, ExrImage{}), Error);
+    EXPECT_EQ(ReadBytes(path), "old");
+    EXPECT_EQ(directory.CountFiles(), 1);
+    image = MakeExr(2, 2, {"R", "G", "B"}, true);
+    EXPECT_THROW(WriteExr(directory.path.string(), image), Error);
+    if (std::filesystem::exists("/dev/full")) {
+        EXPECT_THROW(WriteExr("/dev/full", image), Error);
+    }
+}
+
+TEST(WritePng, EncodesSrgb) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.png");
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Rgb> pixels = {{0, 0.0031308f, 0.5f},
+                                     {1, 2, -1},
+                                     {nan, kInfinity, -kInfinity},
+                                     {0.214041f, 0.0001f, 0.99f}};
+    WritePng(path, pixels, 2, 2);
+    // By hand: 255 * 12.92 * 0.0031308 = 10.3; 255 * (1.055 * 0.5^(1/2.4) - 0.055) = 187.5;
+    // 0.214041 is the linear value of 0.5: 127.5; 0.0001: 0.33; 0.99: 253.9.
+    const auto texels = Texels<uint8_t>(ReadImage(path));
+    const std::vector<uint8_t> expected = {0, 10, 188, 255, 255, 0, 0, 255, 0, 128, 0, 254};
+    ASSERT_EQ(texels.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(texels[i], expected[i], i == 9 ? 1 : 0) << i;  // 127.5 may go either way
+
+    EXPECT_THROW(WritePng(path, pixels, 2, 3), Error);
+    EXPECT_EQ(Texels<uint8_t>(ReadImage(path)), texels);
+}
+
+TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.png");
+    const std::vector<Rgb> pixels = {{0, 0.5f, 1}, {5.6f, 0.18f, -1}};
+    WritePng(path, pixels, 2, 1, {.bits = 16, .text = {{"ToneMap", "none"}}});
+    const auto wide = Texels<float>(ReadImage(path));  // 16-bit integers become 0 to 1
+    const float expected[] = {0, SrgbFromLinear(0.5f), 1, 1, SrgbFromLinear(0.18f), 0};
+    for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(wide[i], expected[i], 1e-5f) << i;
+    EXPECT_TRUE(Contains(ReadBytes(path), std::string("tEXtToneMap\0none", 16)));
+
+    WritePng(path, pixels, 2, 1, {.toneMap = ToneMap::Filmic});
+    const auto mapped = Texels<uint8_t>(ReadImage(path));
+    const float display[] = {0, FilmicToneMap(0.5f), FilmicToneMap(1), 1, FilmicToneMap(0.18f), 0};
+    for (size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(mapped[i], 255 * SrgbFromLinear(display[i]), 0.501f) << i;
+    EXPECT_FALSE(Contains(ReadBytes(path), "ToneMap"));
+}
+
+TEST(WritePng, KeepsTheOldFileWhereItFails) {
+    const TemporaryDirectory directory;
+    const std::vector<Rgb> pixels(4, Rgb::Constant(1));
+    EXPECT_TRUE(
+        Contains(ErrorOf([&] { WritePng(directory.path.string(), pixels, 2, 2); }), "directory"));
+    EXPECT_THROW(WritePng(directory.File("none/a.png"), pixels, 2, 2), Error);
+    EXPECT_EQ(directory.CountFiles(), 0);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,142 @@
+// Tests what is too large, too far away or too small for rays to be traced, and what is not.
+#include "renderer/scene/geometry/reach.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+namespace {
+
+std::unique_ptr<const Scene> MakeScene(const std::string& text) {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    const auto d = ParsePbrt(directory.Write("far.pbrt", text), warnings);
+    CompileOptions options;
+    options.threads = 1;
+    return Compile(d, options, warnings);
+}
+
+std::string ErrorIn(const std::string& options, const std::string& world) {
+    return ErrorOf([&] { MakeScene(options + "\nWorldBegin\n" + world + "\nWorldEnd\n"); });
+}
+
+const char* const kObject = "ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\n";
+
+TEST(Reach, RefusesCamerasTooFarAway) {
+    for (const char* options :
+         {"LookAt 0 0 1.9e18 0 0 0 0 1 0\nCamera \"perspective\"",
+          "\nCamera \"orthographic\" \"float screenwindow\" [-5e18 5e18 -5e18 5e18]",
+          "\nCamera \"perspective\" \"float screenwindow\" [-1e25 1e25 -1e25 1e25]",
+          "\nCamera \"perspective\" \"float lensradius\" [5e18]",
+          "Scale 1e-20 1e-20 1e-20\nCamera \"orthographic\""})
+        EXPECT_TRUE(
+            Contains(ErrorIn(options, "Shape \"sphere\""), "far.pbrt:2: rays of the camera"))
+            << options;
+    EXPECT_EQ(ErrorIn("LookAt 0 0 1e11 0 0 0 0 1 0\nCamera \"perspective\"", "Shape \"sphere\""),
+              "");
+}
+
+TEST(Reach, RefusesShapesTooFarAway) {
+    EXPECT_TRUE(Contains(ErrorIn("", "Shape \"sphere\" \"float radius\" [1e18]"),
+                         "far.pbrt:3: Shape \"sphere\" reaches farther than 1e+12"));
+    EXPECT_TRUE(Contains(ErrorIn("",
+                                 "Translate 0 0 1e30\nShape \"trianglemesh\" \"integer "
+                                 "indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"),
+                         "far.pbrt:4: Shape \"trianglemesh\" reaches"));
+}
+
+TEST(Reach, RefusesInstancesThatNoRayCanBeFollowedInto) {
+    EXPECT_TRUE(
+        Contains(ErrorIn("", kObject + std::string("Scale 1e-19 1 1\nObjectInstance \"a\"")),
+                 "far.pbrt:7: the instance's transform shrinks"));
+    EXPECT_TRUE(Contains(ErrorIn("", kObject + std::string("Scale 1 1 1e19\nObjectInstance \"a\"")),
+                         "far.pbrt:7: the instance reaches farther"));
+    EXPECT_EQ(ErrorIn("", kObject + std::string("Scale 1e-3 1e3 1\nObjectInstance \"a\"")), "");
+}
+
+TEST(Reach, RefusesLightsTooFarAway) {
+    for (const char* kind : {"point", "spot", "goniometric", "projection"})
+        EXPECT_TRUE(
+            Contains(ErrorIn("", "Translate 0 0 1e18\nLightSource \"" + std::string(kind) + "\""),
+                     "far.pbrt:4: LightSource \"" + std::string(kind) + "\" lies farther"))
+            << kind;
+}
+
+// An instance that is smaller than its object makes rays longer.
+TEST(Reach, IsThatOfAllInstances) {
+    EXPECT_EQ(ReachThrough(Mat4d::Identity() * 1e-3), double(kFarthest));
+    const auto scene = MakeScene("WorldBegin\n" + std::string(kObject) +
+                                 "Scale 1e-6 1e-6 1e-6\nObjectInstance \"a\"\nWorldEnd\n");
+    EXPECT_LT(scene->shapes.reach, 1e12f);
+    EXPECT_GT(scene->shapes.reach, 1e11f);
+    EXPECT_TRUE(Contains(ErrorIn("LookAt 0 0 1e13 0 0 0 0 1 0\nCamera \"perspective\"",
+                                 kObject + std::string("Scale 1e-6 1e-6 1e-6\nObjectInstance "
+                                                       "\"a\"")),
+                         "far.pbrt:2: rays of the camera"));
+}
+
+// Triangles are what they are at any size: their normals come from products of two lengths, whose
+// squares are no longer floats.
+TEST(Reach, MeshesMayBeOfAnySize) {
+    for (const double scale : {1e-12, 1e-10, 1., 1e10, 1e11}) {
+        const auto scene = MakeScene(fmt::format(
+            "WorldBegin\nScale {0} {0} {0}\nShape \"trianglemesh\" \"integer indices\" [0 1 2]"
+            "\"point P\" [-1 -1 2  3 -1 2  -1 3 2]\nWorldEnd\n",
+            scale));
+        const float s = float(scale);
+        Hit hit;
+        const Ray ray{Vec3f::Zero(), Vec3f(0, 0, s), kInfinity};
+        ASSERT_TRUE(scene->accelerator.Intersect(ray, &hit)) << scale;
+        EXPECT_NEAR(hit.t, 2, 1e-5) << scale;
+        SurfaceInteraction at;
+        scene->shapes.Interact(ray, hit, kNeedsTangents, &at);
+        EXPECT_NEAR(std::abs(at.n.z()), 1, 1e-6) << scale;
+        EXPECT_NEAR(at.n.norm(), 1, 1e-6) << scale;
+        EXPECT_NEAR(std::get<Mesh>(scene->shapes.shapes[0].geometry).Area(0) / s / s, 8, 1e-4)
+            << scale;
+    }
+}
+
+TEST(Reach, SpheresMayBeOfAnySize) {
+    for (const double scale : {1e-10, 1., 1e10, 1e11}) {
+        const auto scene = MakeScene(fmt::format(
+            "WorldBegin\nTranslate 0 0 {0}\nShape \"sphere\" \"float radius\" [{1}]\nWorldEnd\n",
+            4 * scale, scale));
+        Hit hit;
+        const Ray ray{Vec3f::Zero(), Vec3f(0.1f, 0, 1), kInfinity};
+        ASSERT_TRUE(scene->accelerator.Intersect(ray, &hit)) << scale;
+        SurfaceInteraction at;
+        scene->shapes.Interact(ray, hit, kNeedsTangents, &at);
+        EXPECT_NEAR(at.n.norm(), 1, 1e-6) << scale;
+        EXPECT_LT(at.n.z(), -0.8f) << scale;
+    }
+}
+
+TEST(Reach, WarnsOfScenesTooSmallForTriangles) {
+    const auto warningsOf = [](double scale) {
+        const TemporaryDirectory directory;
+        Warnings warnings;
+        const auto d =
+            ParsePbrt(directory.Write(
+                          "small.pbrt",
+                          fmt::format("WorldBegin\nScale {0} {0} {0}\nShape \"trianglemesh\" "
+                                      "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"
+                                      "\nWorldEnd\n",
+                                      scale)),
+                      warnings);
+        CompileOptions options;
+        options.threads = 1;
+        Compile(d, options, warnings);
+        return warnings.Counts();
+    };
+    const std::string kind = "the scene is too small for its light to be right";
+    EXPECT_EQ(warningsOf(1e-10).count(kind), 1u);
+    EXPECT_EQ(warningsOf(1e-4).count(kind), 0u);
+}
+
+}  // namespace
+}  // namespace lull
