@@ -4,7 +4,10 @@
 #include <array>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
@@ -21,12 +24,16 @@ constexpr std::array sharedCommands = {"render", "compare", "bench", "dataset"};
 
 ExitCode Run(Job* job, const Command& command) {
     std::string message;
+    ExitCode code = kFailed;
     try {
-        const ExitCode code = command();
+        const ExitCode done = command();
         FinishResults();
-        return code;
+        return done;
     } catch (const OtherRankFailed&) {
         return kFailed;
+    } catch (const UsageError& e) {
+        message = OneLine(e.what());
+        code = kWrongUsage;
     } catch (const std::bad_alloc&) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
     } catch (const std::system_error& e) {  // as of what prints, which does not say to where
@@ -36,7 +43,40 @@ ExitCode Run(Job* job, const Command& command) {
         message = OneLine(e.what());
     }
     job->Fail(message);
-    return kFailed;
+    return code;
+}
+
+// Returns how many letters to change, add or leave out until one word is the other (Levenshtein).
+size_t Distance(const std::string& a, const std::string& b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t(0));
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = std::exchange(row[0], i + 1);
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t change = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+// Says which command a word may have been meant to be; "" where it is one, or an option.
+std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
+    std::string nearest, all;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        const std::string& name = command->get_name();
+        if (name == word || word.starts_with('-')) return "";
+        all += (all.empty() ? "" : ", ") + name;
+        if (nearest.empty() || Distance(word, name) < Distance(word, nearest)) nearest = name;
+    }
+    const std::string start = "there is no command '" + word + "'";
+    if (Distance(word, nearest) <= std::max<size_t>(1, nearest.size() / 3))
+        return start + "; did you mean '" + nearest + "'?";
+    // Who leaves it out gives a scene.
+    if (word.find('.') != std::string::npos)
+        return start + "; to render it, type lull render " + word;
+    return start + "; there are " + all;
 }
 
 ExitCode Main(Job* job, int argc, char** argv) {
@@ -58,6 +98,9 @@ ExitCode Main(Job* job, int argc, char** argv) {
     AddCompareCommand(app, &command, job);
     AddBenchCommand(app, &command, job);
     AddJudgeCommand(app, &command);
+    if (const std::string problem = argc > 1 ? ProblemOfCommand(app, argv[1]) : "";
+        !problem.empty())
+        return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -165,7 +165,8 @@ void CheckFiles(const Options& options, const Description& description,
 
 PreparedScene Prepare(const Options& options, const Job& job) {
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
+                     {.isJson = settings.jsonProgress});
     PreparedScene prepared;
     if (options.denoise) {
         CheckLayersFit({}, true, input.region);
@@ -263,7 +264,7 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
     if (!session.Learn()) return false;
     if (variant.isGuided && !session.Guidance().isUsed) return true;
     session.Resume();
-    if (!settings.quiet) Say("lull: rendering with {}\n", NameOf(variant));
+    if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
     const RenderResult result = session.Run();
     printer.Finish(result.progress);
     if (result.cancelled) return false;
@@ -293,6 +294,7 @@ std::vector<std::string> Notes(const Options& options) {
 
 ExitCode RunBench(Options options, Job* job) {
     RenderSettings& settings = options.render;
+    SetWording(settings, job);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
     PreparedScene prepared = Prepare(options, *job);

@@ -1,10 +1,11 @@
 #include "renderer/commands/clock_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 
-#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/render/time_limit.h"
 
@@ -58,7 +59,7 @@ std::function<double()> StartClock(const ClockOptions& options) {
     return [end] { return std::chrono::duration<double>(end - Clock::now()).count(); };
 }
 
-ProgressListener WarnOfFirstSamples(int64_t pixels, ProgressListener listener) {
+ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressListener listener) {
     return [=, hasWarned = false](const RenderProgress& p) mutable {
         listener(p);
         constexpr int64_t share = 10;  // of the samples, from which their speed is taken
@@ -68,10 +69,10 @@ ProgressListener WarnOfFirstSamples(int64_t pixels, ProgressListener listener) {
         const double left = std::max(*p.secondsLeft, 0.);
         if (needed < 1.1 * left || needed < left + 1) return;
         hasWarned = true;
-        Say("\nlull: warning: the first sample of each pixel, which is always taken, takes about "
-            "{} "
-            "more, of {} that are left; a smaller --resolution takes less\n",
-            FormatDuration(needed), FormatDuration(left));
+        talk.Warn(fmt::format(
+            "the first sample of each pixel, which is always taken, takes about {} more, of {} "
+            "that are left; a smaller --resolution takes less",
+            FormatDuration(needed), FormatDuration(left)));
     };
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "renderer/commands/talk.h"
 #include "renderer/render/progress.h"
 
 namespace lull {
@@ -27,6 +28,6 @@ using ProgressListener = std::function<void(const RenderProgress&)>;
 
 // Returns a listener that passes on what it hears and warns, once and as early as it can be known,
 // where a sample for each of so many pixels will take longer than there is time.
-ProgressListener WarnOfFirstSamples(int64_t pixels, ProgressListener listener);
+ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk&, ProgressListener listener);
 
 }  // namespace lull

@@ -5,9 +5,18 @@
 #include <CLI/App.hpp>
 #include <functional>
 
+#include "renderer/base/error.h"
+
 namespace lull {
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
+
+// Is thrown for what the command line asks for that is never right, whatever the files:
+// kWrongUsage.
+class UsageError : public Error {
+  public:
+    using Error::Error;
+};
 
 class Job;
 

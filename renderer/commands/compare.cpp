@@ -99,7 +99,8 @@ ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) 
 // Loads the scene and checks all that can be wrong before the work begins.
 PreparedScene Prepare(const CompareOptions& options, const Job& job) {
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
+                     {.isJson = settings.jsonProgress});
 
     PreparedScene prepared;
     const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);
@@ -150,7 +151,7 @@ Verification Verify(const PreparedScene& prepared, const RenderSettings& setting
     how.render.schedule.smallestSide = prepared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = prepared.rules.front().make;
-    if (!settings.quiet) Say("lull: the automatic image by itself\n");
+    if (!settings.quiet) TalkOf(settings).Note("the automatic image by itself");
     Session session(*prepared.scene, prepared.provenance.crop, how);
     const RenderResult result = session.Run();
     printer.Finish(result.progress);
@@ -225,6 +226,7 @@ ExitCode SayInterrupted(const CheckpointOptions& checkpoint) {
 // The ranks share the render that all images come from; the first does the rest.
 ExitCode CompareRenders(CompareOptions options, Job* job) {
     RenderSettings& settings = options.render;
+    SetWording(settings, job);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.output.empty()) options.output = SceneName(settings.scene.file);
     if (!options.snapshots && options.reference.empty())

@@ -87,7 +87,9 @@ std::string CheckpointName(const Options& options) {
 ExitCode RunDataset(const Options& options, Job* job) {
     const bool leads = job->Rank() == 0;  // prints, and writes files
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)});
+    SetWording(settings, job);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
+                     {.isJson = settings.jsonProgress});
     const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
     if (leads) {
         std::vector<NamedFile> inputs = InputsOf(settings.scene, input.description);
@@ -108,7 +110,8 @@ ExitCode RunDataset(const Options& options, Job* job) {
     if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
         job->Begin("nothing");
         job->End();
-        Say("lull: {} has all blocks of '{}' already\n", options.output, options.name);
+        TalkOf(settings).Note(
+            fmt::format("{} has all blocks of '{}' already", options.output, options.name));
         return kDone;
     }
 

@@ -1,12 +1,13 @@
 // Denoises finished pictures, for commands that do.
 #pragma once
 
+#include "renderer/commands/talk.h"
 #include "renderer/measure/denoised_image.h"
 
 namespace lull {
 
 // Is DenoiseImage(), which says how long it took and how clean the picture is, unless `quiet`.
 DenoisedImage DenoiseAndSay(NoisyPicture, const PixelRect& region, const std::vector<Block>& blocks,
-                            bool quiet);
+                            bool quiet, const Talk& = {});
 
 }  // namespace lull

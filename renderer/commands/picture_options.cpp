@@ -38,7 +38,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,
-                                     const PixelRect& region, int ranks) {
+                                     const PixelRect& region, int ranks, const Talk& talk) {
     if (options.display.empty()) return nullptr;
     if (ranks > 1)
         throw Error(
@@ -47,9 +47,8 @@ std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::s
     CheckMemory(region.Area() * int64_t(5 * sizeof(float) + 1),
                 fmt::format("--display of {}x{} pixels", region.Width(), region.Height()),
                 "leave it out");
-    return std::make_unique<Display>(
-        ParseDisplayAddress(options.display), name, region,
-        [](const std::string& message) { Say("\nlull: warning: {}\n", message); });
+    return std::make_unique<Display>(ParseDisplayAddress(options.display), name, region,
+                                     [talk](const std::string& message) { talk.Warn(message); });
 }
 
 }  // namespace lull

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/commands/talk.h"
 #include "renderer/film/display.h"
 #include "renderer/measure/image_files.h"
 
@@ -20,6 +21,6 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options);
 // Begins to show a render whose image is called `name`; null where that is not wanted. Throws Error
 // on several ranks.
 std::unique_ptr<Display> MakeDisplay(const PictureOptions&, const std::string& name,
-                                     const PixelRect& region, int ranks);
+                                     const PixelRect& region, int ranks, const Talk&);
 
 }  // namespace lull

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -18,10 +17,10 @@
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
+#include "renderer/commands/render_talk.h"
 #include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/measure/report.h"
-#include "renderer/measure/shortfall.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/block_denoiser.h"
 #include "renderer/render/film_picture.h"
@@ -61,6 +60,7 @@ Examples:
   lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
+  lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
   lull render scene.pbrt --until 09:00                 # as clean as it gets until then
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
@@ -71,6 +71,8 @@ checkpoint is kept, to go on from.
 
 Ctrl-C ends the render early and writes what there is; twice, it ends at once.
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
 
 void AddOptions(CLI::App& app, Options* o) {
     AddRenderSettings(app, &o->render);
@@ -89,7 +91,11 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("N")
         ->excludes(stop);
     app.add_option("--report", o->report,
-                   "Write what happened to each block: .html to look at, else JSON")
+                   "Write what happened to each block: .html to look at, .json for programs")
+        ->check([](const std::string& file) {
+            const bool isKnown = IsHtml(file) || file.ends_with(".json");
+            return isKnown ? "" : file + " ends neither in .html nor in .json";
+        })
         ->type_name("R.html|R.json");
     app.add_flag("--denoise", o->denoise,
                  "Take the noise out of the image, with blocks that stop when it is clean then;\n"
@@ -102,6 +108,11 @@ void AddOptions(CLI::App& app, Options* o) {
     AddPictureOptions(app, &o->pictures);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
+    o->render.checkpoint.mayDiffer = MayDiffer::Stops;
+    app.add_flag("--keep-checkpoint", o->render.checkpoint.isKept,
+                 "Keep it when the render is done, too, to go on with a larger --cap, more\n"
+                 "--caution or another rule")
+        ->needs(app.get_option("--checkpoint"));
     AddChoiceOption<HalfBuffer>(
         app, "--half-buffer", &o->halfBuffer,
         {{"auto", HalfBuffer::Auto}, {"on", HalfBuffer::On}, {"off", HalfBuffer::Off}},
@@ -152,67 +163,6 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
                                          schedule.smallestSide));
 }
 
-// Says which blocks have ended, and how: what a rule was not content with at the cap is not
-// stopped.
-std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
-    const int atCap = BlocksAtCap(result), stopped = result.progress.stoppedBlocks - atCap;
-    if (kind == RuleTrend::Samples)
-        return fmt::format("{} of {} blocks done", stopped + atCap, result.progress.blocks);
-    std::string text = fmt::format("{} of {} blocks stopped", stopped, result.progress.blocks);
-    if (atCap > 0) text += fmt::format(", {} at the cap and not stopped", atCap);
-    return text;
-}
-
-void PrintSummary(const RenderResult& result, const Film& film, int cap, RuleTrend::Kind kind) {
-    const Savings savings = ComputeSavings(result, cap);
-    Say("{}{}, median {} spp; {} samples in {}",
-        result.cancelled ? "interrupted: "
-        : result.timeUp  ? "the time is up: "
-                         : "",
-        EndsOf(result, kind), result.progress.medianSpp, FormatCount(double(savings.samples)),
-        FormatDuration(result.progress.seconds));
-    if (!result.cancelled && savings.samples < savings.samplesAtCap)
-        Say("; against {} spp everywhere {:.1f}% fewer samples, {:.1f}% less time", cap,
-            100 * savings.SampleShare(), 100 * savings.SecondShare());
-    Say("\n");
-    if (const int64_t rejected = film.RejectedCount())
-        Say("lull: warning: {} samples were not finite or negative: taken as black\n", rejected);
-}
-
-// Says how much ranks of different speed had to do in the end.
-void PrintShares(const std::vector<double>& shares) {
-    const auto [least, most] = std::ranges::minmax(shares);
-    if (most - least < 0.01) return;
-    Say("shares of the ranks at the end, in percent:");
-    for (const double share : shares) Say(" {:.0f}", 100 * share);
-    Say("\n");
-}
-
-// Says what was missing when the time was up. Of blocks within their first pass nobody knows the
-// noise, nor how long they would have taken.
-void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
-    constexpr size_t shown = 8;
-    std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
-    const auto unknown =
-        std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
-    if (unknown > 0)
-        Say("{} blocks have less than a pass of {} spp, too little to tell how noisy they are\n",
-            unknown, provenance.schedule.passLength);
-    if (noisy.empty()) return;
-    Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
-    for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
-        const Block& block = result.blocks[size_t(noisy[i].block)].block;
-        Say("  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n", noisy[i].block,
-            block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
-            noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
-    }
-    if (noisy.size() > shown)
-        Say("  and {} more, of {:.2f} or less\n", noisy.size() - shown, noisy[shown].noise);
-    if (unknown == 0)
-        Say("about {} more would have been enough for all\n",
-            FormatDuration(NeededSeconds(noisy, result)));
-}
-
 // Throws Error where a result would replace another or an input, or could not be written now.
 void CheckFiles(const Options& options, const RenderFiles& files, const Description& description) {
     std::vector<NamedFile> outputs = OutputsOf(files);
@@ -225,8 +175,6 @@ void CheckFiles(const Options& options, const RenderFiles& files, const Descript
 
 // Says whether it collects what a denoiser is shown.
 bool CollectsFeatures(const Options& options) { return options.denoise || options.denoiseLayers; }
-
-bool IsHtml(const std::string& report) { return report.ends_with(".html"); }
 
 // Makes the criteria; for a page, they also keep the curves of each block.
 std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
@@ -263,6 +211,7 @@ Provenance ProvenanceOf(const Options& options, const CriterionFactory& factory,
     provenance.checksum = factory.checksum;
     provenance.clock = options.clock.Text();
     provenance.logRatios = factory.logRatios;
+    provenance.trend = factory.trend;
     provenance.guide = options.guide.mode;
     provenance.guideMegabytes = options.guide.megabytes;
     return provenance;
@@ -278,25 +227,18 @@ RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
     return identity;
 }
 
-// Prints what came of it.
-void PrintResult(const RenderSettings& settings, const Provenance& provenance,
-                 const RenderResult& result, const Film& film, RuleTrend::Kind kind) {
-    if (settings.quiet) return;
-    PrintSummary(result, film, settings.schedule.cap, kind);
-    if (!result.shares.empty()) PrintShares(result.shares);
-    if (result.timeUp) PrintShortfall(provenance, result);
-}
-
 ExitCode RunRender(Options options, Job* job) {
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
                        : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
     RenderSettings& settings = options.render;
+    SetWording(settings, job);
     const bool leads = job->Rank() == 0;  // prints, and has to do with files
     const std::function<double()> clock = StartClock(options.clock);
 
     // Check all that can be wrong before the work begins.
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = false});
+    const Talk talk = TalkOf(settings);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = false}, talk);
     const PixelRect& region = input.region;
     std::shared_ptr<BlockDenoiser> denoiser;
     const CriterionFactory factory = ReadRule(options, region, &denoiser, &settings);
@@ -307,7 +249,7 @@ ExitCode RunRender(Options options, Job* job) {
     if (leads) CheckFiles(options, files, input.description);
     CheckLayersFit(options.aovs, CollectsFeatures(options), region);
     const std::unique_ptr<Display> display = MakeDisplay(
-        options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count());
+        options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count(), talk);
     const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
 
     Provenance provenance = ProvenanceOf(options, factory, *scene, input.film);
@@ -318,7 +260,9 @@ ExitCode RunRender(Options options, Job* job) {
     how.render.trend = factory.trend;
     how.render.display = display.get();
     if (clock)
-        how.render.onProgress = WarnOfFirstSamples(region.Area(), std::move(how.render.onProgress));
+        how.render.onProgress =
+            WarnOfFirstSamples(region.Area(), talk, std::move(how.render.onProgress));
+    if (talk.isJson) how.render.onStop = StopEvents(factory.trend.kind);
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);
@@ -335,7 +279,7 @@ ExitCode RunRender(Options options, Job* job) {
     session.Resume();
     CatchInterrupts();
     if (!session.Learn()) {
-        Say("interrupted while learning\n");
+        talk.Note("interrupted while learning");
         return kInterrupted;
     }
     provenance.guideFigures = session.Guidance();
@@ -343,7 +287,7 @@ ExitCode RunRender(Options options, Job* job) {
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    PrintResult(settings, provenance, result, session.TheFilm(), factory.trend.kind);
+    PrintResult(settings, provenance, result, session.TheFilm().RejectedCount());
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;
@@ -353,7 +297,7 @@ ExitCode RunRender(Options options, Job* job) {
     if (options.denoiseLayers) halves = MakeHalfChannels(picture);
     if (options.denoise)
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
-                                 settings.quiet);
+                                 settings.quiet, talk);
     if (display && denoised) display->ShowDenoised(region, denoised->image.values);
 
     const ResultFiles written = WriteFiles(files, {{*scene, provenance},
@@ -368,9 +312,13 @@ ExitCode RunRender(Options options, Job* job) {
                                                    options.pictures.format});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (display) display->Finish();
+    if (talk.isJson) SayEnd(written, result, session.TheFilm().RejectedCount());
     written.Check();
-    if (!result.cancelled && !result.timeUp && !settings.checkpoint.file.empty())
-        std::filesystem::remove(settings.checkpoint.file);
+    const CheckpointOptions& checkpoint = settings.checkpoint;
+    const bool isDone = !result.cancelled && !result.timeUp;
+    if (isDone && !checkpoint.file.empty() && !checkpoint.isKept)
+        std::filesystem::remove(checkpoint.file);
+    if (!isDone && !settings.quiet) talk.Note(HowToGoOn(checkpoint.file));
     return result.cancelled ? kInterrupted : kDone;
 }
 

@@ -8,6 +8,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/command.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 
@@ -58,7 +59,9 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the files written");
-    app.add_flag("--json-progress", s->jsonProgress, "Print progress as JSON, an object a line");
+    app.add_flag("--json-progress", s->jsonProgress,
+                 "Print JSON on stderr and nothing else, an object a line: progress, warnings, and "
+                 "of `render`\nblocks that stop, files and, last, how it ended");
 }
 
 std::unique_ptr<const Scene> CompileScene(const RenderSettings& settings, SceneInput* input) {
@@ -100,7 +103,7 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
                               .measures = std::move(measures)};
     return MakeCriterionFactory(rule, context);
 } catch (const std::logic_error& e) {
-    throw Error(option + ": " + e.what());
+    throw UsageError(option + ": " + e.what());
 }
 
 Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
@@ -113,6 +116,7 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .criterion = "",
             .checksum = "",
             .logRatios = {},
+            .trend = {},
             .schedule = settings.schedule,
             .maxDepth = scene.maxDepth,
             .threads = settings.scene.compile.threads,

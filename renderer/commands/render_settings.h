@@ -48,6 +48,9 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
 // Says from what an image is made; the rule is left to be filled in.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
+// Returns how to say things beside that.
+inline Talk TalkOf(const RenderSettings& settings) { return {.isJson = settings.jsonProgress}; }
+
 // Makes what shows the progress on stderr; `adaptive` says whether blocks stop by themselves.
 ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
 

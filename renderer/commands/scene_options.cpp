@@ -128,8 +128,8 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->type_name("azimuth,elevation");
 }
 
-Warnings MakePrintedWarnings() {
-    return Warnings([](const std::string& message) { Say("lull: {}\n", message); });
+Warnings MakePrintedWarnings(const Talk& talk) {
+    return Warnings([talk](const std::string& message) { talk.Say("warning", message); });
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
@@ -153,8 +153,9 @@ void CheckFilmFits(const PixelRect& region, const FilmOptions& options) {
                 "render it in parts with --crop, or smaller with --resolution");
 }
 
-SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions)
-    : warnings(MakePrintedWarnings()),
+SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions,
+                       const Talk& talk)
+    : warnings(MakePrintedWarnings(talk)),
       description(LoadDescription(options, warnings)),
       film(SilentFilmSettings(description, options)),
       region{film.cropMin, film.cropMax} {

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/commands/talk.h"
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
 #include "renderer/scene/compile.h"
@@ -23,7 +24,7 @@ struct SceneOptions {
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.
-Warnings MakePrintedWarnings();
+Warnings MakePrintedWarnings(const Talk& = {});
 
 // Reads the scene's file. Throws Error.
 Description LoadDescription(const SceneOptions&, Warnings&);
@@ -35,7 +36,7 @@ void CheckFilmFits(const PixelRect& region, const FilmOptions&);
 // which will give the film's warnings.
 struct SceneInput {
     // Throws Error, also if the memory cannot hold such a film.
-    explicit SceneInput(const SceneOptions&, const FilmOptions& = {});
+    explicit SceneInput(const SceneOptions&, const FilmOptions& = {}, const Talk& = {});
 
     Warnings warnings;  // printed as they occur
     Description description;

@@ -45,11 +45,19 @@ SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sa
     render.isCancelled = Interrupted;
     options.estimator = settings.estimator;
     options.film.grid = GridOf(settings.schedule);
-    options.onResume = PrintTalk;
-    if (!settings.quiet && !settings.jsonProgress) options.onLearning = PrintTalk;
-    options.onWarning = [](const std::string& message) { Say("\nlull: warning: {}\n", message); };
+    const Talk talk = TalkOf(settings);
+    options.onResume = [talk](const std::string& message) { talk.Note(message); };
+    if (!settings.quiet) options.onLearning = options.onResume;
+    options.onWarning = [talk](const std::string& message) { talk.Warn(message); };
     if (job) ShareAmongRanks(job, &options);
     return options;
+}
+
+void SetWording(const RenderSettings& settings, Job* job) {
+    if (!settings.jsonProgress) return;
+    job->SetWording([](const std::string& kind, const std::string& message) {
+        return JsonEvent(kind, message);
+    });
 }
 
 ExitCode SayInterrupted(const std::string& checkpoint) {

@@ -11,6 +11,9 @@ namespace lull {
 // must outlive it.
 SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, ProgressPrinter*, Job*);
 
+// Lets the job put errors and warnings as the settings want them; to be called first of all.
+void SetWording(const RenderSettings&, Job*);
+
 // Says that a render was interrupted, and what goes on from where.
 ExitCode SayInterrupted(const std::string& checkpoint);
 

@@ -3,16 +3,35 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/files/file_io.h"
 
 namespace lull {
+
+namespace {
+
+// Returns a word as one has to type it.
+std::string ForShell(const std::string& word) {
+    const auto isPlain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=./:,@%", c);
+    };
+    if (!word.empty() && std::ranges::all_of(word, isPlain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+}  // namespace
 
 void PrepareStreams() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
@@ -28,6 +47,40 @@ bool HasLostResults() { return std::ferror(stdout) != 0; }
 void FinishResults() {
     if (std::fflush(stdout) == 0 && !HasLostResults()) return;
     throw Error(std::string("cannot write the results to stdout: ") + std::strerror(errno));
+}
+
+std::string HowToGoOn(const std::string& checkpoint) {
+    if (checkpoint.empty()) return "with --checkpoint F.h5 it could go on from here";
+    std::ifstream file("/proc/self/cmdline");
+    std::string command;
+    bool resumes = false;
+    for (std::string word; std::getline(file, word, '\0');) {
+        command += (command.empty() ? "" : " ") + ForShell(word);
+        resumes |= word == "--resume";
+    }
+    return "to go on: " + command + (resumes ? "" : " --resume");
+}
+
+std::string JsonEvent(const std::string& event, const std::string& text, const std::string& key) {
+    const nlohmann::ordered_json json = {{"event", event}, {key, text}};
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void Talk::Note(const std::string& message) const { Say("note", message); }
+
+// On a terminal there may be a line of progress.
+void Talk::Warn(const std::string& message) const {
+    if (isJson)
+        Say("warning", message);
+    else
+        lull::Say("\nlull: warning: {}\n", message);
+}
+
+void Talk::Say(const std::string& event, const std::string& message) const {
+    if (isJson)
+        lull::Say("{}", JsonEvent(event, message));
+    else
+        PrintTalk(message);
 }
 
 void PrintTalk(const std::string& message) { Say("lull: {}\n", message); }

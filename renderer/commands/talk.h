@@ -20,6 +20,24 @@ bool HasLostResults();
 // Prints a message as a line of its own on stderr, after the program's name.
 void PrintTalk(const std::string& message);
 
+// Says how a render goes on that has ended early: the command, if it has a checkpoint.
+std::string HowToGoOn(const std::string& checkpoint);
+
+// Says on stderr what there is to say beside the results: as text or, for programs, as JSON
+// objects, one a line, of which each has an "event".
+struct Talk {
+    bool isJson = false;
+
+    void Note(const std::string& message) const;
+    void Warn(const std::string& message) const;
+    // Says a message of whoever has put the program's name or a place before it.
+    void Say(const std::string& event, const std::string& message) const;
+};
+
+// Returns a line of JSON: an event with a text under that key.
+std::string JsonEvent(const std::string& event, const std::string& text,
+                      const std::string& key = "message");
+
 // Is WriteFileAtomically(), for those who are to be given a function of this kind.
 void WriteBytes(const std::string& path, std::span<const std::byte> bytes);
 

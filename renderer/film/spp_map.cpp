@@ -16,6 +16,8 @@ constexpr uint16_t digits[10] = {
     0b111'101'111'101'111, 0b111'101'111'001'111};
 constexpr int digitWidth = 4, digitHeight = 5;  // dots, with the gap to the next
 
+constexpr uint16_t plus = 0b000'010'111'010'000;
+
 int TextWidth(const std::string& number, int dot) {
     return (int(number.size()) * digitWidth - 1) * dot;
 }
@@ -39,7 +41,7 @@ class Canvas {
     void Number(const std::string& number, Vec2i at, int dot, const Rgb& srgb) {
         for (const char c : number) {
             for (int i = 0; i < 15; ++i)
-                if (digits[c - '0'] >> (14 - i) & 1) {
+                if ((c == '+' ? plus : digits[c - '0']) >> (14 - i) & 1) {
                     const Vec2i p = at + dot * Vec2i(i % 3, i / 3);
                     Fill({p, p + Vec2i(dot, dot)}, srgb);
                 }
@@ -57,7 +59,16 @@ float Scale(int spp, int lowest, int highest) {
            std::log(float(highest) / float(lowest));
 }
 
-void DrawBlock(Canvas& canvas, const PixelRect& rect, int spp, float t) {
+void DrawFrame(Canvas& canvas, const PixelRect& rect) {
+    const Rgb red(0.9f, 0.1f, 0.1f);
+    const int width = std::clamp(std::min(rect.Width(), rect.Height()) / 50, 1, 4);
+    canvas.Fill({rect.min, {rect.max.x(), rect.min.y() + width}}, red);
+    canvas.Fill({{rect.min.x(), rect.max.y() - width}, rect.max}, red);
+    canvas.Fill({rect.min, {rect.min.x() + width, rect.max.y()}}, red);
+    canvas.Fill({{rect.max.x() - width, rect.min.y()}, rect.max}, red);
+}
+
+void DrawBlock(Canvas& canvas, const PixelRect& rect, const SppBlock& block, float t) {
     const Rgb color = Viridis(t);
     canvas.Fill(rect, color);
     // Draw a line along the sides that face the next blocks, halfway to black.
@@ -65,7 +76,8 @@ void DrawBlock(Canvas& canvas, const PixelRect& rect, int spp, float t) {
     canvas.Fill({{rect.max.x() - 1, rect.min.y()}, rect.max}, line);
     canvas.Fill({{rect.min.x(), rect.max.y() - 1}, rect.max}, line);
 
-    const std::string number = std::to_string(spp);
+    if (block.isNoisy) DrawFrame(canvas, rect);
+    const std::string number = std::to_string(block.spp) + (block.isNoisy ? "+" : "");
     const int dot =
         std::min({4, rect.Width() * 3 / 4 / TextWidth(number, 1), rect.Height() / 2 / digitHeight});
     if (dot < 1) return;
@@ -126,7 +138,7 @@ SppMap DrawSppMap(const PixelRect& region, std::span<const SppBlock> blocks, int
     const int gap = 4 * dot, barHeight = 8 * dot;
     Canvas canvas(region.Width(), region.Height() + gap + barHeight + (digitHeight + 3) * dot);
     for (const SppBlock& block : blocks)
-        DrawBlock(canvas, {block.pixels.min - region.min, block.pixels.max - region.min}, block.spp,
+        DrawBlock(canvas, {block.pixels.min - region.min, block.pixels.max - region.min}, block,
                   Scale(block.spp, lowest, highest));
     DrawLegend(canvas, region.Height() + gap, barHeight, dot, lowest, highest);
     return std::move(canvas.map);

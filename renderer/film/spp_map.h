@@ -10,6 +10,7 @@ namespace lull {
 struct SppBlock {
     PixelRect pixels;
     int spp;
+    bool isNoisy = false;  // at the cap, where its rule has not stopped it
 };
 
 struct SppMap {
@@ -22,8 +23,8 @@ struct SppMap {
 Rgb Viridis(float t);
 
 // Draws the blocks of `region`, each with its spp if there is room for the number, a line between
-// blocks, and below them a bar with the logarithmic scale from `lowest` to `highest` spp (0 <
-// lowest <= highest).
+// blocks, a red frame and a plus after the number where a block would have gone on, and below them
+// a bar with the logarithmic scale from `lowest` to `highest` spp (0 < lowest <= highest).
 SppMap DrawSppMap(const PixelRect& region, std::span<const SppBlock> blocks, int lowest,
                   int highest);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "renderer/measure/report.h"
+
 namespace lull {
 
 namespace {
@@ -53,15 +55,25 @@ ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t s
 ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResult& result) {
     const Provenance& provenance = origin.provenance;
     ExrImage exr = MakeExr(origin, film.Region(), film.SampleCount(), result.progress.seconds);
+    const int atCap = BlocksAtCap(result), stopped = result.progress.stoppedBlocks - atCap;
     exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
+    exr.attributes["blocks"] = std::to_string(result.progress.blocks);
+    exr.attributes["stoppedBlocks"] = std::to_string(stopped);
+    exr.attributes["blocksAtCap"] = std::to_string(atCap);
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
     if (!provenance.clock.empty()) exr.attributes["clock"] = provenance.clock;
     if (result.timeUp)
         exr.attributes["note"] = fmt::format(
-            "the time was up when {} of {} blocks had stopped: the samples of the others depend on "
-            "the machine; --stop thresholds: with the file beside the image repeats it",
-            result.progress.stoppedBlocks, result.progress.blocks);
+            "the time was up when {} of {} blocks had stopped and {} were at the cap: the samples "
+            "of the others depend on the machine; --stop thresholds: with the file beside the "
+            "image "
+            "repeats it",
+            stopped, result.progress.blocks, atCap);
+    else if (atCap > 0 && provenance.trend.kind != RuleTrend::Samples)
+        exr.attributes["note"] =
+            fmt::format("{} of {} blocks went to the cap of {} spp, and had not stopped there",
+                        atCap, result.progress.blocks, provenance.schedule.cap);
     return exr;
 }
 

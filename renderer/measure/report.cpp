@@ -51,6 +51,16 @@ void AddShortfall(const Provenance& provenance, const RenderResult& result, Json
     }
 }
 
+// Adds at which spp blocks at the cap would probably have stopped, and which cap would do.
+void AddCapped(const Provenance& provenance, const RenderResult& result, Json* report) {
+    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    for (const CappedBlock& c : capped)
+        if (c.neededSpp > 0) (*report)["blocks"][size_t(c.block)]["neededSpp"] = c.neededSpp;
+    if (capped.empty()) return;
+    if (const int cap = CapFor(capped, provenance.schedule.cap); cap > 0)
+        (*report)["totals"]["neededCap"] = cap;
+}
+
 Json GuideJson(const Provenance& p) {
     const GuideFigures& f = p.guideFigures;
     Json json = {{"mode", NameOf(p.guide)}, {"memory", p.guideMegabytes},
@@ -158,6 +168,7 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
             report["blocks"][i]["visibleError"] = {{"estimate", denoised->blocks[i].estimate},
                                                    {"upper", denoised->blocks[i].upper}};
     if (result.timeUp) AddShortfall(provenance, result, &report);
+    AddCapped(provenance, result, &report);
     report["warnings"] = warnings;
     return report;
 }

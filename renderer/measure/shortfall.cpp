@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/render/forecast.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -54,6 +55,44 @@ std::vector<NoisyBlock> FindShortfall(const Provenance& provenance, const Render
     std::stable_sort(noisy.begin(), noisy.end(),
                      [](const NoisyBlock& a, const NoisyBlock& b) { return a.noise > b.noise; });
     return noisy;
+}
+
+std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend& trend) {
+    constexpr int mostCap = 1 << 24;
+    if (trend.kind == RuleTrend::Samples) return {};
+    std::vector<StopTrend> trends(result.blocks.size(), StopTrend(trend));
+    std::vector<Block> blocks;
+    std::vector<CappedBlock> capped;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        const auto& decisions = result.blocks[i].decisions;
+        for (const DecisionRecord& record : decisions) trends[i].Add(record.spp, record.decision);
+        blocks.push_back(result.blocks[i].block);
+        Block& block = blocks.back();
+        if (!block.stopped || block.stoppedByVote || decisions.empty()) continue;
+        block.stopped = false;
+        const Decision& last = decisions.back().decision;
+        capped.push_back({int(i), last.value, last.threshold, 0});
+    }
+    if (const auto stops = PredictStops(trends, blocks, mostCap))
+        for (CappedBlock& c : capped) {
+            const double spp = std::ceil((*stops)[size_t(c.block)]);
+            if (spp < mostCap) c.neededSpp = std::max(int(spp), blocks[size_t(c.block)].spp + 1);
+        }
+    std::ranges::stable_sort(capped, [](const CappedBlock& a, const CappedBlock& b) {
+        return std::pair(a.neededSpp == 0, a.neededSpp) > std::pair(b.neededSpp == 0, b.neededSpp);
+    });
+    return capped;
+}
+
+int CapFor(const std::vector<CappedBlock>& capped, int cap) {
+    int needed = cap + 1;
+    for (const CappedBlock& c : capped) {
+        if (c.neededSpp == 0) return 0;
+        needed = std::max(needed, c.neededSpp);
+    }
+    int unit = 1;
+    while (needed / unit >= 100) unit *= 10;
+    return (needed + unit - 1) / unit * unit;
 }
 
 double NeededSeconds(const std::vector<NoisyBlock>& blocks, const RenderResult& result) {

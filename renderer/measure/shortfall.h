@@ -1,4 +1,4 @@
-// Estimates what a render whose time was up still lacks.
+// Estimates what a render still lacks whose time was up, or whose blocks went to the cap.
 #pragma once
 
 #include "renderer/render/provenance.h"
@@ -19,6 +19,21 @@ struct NoisyBlock {
 // `lnoise`, or to the median noise of the blocks that the rule has stopped, or to the default of
 // `lnoise` if there are none. For results of a render with a clock.
 std::vector<NoisyBlock> FindShortfall(const Provenance&, const RenderResult&);
+
+// Holds a block that its rule has not stopped before the cap.
+struct CappedBlock {
+    int block;                // its index in the list of all
+    double value, threshold;  // what the rule compared last, and with what
+    int neededSpp;            // at which it would probably stop; 0: not to be told
+};
+
+// Returns the blocks at the cap, the furthest from stopping first: none for a rule that counts
+// samples. What the rule compares is taken to go on as it went (forecast.h).
+std::vector<CappedBlock> FindCapped(const RenderResult&, const RuleTrend&);
+
+// Returns a cap at which all of them have probably stopped, above the one they had, in round
+// numbers; 0: not to be told.
+int CapFor(const std::vector<CappedBlock>&, int cap);
 
 // Returns the wall-clock seconds that all of them need, at the speed of the render.
 double NeededSeconds(const std::vector<NoisyBlock>&, const RenderResult&);

@@ -92,7 +92,7 @@ void Job::EndWithout(int exitCode) {
 }
 
 void Job::Warn(const std::string& message) const {
-    const std::string line = "lull: warning: " + message + "\n";
+    const std::string line = wording("warning", message);
     if (write(errorOutput, line.data(), line.size()) < 0) return;
 }
 
@@ -101,7 +101,7 @@ void Job::Fail(const std::string& message) {
     if (isFirst) {
         const std::string who =
             rank > 0 ? fmt::format("rank {} on {}: ", rank, HostName()) : std::string();
-        const std::string line = fmt::format("lull: error: {}{}\n", who, message);
+        const std::string line = wording("error", who + message);
         if (write(errorOutput, line.data(), line.size()) < 0) return;
     }
     if (phase == Phase::Working) AbortMpi(1);

@@ -1,6 +1,7 @@
 // Knows whether this process is one of several that share a render, as mpirun or srun start them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -34,6 +35,9 @@ class Job {
     // Ends this process, and all others, with the exit code, if one of them was given up: it would
     // not end by itself. Else does nothing.
     void EndWithout(int exitCode);
+    // Has warnings and errors put into the lines that wording(kind, message) returns.
+    using Wording = std::function<std::string(const std::string& kind, const std::string& message)>;
+    void SetWording(Wording given) { wording = std::move(given); }
     // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
     // Prints an error, once for all ranks, and ends them all if others would wait for this one.
@@ -46,6 +50,9 @@ class Job {
     int givenUp = -1;  // the last rank that was; -1: none
     Phase phase = Phase::Before;
     int errorOutput = 2;  // where errors go; 2 itself is silenced in all ranks but the first
+    Wording wording = [](const std::string& kind, const std::string& message) {
+        return "lull: " + kind + ": " + message + "\n";
+    };
     std::unique_ptr<Peers> peers;
 };
 

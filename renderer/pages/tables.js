@@ -32,6 +32,7 @@ function showBlock(data, i) {
   if (block.end) rows.push(["end", {stopped: "its rule stopped it", cap: "it went to the cap", interrupted: "interrupted", time: "the time was up"}[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
   if (block.visibleError) rows.push(["visible error, denoised", `about ${block.visibleError.estimate.toFixed(2)}, probably at most ${block.visibleError.upper.toFixed(2)}`]);
+  if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["would probably have stopped at", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["seconds of processors it would have needed", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", ["", ...images.map(m => m.name)], rows));
 
@@ -78,8 +79,9 @@ function showSummary(data) {
   const t = data.totals;
   if (t) parent.append(makeTable("", null, [
     ["blocks stopped", `${t.stoppedBlocks} of ${t.blocks}` + (t.blocksAtCap ? `; ${t.blocksAtCap} went to the cap` : "")], ["median", showCount(t.medianSpp) + " spp"],
-    ["samples", `${showCount(t.samples)}; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} everywhere`],
-    ["time", `${showSeconds(t.seconds)}; of processors ${showSeconds(t.threadSeconds)}, about ${showShare(t.secondsSaved)} less than to the cap`],
+    ...(isNumber(t.neededCap) ? [["a cap that would probably do", showCount(t.neededCap) + " spp"]] : []),
+    ["samples", showCount(t.samples) + (t.samplesSaved >= 5e-4 ? `; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} everywhere` : "")],
+    ["time", `${showSeconds(t.seconds)}; of processors ${showSeconds(t.threadSeconds)}` + (t.secondsSaved >= 5e-4 ? `, about ${showShare(t.secondsSaved)} less than to the cap` : "")],
     ["the rule took", `${showSeconds(t.criterionSeconds)} of processors, ${showShare(t.criterionSeconds / t.threadSeconds)}`],
     ["samples rejected", showCount(t.rejectedSamples)]]));
   const h = data.againstHuman;

@@ -40,7 +40,8 @@ std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderOptions& option
         if (!blocks[i].votes) continue;
         made[i] = options.makeCriterion(
             {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
-        if (interrupted && blocks[i].spp > 0) made[i]->Restore(interrupted->criteria[i]);
+        if (interrupted && !interrupted->criteria.empty() && blocks[i].spp > 0)
+            made[i]->Restore(interrupted->criteria[i]);
     }
     return made;
 }

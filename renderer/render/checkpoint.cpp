@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
 #include "renderer/files/file_io.h"
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
@@ -126,25 +130,59 @@ std::vector<std::string> Lines(const RenderIdentity& identity) {
     return lines;
 }
 
-// Throws Error naming the first thing that is not the same.
-void CheckIdentity(const std::vector<std::string>& lines, const RenderIdentity& wanted) {
-    RenderIdentity found;
+RenderIdentity ParseIdentity(const std::vector<std::string>& lines) {
+    RenderIdentity identity;
     for (const std::string& line : lines) {
         const size_t equals = std::min(line.find('='), line.size());
-        found[line.substr(0, equals)] = line.substr(std::min(equals + 1, line.size()));
+        identity[line.substr(0, equals)] = line.substr(std::min(equals + 1, line.size()));
     }
-    const auto valueIn = [](const RenderIdentity& identity, const std::string& key) {
-        const auto at = identity.find(key);
-        return at == identity.end() ? "none" : at->second;
-    };
+    return identity;
+}
+
+std::string ValueIn(const RenderIdentity& identity, const std::string& key) {
+    const auto at = identity.find(key);
+    return at == identity.end() ? "none" : at->second;
+}
+
+int CapIn(const RenderIdentity& identity) {
+    return identity.contains("cap") ? std::atoi(identity.at("cap").c_str()) : 0;
+}
+
+// Throws Error naming the first thing that is not the same.
+void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, MayDiffer what) {
+    constexpr std::array stops = {"stop", "model", "cap"};
     RenderIdentity all = wanted;
     all.insert(found.begin(), found.end());
     for (const auto& [key, value] : all)
-        if (found.contains(key) != wanted.contains(key) || valueIn(found, key) != value)
+        if (what == MayDiffer::Stops && std::ranges::find(stops, key) != stops.end())
+            continue;
+        else if (found.contains(key) != wanted.contains(key) || ValueIn(found, key) != value)
             throw Error(fmt::format(
                 "it belongs to a render with another {} ({} there, {} here); go on with the same, "
                 "or remove the file to begin anew",
-                key, valueIn(found, key), valueIn(wanted, key)));
+                key, ValueIn(found, key), ValueIn(wanted, key)));
+}
+
+// Lets blocks go on that stopped by another rule, or at a smaller cap.
+void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderState* state) {
+    const int cap = CapIn(wanted);
+    const bool isNewRule = ValueIn(wanted, "stop") != ValueIn(found, "stop") ||
+                           ValueIn(wanted, "model") != ValueIn(found, "model");
+    for (BlockResult& result : state->blocks) {
+        Block& block = result.block;
+        if (block.spp > cap)
+            throw Error(fmt::format(
+                "it has blocks of {} spp, more than the cap of {}; give a larger --cap, or remove "
+                "the file to begin anew",
+                block.spp, cap));
+        if (isNewRule) {
+            result.decisions.clear();
+            block.stopped = block.stoppedByVote = false;
+        } else if (!block.stoppedByVote && block.spp < cap) {
+            block.stopped = false;
+        }
+    }
+    if (isNewRule) state->criteria.clear();
 }
 
 }  // namespace
@@ -210,12 +248,14 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
 }
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
-                           const Layers& layers, std::vector<std::byte>* guide) try {
+                           const Layers& layers, std::vector<std::byte>* guide,
+                           MayDiffer mayDiffer) try {
     CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
         throw Error("it is no checkpoint of this version of the program");
-    CheckIdentity(root.Strings("identity"), identity);
+    const RenderIdentity found = ParseIdentity(root.Strings("identity"));
+    CheckIdentity(found, identity, mayDiffer);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
     if (guide && root.HasArray("guide"))
@@ -235,6 +275,7 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
         ReadPixels(group.Group("pixels"), rect, film);
         ReadLayers(group.Group("pixels"), rect, layers);
     }
+    if (mayDiffer == MayDiffer::Stops) GoOnTo(identity, found, &state);
     return state;
 } catch (const std::runtime_error& e) {
     throw Error(path + ": " + e.what());

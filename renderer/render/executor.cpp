@@ -33,7 +33,8 @@ int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film
 
 bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptions& options) {
     const size_t count = MakeBlocks(region, options).size();
-    return state.blocks.size() == count && state.criteria.size() == count;
+    return state.blocks.size() == count &&
+           (state.criteria.empty() || state.criteria.size() == count);
 }
 
 Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,

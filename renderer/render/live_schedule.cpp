@@ -79,12 +79,13 @@ std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
 }
 
 void LiveSchedule::ShowStops() {
-    if (!options.display) return;
     const std::span<const Block> blocks = schedule.Blocks();
     shownStops.resize(blocks.size());
-    for (size_t i = 0; i < blocks.size(); ++i)
-        if (blocks[i].stopped && !std::exchange(shownStops[i], true))
-            options.display->ShowStop(blocks[i].pixels);
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        if (!blocks[i].stopped || std::exchange(shownStops[i], true)) continue;
+        if (options.display) options.display->ShowStop(blocks[i].pixels);
+        if (options.onStop) options.onStop(int(i), blocks[i]);
+    }
 }
 
 }  // namespace lull

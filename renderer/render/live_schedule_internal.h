@@ -70,7 +70,7 @@ class LiveSchedule {
     Schedule schedule;
     PassUndo undo;  // for renders that have a clock
     bool timeCalled = false;
-    std::vector<char> shownStops;  // blocks that the viewer knows to have stopped
+    std::vector<char> shownStops;  // blocks that were said to have stopped
 };
 
 }  // namespace lull

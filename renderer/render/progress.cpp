@@ -1,6 +1,7 @@
 #include "renderer/render/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +11,6 @@
 namespace lull {
 
 namespace {
-
-double Fraction(const RenderProgress& p) {
-    const double all = double(p.samples) + p.predictedSamples.value_or(double(p.samplesToCap));
-    return all > 0 ? double(p.samples) / all : 1;
-}
 
 struct TimeLeft {
     double seconds;
@@ -36,8 +32,12 @@ std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool ada
     return left;
 }
 
-// Rounds down, so that 100 means done.
-int Percent(const RenderProgress& p) { return int(100 * Fraction(p)); }
+// Returns the columns of a terminal.
+int ColumnsOf(std::FILE* stream) {
+    constexpr int usual = 80;
+    winsize size = {};
+    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
 
 }  // namespace
 
@@ -76,44 +76,65 @@ std::string FormatCount(double count) {
     return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", units[unit]);
 }
 
-std::string ProgressText(const RenderProgress& p, double rate, bool adaptive) {
-    std::string text = fmt::format(
-        "{:3}%  {}/{} blocks stopped  median {} spp  {} samples/s  {} elapsed", Percent(p),
-        p.stoppedBlocks, p.blocks, p.medianSpp, FormatCount(rate), FormatDuration(p.seconds));
-    const std::optional<TimeLeft> left = Remaining(p, rate, adaptive);
-    if (p.samplesToCap > 0 && left)
-        text += fmt::format("  {}{} left",
-                            left->isBound ? "at most "
-                            : adaptive    ? "about "
-                                          : "",
-                            FormatDuration(left->seconds));
-    return text;
+double ShareDone(const RenderProgress& p) {
+    const double all = double(p.samples) + p.predictedSamples.value_or(double(p.samplesToCap));
+    return all > 0 ? double(p.samples) / all : 1;
 }
 
-std::string ProgressJson(const RenderProgress& p, double rate, bool adaptive) {
-    const std::optional<TimeLeft> left = Remaining(p, rate, adaptive);
+std::string ProgressText(const ProgressState& state, int columns) {
+    const RenderProgress& p = state.progress;
+    // Rounded down, so that 100 means done.
+    const std::string percent = fmt::format("{:3}%", int(100 * state.share));
+    const std::string blocks = fmt::format("{}/{}", p.stoppedBlocks, p.blocks);
+    const std::string rate = FormatCount(state.rate), time = FormatDuration(p.seconds);
+    std::string left;
+    if (const auto l = Remaining(p, state.rate, state.adaptive); p.samplesToCap > 0 && l)
+        left = fmt::format("  {}{} left",
+                           l->isBound       ? "at most "
+                           : state.adaptive ? "about "
+                                            : "",
+                           FormatDuration(l->seconds));
+    const std::string forms[] = {
+        fmt::format("{}  {} blocks done  median {} spp  {} samples/s  {} elapsed{}", percent,
+                    blocks, p.medianSpp, rate, time, left),
+        fmt::format("{}  {} blocks  {} spp  {}/s  {}{}", percent, blocks, p.medianSpp, rate, time,
+                    left),
+        fmt::format("{}  {} blocks  {}{}", percent, blocks, time, left),
+        fmt::format("{}  {}{}", percent, time, left), percent};
+    for (const std::string& form : forms)
+        if (columns <= 0 || int(form.size()) <= columns) return form;
+    return percent.substr(0, size_t(columns));
+}
+
+std::string ProgressJson(const ProgressState& state) {
+    const RenderProgress& p = state.progress;
+    const std::optional<TimeLeft> left = Remaining(p, state.rate, state.adaptive);
     const std::string remaining = p.samplesToCap == 0 ? "0"
                                   : left              ? fmt::format("{:.3f}", left->seconds)
                                                       : "null";
     return fmt::format(
-        R"({{"percent":{:.2f},"blocks":{},"stoppedBlocks":{},"medianSpp":{},"samples":{},)"
-        R"("samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},"remainingSeconds":{},)"
-        R"("remainingIsUpperBound":{}}})",
-        100 * Fraction(p), p.blocks, p.stoppedBlocks, p.medianSpp, p.samples, rate, p.seconds,
-        remaining, left ? left->isBound : adaptive);
+        R"({{"event":"progress","percent":{:.2f},"blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+        R"("medianSpp":{},"samples":{},"samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},)"
+        R"("remainingSeconds":{},"remainingIsUpperBound":{}}})",
+        100 * state.share, p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp,
+        p.samples, state.rate, p.seconds, remaining, left ? left->isBound : state.adaptive);
 }
 
 void ProgressPrinter::Print(const RenderProgress& p) {
     if (style == ProgressStyle::Silent) return;
     rate.Add(p);
-    const double r = rate.SamplesPerSecond();
+    share = std::max(share, ShareDone(p));
+    const ProgressState state{p, share, rate.SamplesPerSecond(), adaptive};
+    if (style == ProgressStyle::Plain && p.seconds < nextPlainLine) return;
+    last = p;
     if (style == ProgressStyle::Json) {
-        SayTo(stream, "{}\n", ProgressJson(p, r, adaptive));
+        SayTo(stream, "{}\n", ProgressJson(state));
     } else if (style == ProgressStyle::Line) {
-        // Return to the start of the line and, at its end, erase what was there before.
-        SayTo(stream, "\r{}\x1b[K", ProgressText(p, r, adaptive));
-    } else if (p.seconds >= nextPlainLine) {
-        SayTo(stream, "{}\n", ProgressText(p, r, adaptive));
+        // Return to the start of the line and, at its end, erase what was there before. A line that
+        // is full would go on in the next.
+        SayTo(stream, "\r{}\x1b[K", ProgressText(state, ColumnsOf(stream) - 1));
+    } else {
+        SayTo(stream, "{}\n", ProgressText(state));
         nextPlainLine = p.seconds + 30;
     }
     std::fflush(stream);
@@ -121,7 +142,7 @@ void ProgressPrinter::Print(const RenderProgress& p) {
 
 void ProgressPrinter::Finish(const RenderProgress& p) {
     nextPlainLine = 0;
-    Print(p);
+    if (last != p) Print(p);
     if (style == ProgressStyle::Line) SayTo(stream, "\n");
     std::fflush(stream);
 }

@@ -11,6 +11,7 @@ namespace lull {
 
 struct RenderProgress {
     int blocks = 0, stoppedBlocks = 0;
+    int blocksAtCap = 0;                     // of those, how many no rule has stopped before
     int medianSpp = 0;                       // over the blocks
     int64_t samples = 0;                     // taken so far
     int64_t samplesToCap = 0;                // still to take if no block stops before the cap
@@ -19,6 +20,8 @@ struct RenderProgress {
     // Still to take until the rule has stopped all blocks, and how long that takes, if it can be
     // predicted.
     std::optional<double> predictedSamples = {}, predictedSeconds = {};
+
+    bool operator==(const RenderProgress&) const = default;
 };
 
 // Estimates the speed from recent work, since the blocks that are left can be slower than those
@@ -35,11 +38,22 @@ class RateMeter {
     std::deque<RenderProgress> history;
 };
 
-// Format a report of progress. If blocks stop by themselves (`adaptive`) the time left is a
-// prediction or, while there is none, an upper bound, which the text says; `rate` is in samples per
-// second.
-std::string ProgressText(const RenderProgress&, double rate, bool adaptive);
-std::string ProgressJson(const RenderProgress&, double rate, bool adaptive);
+// Returns the share of all samples, in [0, 1], that have been taken, so far as it can be predicted.
+double ShareDone(const RenderProgress&);
+
+// Is what reports of progress say. If blocks stop by themselves (`adaptive`) the time left is a
+// prediction or, while there is none, an upper bound, which the text says.
+struct ProgressState {
+    RenderProgress progress;
+    double share = 0;  // done, in [0, 1]
+    double rate = 0;   // samples per second; 0: not known
+    bool adaptive = false;
+};
+
+// Formats a report of progress. With `columns` > 0 it fits into so many; what matters least is then
+// shortened or left out.
+std::string ProgressText(const ProgressState&, int columns = 0);
+std::string ProgressJson(const ProgressState&);
 
 // Formats seconds as "12.3s", "4:05" or "1:02:03".
 std::string FormatDuration(double seconds);
@@ -59,8 +73,9 @@ class ProgressPrinter {
     ProgressPrinter(ProgressStyle style, bool adaptive, std::FILE* stream)
         : style(style), adaptive(adaptive), stream(stream) {}
 
+    // The share done never falls, though what is predicted may.
     void Print(const RenderProgress&);
-    // Prints the last state, and ends the line.
+    // Prints the last state, unless that was printed, and ends the line.
     void Finish(const RenderProgress&);
 
   private:
@@ -68,7 +83,9 @@ class ProgressPrinter {
     bool adaptive;
     std::FILE* stream;
     RateMeter rate;
-    double nextPlainLine = 30;  // seconds since the start
+    double share = 0;                    // the most that was printed
+    std::optional<RenderProgress> last;  // that was printed
+    double nextPlainLine = 30;           // seconds since the start
 };
 
 }  // namespace lull

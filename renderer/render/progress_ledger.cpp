@@ -107,9 +107,13 @@ void ProgressLedger::Report(LiveSchedule* schedule) {
 
 RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
     std::lock_guard lock(mutex);
-    RenderProgress progress{int(schedule.Blocks().size()), schedule.StoppedBlocks(),
-                            schedule.MedianSpp(),          samples,
-                            schedule.SamplesToCap(),       Seconds()};
+    RenderProgress progress{.blocks = int(schedule.Blocks().size()),
+                            .stoppedBlocks = schedule.StoppedBlocks(),
+                            .blocksAtCap = schedule.BlocksAtCap(),
+                            .medianSpp = schedule.MedianSpp(),
+                            .samples = samples,
+                            .samplesToCap = schedule.SamplesToCap(),
+                            .seconds = Seconds()};
     if (options.secondsLeft) progress.secondsLeft = options.secondsLeft();
     if (!trends.empty()) Predict(schedule, &progress);
     return progress;

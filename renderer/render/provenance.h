@@ -18,6 +18,7 @@ struct Provenance {
     Estimator estimator = Estimator::Combined;
     std::string criterion, checksum;  // the stopping rule and that of its file, if any
     std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
+    RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
     int maxDepth = 0;
     int threads = 0;  // 0: all

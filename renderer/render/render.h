@@ -29,8 +29,9 @@ struct BlockResult {
 // same bits as without the interruption. A pass may be under way, for some of its pixels.
 struct RenderState {
     std::vector<BlockResult> blocks;
-    std::vector<std::vector<std::byte>> criteria;  // of each block, as Criterion::Save() has it
-    double seconds = 0;                            // since the start of the first run
+    // Of each block, as Criterion::Save() has it; empty: all begin anew.
+    std::vector<std::vector<std::byte>> criteria;
+    double seconds = 0;  // since the start of the first run
 };
 
 class Peers;
@@ -50,6 +51,9 @@ struct RenderOptions {
     // and at the end. Can be empty.
     std::function<void(const RenderProgress&)> onProgress;
     double progressInterval = 0.25;
+    // Is told of each block that stops, or is at the cap. Called from any thread, by one at a time.
+    // Can be empty.
+    std::function<void(int index, const Block&)> onStop;
     // Is shown the state of things, with no thread at work, every `checkpointInterval` seconds and
     // when the render is cancelled. Can be empty.
     std::function<void(const RenderState&)> onCheckpoint;

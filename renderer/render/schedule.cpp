@@ -197,6 +197,7 @@ void Schedule::Stop(int block, bool byVote) {
     blocks[block].stopped = true;
     blocks[block].stoppedByVote = byVote;
     ++stoppedBlocks;
+    blocksAtCap += !byVote;
 }
 
 int Schedule::MedianSpp() const {

@@ -136,6 +136,7 @@ class Schedule {
 
     bool Done() const { return stoppedBlocks == int(blocks.size()); }
     int StoppedBlocks() const { return stoppedBlocks; }
+    int BlocksAtCap() const { return blocksAtCap; }  // of those, not stopped by a vote
     int MedianSpp() const;
     // Returns the samples left until every live block is at the cap.
     int64_t SamplesToCap() const;
@@ -171,7 +172,7 @@ class Schedule {
     int current = -1;  // the block whose pass is being given out, where the worst is first
     bool timeCalled = false;
     int readyTiles = 0;
-    int stoppedBlocks = 0;
+    int stoppedBlocks = 0, blocksAtCap = 0;
 };
 
 }  // namespace lull

@@ -70,9 +70,10 @@ void Session::Resume() {
         Tell(options.onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }
-    RenderState state =
-        ReadCheckpoint(checkpoint.file, options.identity, &film, options.render.layers, &guide);
-    Tell(options.onResume, "going on from {}", checkpoint.file);
+    RenderState state = ReadCheckpoint(checkpoint.file, options.identity, &film,
+                                       options.render.layers, &guide, checkpoint.mayDiffer);
+    Tell(options.onResume, "going on from {}{}", checkpoint.file,
+         state.criteria.empty() && !state.blocks.empty() ? ", with another rule" : "");
     if (!state.blocks.empty()) interrupted = std::move(state);  // else it was learning
 }
 
@@ -163,6 +164,7 @@ void Session::SetSources() {
 void Session::KeepCheckpoints() {
     if (!HasCheckpoint()) return;
     options.render.checkpointInterval = options.checkpoint.interval;
+    options.render.checkpointAtEnd = options.checkpoint.isKept;
     options.render.onCheckpoint = [this, said = std::string()](const RenderState& state) mutable {
         said = TryToWrite(state, film, options.render.layers, said);
     };

@@ -17,6 +17,8 @@ struct CheckpointOptions {
     double interval = 60;    // seconds
     bool resume = false;     // goes on from the file, if it is there
     bool keepsGuide = true;  // else what was learned is learned anew, to the same bits
+    bool isKept = false;     // also when every block has stopped
+    MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
 // Throws Error if the file could not be written, or if it is there and not to be resumed from, as

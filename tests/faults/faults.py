@@ -164,14 +164,15 @@ class Reader:
             return damage_bytes(data, rng)
 
 
-RENDER = "render {} --spp 1 --threads 1 --quiet -o out.exr"
+# The size is not left to the file: a whole image may take longer than a case may.
+RENDER = "render {} --resolution 8x8 --spp 1 --threads 1 --quiet -o out.exr"
 READERS = [
     Reader("pbrt", "scene.pbrt", RENDER.format("scene.pbrt")),
     Reader("ply", "m.ply", RENDER.format("scene.pbrt")),
     Reader("png", "t.png", RENDER.format("scene.pbrt")),
     Reader("exr", "t.exr", RENDER.format("exr.pbrt")),
     Reader("lens", "lens.dat", RENDER.format("lens.pbrt")),
-    Reader("gltf", "m.gltf", RENDER.format("m.gltf --resolution 8x8")),
+    Reader("gltf", "m.gltf", RENDER.format("m.gltf")),
     Reader("csv", "h.csv", "evaluate --human h.csv --predicted p.csv"),
     Reader("model", "model.h5", RENDER.format("scene.pbrt --stop learned:model.h5")
            .replace("--spp 1", "--cap 20")),

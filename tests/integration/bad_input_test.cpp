@@ -202,9 +202,14 @@ TEST(BadInput, ReportInThePlaceOfAnotherFile) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
     for (const char* report : {"out.exr", "./out.png", "scene.pbrt"})
-        ExpectFailure(directory,
-                      std::string("render scene.pbrt -o out.exr --spp 2 --report ") + report,
-                      {"--report"});
+        EXPECT_EQ(RunLull(directory,
+                          std::string("render scene.pbrt -o out.exr --spp 2 --report ") + report)
+                      .exitCode,
+                  2);
+    EXPECT_EQ(directory.CountFiles(), 1);
+    ExpectFailure(directory,
+                  "render scene.pbrt -o out.exr --spp 2 --report r.json --checkpoint ./r.json",
+                  {"--report"});
 }
 
 TEST(BadInput, BadRules) {
@@ -213,7 +218,7 @@ TEST(BadInput, BadRules) {
     for (const char* rule : {"frogs", "fixed", "fixed:0", "fixed:-3", "fixed:12x", "dammertz:-1",
                              "dammertz:nan", "cycles:", "''"})
         ExpectFailure(directory, std::string("render scene.pbrt -o out.exr --stop ") + rule,
-                      {"--stop"});
+                      {"--stop"}, 2);
 }
 
 TEST(BadInput, BadThresholdsFile) {
@@ -240,7 +245,7 @@ TEST(BadInput, BadModelFile) {
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop learned:gone",
                   {"gone", "entropy, ", "noise, paper"});
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop dammertz --caution 2",
-                  {"caution", "entropy, lnoise"});
+                  {"caution", "entropy, lnoise"}, 2);
 }
 
 // What is broken but harmless is counted, not refused.

@@ -1,6 +1,7 @@
 // Runs the program as its help describes it.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
@@ -233,13 +234,95 @@ TEST(CommandLine, TakesAsManySamplesAsAskedFor) {
     EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 45);
 }
 
-TEST(CommandLine, PrintsProgressAsJson) {
+// Returns the objects on stderr, of which each line is one.
+std::vector<nlohmann::json> EventsOf(const Outcome& outcome) {
+    std::vector<nlohmann::json> events;
+    std::istringstream lines(outcome.err);
+    for (std::string line; std::getline(lines, line);)
+        events.push_back(nlohmann::json::parse(line, nullptr, false));
+    for (const auto& event : events) EXPECT_TRUE(event.is_object()) << outcome.err;
+    return events;
+}
+
+int Count(const std::vector<nlohmann::json>& events, const std::string& event) {
+    return int(std::ranges::count_if(events, [&](const auto& e) { return e["event"] == event; }));
+}
+
+TEST(CommandLine, PrintsNothingButJson) {
     const SceneDirectory directory;
-    const Outcome outcome = RunLull(directory,
-                                    "render scene.pbrt --spp 2 -o i.exr --json-progress "
-                                    "--quiet");
-    EXPECT_EQ(outcome.exitCode, 0);
-    EXPECT_TRUE(Contains(outcome.err, "{\"percent\":100.00,")) << outcome.err;
+    const Outcome outcome =
+        RunLull(directory,
+                "render scene.pbrt --resolution 100x100 --block 50 --stop lnoise:0.5 --cap 100 "
+                "-o i.exr --json-progress --max-depth 3 --denoise-layers");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::vector<nlohmann::json> events = EventsOf(outcome);
+    EXPECT_EQ(Count(events, "stop"), 4) << outcome.err;
+    EXPECT_EQ(Count(events, "file"), 4) << outcome.err;
+    EXPECT_EQ(Count(events, "end"), 1);
+    EXPECT_EQ(events.back()["event"], "end");
+    EXPECT_EQ(events.back()["end"], "done");
+    std::vector<double> percents;
+    for (const auto& event : events)
+        if (event["event"] == "progress") percents.push_back(event["percent"]);
+    EXPECT_TRUE(std::ranges::is_sorted(percents));
+    EXPECT_EQ(percents.back(), 100);
+    EXPECT_EQ(std::ranges::adjacent_find(events), events.end()) << outcome.err;
+
+    directory.Write("old.pbrt", SceneText("Shape \"sphere\" \"float radios\" [1]"));
+    const std::vector<nlohmann::json> warned =
+        EventsOf(RunLull(directory, "render old.pbrt --spp 2 --quiet -o i.exr --json-progress"));
+    EXPECT_GE(Count(warned, "warning"), 1);
+    const Outcome missing = RunLull(directory,
+                                    "render scene.pbrt --spp 2 --json-progress "
+                                    "--checkpoint no/c.h5 -o i.exr");
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_EQ(Count(EventsOf(missing), "error"), 1) << missing.err;
+}
+
+// All four go to the cap, which is not the same as to stop.
+TEST(CommandLine, TellsStoppedFromCapped) {
+    const SceneDirectory directory;
+    const std::string render = "render scene.pbrt --resolution 100x100 --block 50 --report r.json ";
+    const Outcome capped = RunLull(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
+    EXPECT_EQ(capped.exitCode, 0);
+    for (const char* part : {"0 of 4 blocks stopped, 4 at the cap and not stopped",
+                             "to stop below 0.01;", "would probably be enough for all"})
+        EXPECT_TRUE(Contains(capped.err, part)) << part << "\n" << capped.err;
+    EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
+    const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
+    EXPECT_EQ(report["totals"]["blocksAtCap"], 4);
+    EXPECT_GT(report["totals"]["neededCap"], 100);
+    EXPECT_GT(report["blocks"][0]["neededSpp"], 100);
+    const auto attribute = [&](const char* name) {
+        return std::get<std::string>(ReadExr(directory.File("i.exr")).attributes.at(name));
+    };
+    EXPECT_EQ(attribute("stoppedBlocks"), "0");
+    EXPECT_EQ(attribute("blocksAtCap"), "4");
+    EXPECT_TRUE(Contains(attribute("note"), "4 of 4 blocks went to the cap"));
+
+    // A fixed number of samples is no cap that anybody ran into.
+    const Outcome fixed = RunLull(directory, render + "--spp 20 -o i.exr");
+    EXPECT_TRUE(Contains(fixed.err, "4 of 4 blocks done")) << fixed.err;
+    EXPECT_FALSE(Contains(fixed.err, "cap")) << fixed.err;
+    EXPECT_FALSE(ReadExr(directory.File("i.exr")).attributes.contains("note"));
+}
+
+TEST(CommandLine, HelpsWithWrongUsage) {
+    const SceneDirectory directory;
+    const auto refuses = [&](const std::string& arguments, const std::string& part) {
+        const Outcome outcome = RunLull(directory, arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, part)) << arguments << "\n" << outcome.err;
+    };
+    refuses("rendr scene.pbrt", "there is no command 'rendr'; did you mean 'render'?");
+    refuses("scene.pbrt", "type lull render scene.pbrt");
+    refuses("frobnicate", "there are render, ");
+    refuses("render scene.pbrt --stop lnoize", "--stop: ");
+    refuses("render scene.pbrt --stop lnoise:x", "'x'");
+    refuses("render scene.pbrt --report a.txt", "a.txt ends neither in .html nor in .json");
+    EXPECT_EQ(RunLull(directory, "--help").exitCode, 0);
+    EXPECT_EQ(RunLull(directory, "").exitCode, 2);
+    EXPECT_EQ(directory.CountFiles(), 1);
 }
 
 TEST(CommandLine, IsQuietWhenAsked) {

@@ -208,7 +208,7 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
         directory,
         "compare scene.pbrt --block 50 --resolution 100x90 --snapshots --human human.csv:a",
         {"9 blocks", "the image has 4"});
-    ExpectFailure(directory, scene + "--snapshots --stop dammertz:x", {"--stop", "'x'"});
+    ExpectFailure(directory, scene + "--snapshots --stop dammertz:x", {"--stop", "'x'"}, 2);
     ExpectFailure(directory, scene + "--reference small.exr", {"small.exr", "another part"});
     ExpectFailure(directory, scene + "--snapshots -o nowhere/room", {"nowhere"});
     ExpectFailure(directory, "compare --automatic small.exr --reference crop.exr",

@@ -126,6 +126,67 @@ TEST(Interruption, RefusesToGoOnWithAnotherRender) {
     EXPECT_TRUE(Contains(errorOf(""), "c.h5"));
 }
 
+// What was rendered is there for more samples, another rule, and more caution.
+TEST(Interruption, GoesOnToMore) {
+    const SceneDirectory directory;
+    const auto render = [&](const std::string& more) {
+        return RunShell(directory,
+                        "LULL render scene.pbrt --resolution 100x90 --block 40 --quiet " + more);
+    };
+    const std::string keep = "--checkpoint c.h5 --resume --keep-checkpoint -o parts.exr ";
+    const auto expectSame = [&](const std::string& before, const std::string& after) {
+        std::filesystem::remove(directory.File("c.h5"));
+        ASSERT_EQ(render(keep + before).exitCode, 0);
+        ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+        const Outcome more = render(keep + after);
+        ASSERT_EQ(more.exitCode, 0) << more.err;
+        ASSERT_EQ(render("-o whole.exr " + after).exitCode, 0);
+        EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole")) << after;
+        EXPECT_TRUE(SameImages(directory, "parts", "whole")) << after;
+    };
+    expectSame("--spp 30", "--spp 70");
+    expectSame("--stop lnoise:0.01 --cap 50", "--stop lnoise:0.01 --cap 120");
+    expectSame("--stop dammertz:0.02 --cap 300", "--stop dammertz:0.004 --cap 300");
+    expectSame("--stop lnoise:0.8 --cap 300", "--stop lnoise:0.8 --cap 300 --caution 3");
+
+    // The rule that looks at passes in a row begins anew, with what there is.
+    const Outcome learned = render("--checkpoint c.h5 --resume -o parts.exr --cap 400");
+    ASSERT_EQ(learned.exitCode, 0) << learned.err;
+    EXPECT_TRUE(Contains(learned.err, "going on from c.h5, with another rule")) << learned.err;
+    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+
+    ASSERT_EQ(render(keep + "--spp 30").exitCode, 0);
+    const Outcome fewer = render(keep + "--spp 20");
+    EXPECT_EQ(fewer.exitCode, 1);
+    EXPECT_TRUE(Contains(fewer.err, "blocks of 30 spp, more than the cap of 20")) << fewer.err;
+    // With nothing left to do the files are written again.
+    std::filesystem::remove(directory.File("parts.exr"));
+    EXPECT_EQ(render(keep + "--spp 30").exitCode, 0);
+    EXPECT_TRUE(std::filesystem::exists(directory.File("parts.exr")));
+}
+
+TEST(Interruption, SaysHowToGoOn) {
+    const SceneDirectory directory;
+    const std::string render =
+        "LULL render scene.pbrt --resolution 100x90 --block 40 --spp 100000 -o 'the parts.exr'";
+    const Outcome interrupted = RunAndSignal(
+        directory, render + " --checkpoint c.h5 --checkpoint-interval 0.1", SIGINT, "c.h5");
+    EXPECT_EQ(interrupted.exitCode, 130);
+    EXPECT_TRUE(Contains(interrupted.err,
+                         "-o 'the parts.exr' --checkpoint c.h5 "
+                         "--checkpoint-interval 0.1 --resume\n"))
+        << interrupted.err;
+    const size_t at = interrupted.err.find("to go on: ");
+    ASSERT_NE(at, std::string::npos);
+    const std::string command =
+        interrupted.err.substr(at + 10, interrupted.err.find('\n', at) - at - 10);
+    const Outcome resumed = RunShell(directory, command + " --time 1s");
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_TRUE(Contains(resumed.err, "going on from c.h5")) << resumed.err;
+    const Outcome without = RunShell(directory, render + " --time 1s");
+    EXPECT_TRUE(Contains(without.err, "with --checkpoint F.h5 it could go on")) << without.err;
+}
+
 TEST(Interruption, RecordingsComeToTheSameBits) {
     const SceneDirectory directory;
     const std::string record =

@@ -54,13 +54,13 @@ inline int CountErrorLines(const std::string& err) {
     return count;
 }
 
-// Expects exit code 1 and one line of error that holds `parts`, and no change to any file.
+// Expects the exit code and one line of error that holds `parts`, and no change to any file.
 inline void ExpectFailure(const TemporaryDirectory& directory, const std::string& arguments,
-                          const std::vector<std::string>& parts) {
+                          const std::vector<std::string>& parts, int exitCode = 1) {
     directory.Write("out.exr", "precious");
     const int filesBefore = directory.CountFiles();
     const Outcome outcome = RunLull(directory, arguments);
-    EXPECT_EQ(outcome.exitCode, 1) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.exitCode, exitCode) << arguments << "\n" << outcome.err;
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_EQ(outcome.err.back(), '\n');

@@ -128,6 +128,7 @@ RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given,
     RenderOptions options = given;
     options.makeCriterion = nullptr;
     options.onProgress = nullptr;
+    options.onStop = nullptr;
     options.onCheckpoint = nullptr;
     return Follower(source, options, film, arena).Follow();
 }

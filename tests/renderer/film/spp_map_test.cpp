@@ -49,6 +49,19 @@ TEST(DrawSppMap, ColoursBlocksByTheLogarithmOfTheirSpp) {
     EXPECT_TRUE(Shows(map, 399, 210, Viridis(1)));
 }
 
+// At the cap, some blocks have stopped there, and others would have gone on.
+TEST(DrawSppMap, FramesBlocksThatWouldHaveGoneOn) {
+    const std::vector<SppBlock> blocks = {{{{0, 0}, {100, 100}}, 600},
+                                          {{{100, 0}, {200, 100}}, 600, true}};
+    const SppMap map = DrawSppMap({{0, 0}, {200, 100}}, blocks, 20, 600);
+    const auto isRed = [&](int x, int y) { return At(map, x, y).x() > 3 * At(map, x, y).y(); };
+    for (const Vec2i& at : {Vec2i(0, 0), Vec2i(50, 0), Vec2i(0, 50), Vec2i(98, 98)})
+        EXPECT_FALSE(isRed(at.x(), at.y())) << at.transpose();
+    for (const Vec2i& at : {Vec2i(100, 0), Vec2i(150, 0), Vec2i(199, 50), Vec2i(150, 99)})
+        EXPECT_TRUE(isRed(at.x(), at.y())) << at.transpose();
+    EXPECT_FALSE(isRed(150, 80));
+}
+
 TEST(DrawSppMap, HoldsAnySize) {
     for (const Vec2i& size : {Vec2i(1, 1), Vec2i(3, 700), Vec2i(1000, 2), Vec2i(17, 33)})
         for (const int highest : {1, 20, 16777216}) {

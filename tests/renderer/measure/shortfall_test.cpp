@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lull {
 namespace {
 
@@ -52,6 +54,52 @@ TEST(Shortfall, KnowsWhereSimpleRulesStop) {
     EXPECT_EQ(neededSpp("fixed:99999", {.judged = true, .value = 100, .threshold = 99999}), 10000);
     // 0.65, the default of lnoise, where nothing else is known.
     EXPECT_EQ(neededSpp("learned", {.judged = true, .value = 0.9, .threshold = 0.5}), 240);
+}
+
+// A block whose error falls with the root of the samples, to the cap of 1,000, beside one that has
+// stopped and one of which the rule has said nothing.
+RenderResult CappedResult(double errorAtCap) {
+    RenderResult result;
+    result.blocks = {MakeBlock(1000, 0, true, 1), MakeBlock(400, 0, true, 1),
+                     MakeBlock(1000, 0, true, 1)};
+    for (const int i : {0, 2}) result.blocks[size_t(i)].block.stoppedByVote = false;
+    for (int spp = 20; spp <= 1000; spp += 20)
+        for (const int i : {0, 1}) {
+            const double error = errorAtCap * std::sqrt(1000.0 / spp) * (i == 1 ? 0.5 : 1);
+            if (spp <= result.blocks[size_t(i)].block.spp)
+                result.blocks[size_t(i)].decisions.push_back(
+                    {spp, {.judged = true, .value = error, .threshold = 0.5}});
+        }
+    return result;
+}
+
+TEST(Capped, TellsWhichCapWouldDo) {
+    const RuleTrend error{.kind = RuleTrend::Error};
+    const std::vector<CappedBlock> capped = FindCapped(CappedResult(1), error);
+    ASSERT_EQ(capped.size(), 1u);
+    EXPECT_EQ(capped[0].block, 0);
+    EXPECT_DOUBLE_EQ(capped[0].value, 1);
+    EXPECT_EQ(capped[0].threshold, 0.5);
+    EXPECT_NEAR(capped[0].neededSpp, 4000, 400);
+    const int cap = CapFor(capped, 1000);
+    EXPECT_GE(cap, capped[0].neededSpp);
+    EXPECT_LT(cap, 1.1 * capped[0].neededSpp);
+    EXPECT_EQ(cap % 100, 0);
+    // At the line, where it needs but another look.
+    EXPECT_GT(FindCapped(CappedResult(0.5), error).at(0).neededSpp, 1000);
+}
+
+TEST(Capped, SaysNothingWhereNothingIsKnown) {
+    EXPECT_TRUE(FindCapped(CappedResult(1), {.kind = RuleTrend::Samples}).empty());
+    RenderResult sure = CappedResult(1);
+    for (BlockResult& block : sure.blocks)
+        for (DecisionRecord& record : block.decisions) record.decision.value = 1 - 1e-9;
+    sure.blocks[1].block.stopped = sure.blocks[1].block.stoppedByVote = false;
+    const std::vector<CappedBlock> capped = FindCapped(sure, {.kind = RuleTrend::Probability});
+    ASSERT_EQ(capped.size(), 1u);
+    EXPECT_EQ(capped[0].neededSpp, 0);
+    EXPECT_EQ(CapFor(capped, 1000), 0);
+    EXPECT_EQ(CapFor({}, 1000), 1100);
 }
 
 TEST(Shortfall, IsEmptyWhereAllHaveStopped) {

@@ -1,0 +1,150 @@
+#include "renderer/commands/render_talk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/say.h"
+#include "renderer/measure/report.h"
+#include "renderer/measure/shortfall.h"
+#include "renderer/render/progress.h"
+
+namespace lull {
+
+namespace {
+
+// Says which blocks have ended, and how: what a rule was not content with at the cap is not
+// stopped.
+std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
+    const RenderProgress& p = result.progress;
+    if (kind == RuleTrend::Samples)
+        return fmt::format("{} of {} blocks done", p.stoppedBlocks, p.blocks);
+    std::string text =
+        fmt::format("{} of {} blocks stopped", p.stoppedBlocks - p.blocksAtCap, p.blocks);
+    if (p.blocksAtCap > 0) text += fmt::format(", {} at the cap and not stopped", p.blocksAtCap);
+    return text;
+}
+
+// Says what was saved, unless that is nothing.
+std::string SavingsOf(const Savings& savings, int cap) {
+    constexpr double least = 0.0005;  // is shown as 0.1 %
+    if (savings.SampleShare() < least) return "";
+    std::string text = fmt::format("; against {} spp everywhere {:.1f}% fewer samples", cap,
+                                   100 * savings.SampleShare());
+    if (savings.SecondShare() >= least)
+        text += fmt::format(", {:.1f}% less time", 100 * savings.SecondShare());
+    return text;
+}
+
+void PrintSummary(const RenderResult& result, int cap, RuleTrend::Kind kind) {
+    const Savings savings = ComputeSavings(result, cap);
+    Say("{}{}, median {} spp; {} samples in {}",
+        result.cancelled ? "interrupted: "
+        : result.timeUp  ? "the time is up: "
+                         : "",
+        EndsOf(result, kind), result.progress.medianSpp, FormatCount(double(savings.samples)),
+        FormatDuration(result.progress.seconds));
+    Say("{}\n", result.cancelled ? "" : SavingsOf(savings, cap));
+}
+
+void WarnOfRejected(int64_t rejected, const Talk& talk) {
+    if (rejected > 0)
+        talk.Warn(fmt::format("{} samples were not finite or negative: taken as black", rejected));
+}
+
+// Says how much ranks of different speed had to do in the end.
+void PrintShares(const std::vector<double>& shares) {
+    const auto [least, most] = std::ranges::minmax(shares);
+    if (most - least < 0.01) return;
+    Say("shares of the ranks at the end, in percent:");
+    for (const double share : shares) Say(" {:.0f}", 100 * share);
+    Say("\n");
+}
+
+// Says which blocks went to the cap, what their rule found there, and which cap would do.
+void PrintCapped(const Provenance& provenance, const RenderResult& result) {
+    constexpr size_t shown = 8;
+    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    if (capped.empty()) return;
+    const bool isOdds = provenance.trend.kind == RuleTrend::Probability;
+    Say("at the cap, with {} that the rule did not stop at:\n",
+        isOdds ? "a probability of visible noise" : "a number");
+    for (size_t i = 0; i < std::min(shown, capped.size()); ++i) {
+        const CappedBlock& c = capped[i];
+        const PixelRect& pixels = result.blocks[size_t(c.block)].block.pixels;
+        Say("  block {} at {},{}: {:.3g}, to stop below {:.3g}{}\n", c.block, pixels.min.x(),
+            pixels.min.y(), c.value, c.threshold,
+            c.neededSpp > 0 ? fmt::format("; probably at {} spp", c.neededSpp) : "");
+    }
+    if (capped.size() > shown) Say("  and {} more\n", capped.size() - shown);
+    const int cap = CapFor(capped, provenance.schedule.cap);
+    if (cap > 0)
+        Say("--cap {} would probably be enough for all\n", cap);
+    else
+        Say("nobody can tell yet which cap would be enough; --cap {} would show more\n",
+            2 * provenance.schedule.cap);
+}
+
+// Says what was missing when the time was up. Of blocks within their first pass nobody knows the
+// noise, nor how long they would have taken.
+void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
+    constexpr size_t shown = 8;
+    std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    const auto unknown =
+        std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
+    if (unknown > 0)
+        Say("{} blocks have less than a pass of {} spp, too little to tell how noisy they are\n",
+            unknown, provenance.schedule.passLength);
+    if (noisy.empty()) return;
+    Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
+    for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
+        const Block& block = result.blocks[size_t(noisy[i].block)].block;
+        Say("  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n", noisy[i].block,
+            block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
+            noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
+    }
+    if (noisy.size() > shown)
+        Say("  and {} more, of {:.2f} or less\n", noisy.size() - shown, noisy[shown].noise);
+    if (unknown == 0)
+        Say("about {} more would have been enough for all\n",
+            FormatDuration(NeededSeconds(noisy, result)));
+}
+
+}  // namespace
+
+void PrintResult(const RenderSettings& settings, const Provenance& provenance,
+                 const RenderResult& result, int64_t rejected) {
+    if (settings.quiet) return;
+    WarnOfRejected(rejected, TalkOf(settings));
+    if (settings.jsonProgress) return;
+    PrintSummary(result, settings.schedule.cap, provenance.trend.kind);
+    if (!result.shares.empty()) PrintShares(result.shares);
+    if (result.timeUp) PrintShortfall(provenance, result);
+    PrintCapped(provenance, result);
+}
+
+std::function<void(int, const Block&)> StopEvents(RuleTrend::Kind kind) {
+    return [kind](int index, const Block& block) {
+        const bool atCap = kind != RuleTrend::Samples && !block.stoppedByVote;
+        Say(R"({{"event":"stop","block":{},"x":{},"y":{},"spp":{},"end":"{}"}})"
+            "\n",
+            index, block.pixels.min.x(), block.pixels.min.y(), block.spp,
+            atCap ? "cap" : "stopped");
+    };
+}
+
+void SayEnd(const ResultFiles& files, const RenderResult& result, int64_t rejected) {
+    for (const std::string& name : files.Names()) Say("{}", JsonEvent("file", name, "path"));
+    const RenderProgress& p = result.progress;
+    Say(R"({{"event":"end","end":"{}","blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+        R"("medianSpp":{},"samples":{},"rejectedSamples":{},"seconds":{:.3f}}})"
+        "\n",
+        result.cancelled ? "interrupted"
+        : result.timeUp  ? "time"
+                         : "done",
+        p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp, p.samples, rejected,
+        p.seconds);
+}
+
+}  // namespace lull
