@@ -60,6 +60,19 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
     return mean;
 }
 
+// Throws where nothing says what is noise.
+void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
+    if (!options.half.empty() && picture.colour.a.values == picture.colour.b.values)
+        throw Error(options.half + ": it has the same pixels as " + options.input +
+                    "; render once more, with another --seed");
+    const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
+    if (spp && std::ranges::min(spp->values) < float(leastDenoisedSpp))
+        throw Error(
+            fmt::format("{}: some pixels have fewer than {} samples, too few to know what "
+                        "is noise; render more",
+                        options.input, leastDenoisedSpp));
+}
+
 ExitCode RunDenoise(Options options) {
     using std::filesystem::path;
     if (options.output.empty())
@@ -75,6 +88,8 @@ ExitCode RunDenoise(Options options) {
     NoisyPicture picture =
         options.half.empty() ? ReadPicture(exr, options.input)
                              : ReadPicture(exr, options.input, ReadExr(options.half), options.half);
+
+    CheckHalves(options, exr, picture);
 
     const PixelRect region{{0, 0}, {exr.width, exr.height}};
     ScheduleOptions schedule;

@@ -227,7 +227,29 @@ RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
     return identity;
 }
 
+// Where all samples belong to one half, nothing says how large their noise is.
+void CheckSamplesSuffice(const Options& options) {
+    if (CollectsFeatures(options) && options.spp > 0 && options.spp < int(leastDenoisedSpp))
+        throw UsageError(
+            fmt::format("--spp {}: {} needs at least {}, to know what is noise", options.spp,
+                        options.denoise ? "--denoise" : "--denoise-layers", leastDenoisedSpp));
+}
+
+// Says whether every block has samples enough to be denoised, and if not, that it stays as it is.
+bool HasSamplesEnough(const RenderResult& result, const Talk& talk) {
+    for (const BlockResult& b : result.blocks)
+        if (b.block.spp < int(leastDenoisedSpp)) {
+            talk.Warn(
+                fmt::format("the image is not denoised: time was up before each pixel had {} "
+                            "samples",
+                            leastDenoisedSpp));
+            return false;
+        }
+    return true;
+}
+
 ExitCode RunRender(Options options, Job* job) {
+    CheckSamplesSuffice(options);
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
                        : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
@@ -295,7 +317,7 @@ ExitCode RunRender(Options options, Job* job) {
     if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
     session.TheFilm().DropHalf();  // what follows needs the memory
     if (options.denoiseLayers) halves = MakeHalfChannels(picture);
-    if (options.denoise)
+    if (options.denoise && HasSamplesEnough(result, talk))
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
                                  settings.quiet, talk);
     if (display && denoised) display->ShowDenoised(region, denoised->image.values);
