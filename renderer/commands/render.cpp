@@ -235,17 +235,27 @@ void CheckSamplesSuffice(const Options& options) {
                         options.denoise ? "--denoise" : "--denoise-layers", leastDenoisedSpp));
 }
 
-// Says whether every block has samples enough to be denoised, and if not, that it stays as it is.
-bool HasSamplesEnough(const RenderResult& result, const Talk& talk) {
-    for (const BlockResult& b : result.blocks)
-        if (b.block.spp < int(leastDenoisedSpp)) {
-            talk.Warn(
-                fmt::format("the image is not denoised: time was up before each pixel had {} "
-                            "samples",
-                            leastDenoisedSpp));
-            return false;
-        }
-    return true;
+// Takes back what is said of blocks that have too few samples to know what is noise: they stay as
+// they are, and may be as wrong as can be.
+void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
+                 DenoisedImage* denoised) {
+    constexpr float mostLightness = 100;
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(leastDenoisedSpp)) continue;
+        ++count;
+        denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), mostLightness);
+    }
+    if (count > 0)
+        talk.Warn(
+            fmt::format("{} of {} blocks are not denoised: they have fewer than {} samples per "
+                        "pixel",
+                        count, result.blocks.size(), leastDenoisedSpp));
 }
 
 ExitCode RunRender(Options options, Job* job) {
@@ -317,9 +327,11 @@ ExitCode RunRender(Options options, Job* job) {
     if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
     session.TheFilm().DropHalf();  // what follows needs the memory
     if (options.denoiseLayers) halves = MakeHalfChannels(picture);
-    if (options.denoise && HasSamplesEnough(result, talk))
+    if (options.denoise) {
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
                                  settings.quiet, talk);
+        DoubtBlocks(result, region, talk, &*denoised);
+    }
     if (display && denoised) display->ShowDenoised(region, denoised->image.values);
 
     const ResultFiles written = WriteFiles(files, {{*scene, provenance},

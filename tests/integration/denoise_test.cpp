@@ -67,7 +67,12 @@ TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {
     const Outcome interrupted = RunAndSignal(directory, parts, SIGTERM, "c.h5");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
     // What is interrupted is denoised as far as it has come.
-    EXPECT_TRUE(ChannelsOf(directory, "parts.exr").contains("noisy.R"));
+    const Channels part = ChannelsOf(directory, "parts.exr");
+    EXPECT_TRUE(part.contains("noisy.R"));
+    for (size_t i = 0; i < part.at("spp").size(); ++i)
+        if (part.at("spp")[i] == 0) {
+            ASSERT_EQ(part.at("error")[i], 100);
+        }
     ASSERT_TRUE(Succeeds(directory, parts + "--resume"));
     EXPECT_EQ(ChannelsOf(directory, "parts.exr"), whole);
 }
