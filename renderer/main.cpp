@@ -82,7 +82,9 @@ ExitCode Main(int argc, char** argv) {
         Say("lull: error: {}\n", e.what());
         return kFailed;
     }
-    return Main(job.get(), argc, argv);
+    const ExitCode code = Main(job.get(), argc, argv);
+    job->EndWithout(code);
+    return code;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "renderer/base/say.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -47,7 +48,7 @@ std::function<double()> StartClock(const ClockOptions& options) {
         // Of the steady clock, as nobody sets that; of `until`, the one that people look at.
         using Clock = std::chrono::steady_clock;
         return [end = ParseDuration(options.time), start = Clock::now()] {
-            return end - std::chrono::duration<double>(Clock::now() - start).count();
+            return end - SecondsSince(start);
         };
     }
     if (options.until.empty()) return {};
@@ -57,18 +58,19 @@ std::function<double()> StartClock(const ClockOptions& options) {
     return [end] { return std::chrono::duration<double>(end - Clock::now()).count(); };
 }
 
-ProgressListener WarnOfFirstPass(int64_t samples, ProgressListener listener) {
+ProgressListener WarnOfFirstSamples(int64_t pixels, ProgressListener listener) {
     return [=, hasWarned = false](const RenderProgress& p) mutable {
         listener(p);
-        constexpr int64_t share = 200;  // of the pass, from which its speed is taken
-        if (hasWarned || !p.secondsLeft || p.samples >= samples || p.samples < samples / share)
+        constexpr int64_t share = 10;  // of the samples, from which their speed is taken
+        if (hasWarned || !p.secondsLeft || p.samples >= pixels || p.samples < pixels / share)
             return;
-        const double needed = p.seconds / double(p.samples) * double(samples - p.samples);
+        const double needed = p.seconds / double(p.samples) * double(pixels - p.samples);
         const double left = std::max(*p.secondsLeft, 0.);
         if (needed < 1.1 * left || needed < left + 1) return;
         hasWarned = true;
-        Say("\nlull: warning: the first pass of all blocks, which is always completed, takes about "
-            "{} more, of {} that are left; a smaller --resolution or --pass takes less\n",
+        Say("\nlull: warning: the first sample of each pixel, which is always taken, takes about "
+            "{} "
+            "more, of {} that are left; a smaller --resolution takes less\n",
             FormatDuration(needed), FormatDuration(left));
     };
 }

@@ -26,7 +26,7 @@ std::function<double()> StartClock(const ClockOptions&);
 using ProgressListener = std::function<void(const RenderProgress&)>;
 
 // Returns a listener that passes on what it hears and warns, once and as early as it can be known,
-// where the first pass of all blocks, of so many samples, will take longer than there is time.
-ProgressListener WarnOfFirstPass(int64_t samples, ProgressListener listener);
+// where a sample for each of so many pixels will take longer than there is time.
+ProgressListener WarnOfFirstSamples(int64_t pixels, ProgressListener listener);
 
 }  // namespace lull

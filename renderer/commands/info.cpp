@@ -49,6 +49,10 @@ std::string VectorText(const Vec3f& v) {
     return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
 }
 
+std::string Number(int64_t count, const std::string& what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 void Line(const std::string& label, const std::string& text) {
     fmt::print("{:<12} {}\n", label, text);
 }
@@ -57,8 +61,9 @@ void PrintGeometry(const Description& description, const Scene& scene) {
     const Bounds3f& bounds = scene.shapes.bounds;
     Line("shapes", CountsText(CountShapes(description)));
     Line("triangles", fmt::format("{}", scene.shapes.TriangleCount()));
-    Line("instances", fmt::format("{} of {} objects", scene.shapes.instances.size(),
-                                  scene.shapes.objects.size()));
+    if (const size_t copies = scene.shapes.instances.size(); copies > 0)
+        Line("instances", fmt::format("{} of {}", copies,
+                                      Number(int64_t(scene.shapes.objects.size()), "object")));
     Line("bounds",
          bounds.IsEmpty() ? "none" : VectorText(bounds.lower) + " to " + VectorText(bounds.upper));
 }
@@ -69,8 +74,23 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     if (!description.media.empty()) Line("media", CountsText(CountKinds(description.media)));
     Counts lights = CountKinds(description.lights);
     const int area = scene.lights.Count() - int(description.lights.size());
-    if (area > 0) lights["area (one a primitive)"] = area;
+    if (area > 0) lights[area == 1 ? "glowing shape" : "glowing shapes or triangles"] = area;
     Line("lights", CountsText(lights));
+}
+
+std::string FilmText(const FilmSettings& film) {
+    std::string text = fmt::format("{} x {} pixels", film.resolution.x(), film.resolution.y());
+    if ((film.cropMin != Vec2i(0, 0)) || (film.cropMax != film.resolution))
+        text += fmt::format(", of them columns {} to {} and rows {} to {}", film.cropMin.x(),
+                            film.cropMax.x() - 1, film.cropMin.y(), film.cropMax.y() - 1);
+    if (film.scale != 1) text += fmt::format(", values times {:g}", film.scale);
+    return text + fmt::format(", image {}", film.filename);
+}
+
+// Says what is used, and what the file asks for if that is something else.
+std::string UsedText(const std::string& used, const Entity& asked) {
+    if (!asked.loc.file || asked.name == used) return used;
+    return fmt::format("{} ({} in the file)", used, asked.name);
 }
 
 void PrintView(const Description& description, const Scene& scene) {
@@ -82,19 +102,17 @@ void PrintView(const Description& description, const Scene& scene) {
                          ? fmt::format(", lens radius {:g}, focus at {:g}", scene.camera.lensRadius,
                                        scene.camera.focalDistance)
                          : ", pinhole"));
-    const FilmSettings& film = scene.film;
-    Line("film",
-         fmt::format("{} x {}, crop [{}, {}) x [{}, {}), scale {:g}, file {}", film.resolution.x(),
-                     film.resolution.y(), film.cropMin.x(), film.cropMax.x(), film.cropMin.y(),
-                     film.cropMax.y(), film.scale, film.filename));
+    Line("film", FilmText(scene.film));
     Line("filter", description.filter.name);
-    Line("sampler",
-         fmt::format("{} as {}, {} samples per pixel in the file", description.sampler.name,
-                     NameOf(scene.sampler), scene.samplesPerPixel));
-    Line("integrator",
-         fmt::format("{} as {}, maximum depth {}, roulette threshold {:g}",
-                     description.integrator.name, scene.isVolumetric ? "volpath" : "path",
-                     scene.maxDepth, scene.rrThreshold));
+    Line("sampler", UsedText(NameOf(scene.sampler), description.sampler));
+    if (description.sampler.loc.file)
+        Line("samples", fmt::format("{} per pixel in the file; without --spp each block stops by "
+                                    "itself",
+                                    scene.samplesPerPixel));
+    Line("paths",
+         fmt::format("{}, up to {}; Russian roulette below a throughput of {:g}",
+                     UsedText(scene.isVolumetric ? "volpath" : "path", description.integrator),
+                     Number(scene.maxDepth, "bounce"), scene.rrThreshold));
 }
 
 void PrintCosts(const Scene& scene, double parseSeconds) {

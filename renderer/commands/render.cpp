@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "renderer/base/say.h"
 #include "renderer/commands/aov_options.h"
@@ -63,7 +65,7 @@ Examples:
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
 With --time or --until, blocks stop as without; when that is not enough for all, the worst is as
-good as it can be. Every block gets its first pass, even if that takes longer. How many samples
+good as it can be. Every pixel gets its first sample, even if that takes longer. How many samples
 the others got depends on the machine: --stop thresholds:OUT.thresholds.csv repeats the image. A
 checkpoint is kept, to go on from.
 
@@ -109,6 +111,19 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer("Stopping rules (--stop); a block stops\n" + RuleHelp(100) + "\n" + kFooter);
 }
 
+// Returns the length of passes: shorter where the rule counts samples and stops blocks within the
+// first, as one that repeats a render that was short of time.
+int PassLengthFor(const CriterionFactory& factory, const PixelRect& region,
+                  const ScheduleOptions& schedule) {
+    int length = schedule.passLength;
+    if (!factory.stopAt) return length;
+    const int blocks = int(MakeBlocks(region, schedule).size());
+    for (int i = 0; i < blocks; ++i)
+        if (const int stop = factory.stopAt({.index = i}); stop < std::min(length, schedule.cap))
+            length = std::gcd(length, stop);
+    return std::max(1, length);
+}
+
 // Reads the rule and lets the schedule suit it.
 CriterionFactory ReadRule(const Options& options, const PixelRect& region,
                           std::shared_ptr<BlockDenoiser>* denoiser, RenderSettings* settings) {
@@ -124,6 +139,7 @@ CriterionFactory ReadRule(const Options& options, const PixelRect& region,
     const CriterionFactory factory =
         ReadRule("--stop", options.rule, *settings, region, std::move(measures));
     settings->schedule.smallestSide = factory.smallestSide;
+    settings->schedule.passLength = PassLengthFor(factory, region, settings->schedule);
     return factory;
 }
 
@@ -172,10 +188,16 @@ void PrintShares(const std::vector<double>& shares) {
     Say("\n");
 }
 
-// Says what was missing when the time was up.
+// Says what was missing when the time was up. Of blocks within their first pass nobody knows the
+// noise, nor how long they would have taken.
 void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
-    const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    const auto unknown =
+        std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
+    if (unknown > 0)
+        Say("{} blocks have less than a pass of {} spp, too little to tell how noisy they are\n",
+            unknown, provenance.schedule.passLength);
     if (noisy.empty()) return;
     Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
@@ -186,8 +208,9 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     }
     if (noisy.size() > shown)
         Say("  and {} more, of {:.2f} or less\n", noisy.size() - shown, noisy[shown].noise);
-    Say("about {} more would have been enough for all\n",
-        FormatDuration(NeededSeconds(noisy, result)));
+    if (unknown == 0)
+        Say("about {} more would have been enough for all\n",
+            FormatDuration(NeededSeconds(noisy, result)));
 }
 
 // Throws Error where a result would replace another or an input, or could not be written now.
@@ -295,9 +318,7 @@ ExitCode RunRender(Options options, Job* job) {
     how.render.trend = factory.trend;
     how.render.display = display.get();
     if (clock)
-        how.render.onProgress = WarnOfFirstPass(
-            region.Area() * std::min(settings.schedule.passLength, settings.schedule.cap),
-            std::move(how.render.onProgress));
+        how.render.onProgress = WarnOfFirstSamples(region.Area(), std::move(how.render.onProgress));
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);

@@ -22,6 +22,13 @@ void ShareAmongRanks(Job* job, SessionOptions* options) {
                         "last checkpoint, with any number of ranks",
                         fmt::join(ranks, ", ")));
     };
+    options->render.onGivenUp = [job](int rank, double seconds) {
+        job->GiveUp(rank);
+        job->Warn(
+            fmt::format("rank {} has given no sign of life for {}: going on without it, and taking "
+                        "its samples again",
+                        rank, FormatDuration(seconds)));
+    };
 }
 
 }  // namespace

@@ -37,11 +37,13 @@ Json BlockJson(const BlockResult& result, int cap, bool timeUp,
     return json;
 }
 
-// Adds what was missing when the time was up.
+// Adds what was missing when the time was up; nobody knows that of blocks within their first pass.
 void AddShortfall(const Provenance& provenance, const RenderResult& result, Json* report) {
-    const std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    const auto unknown =
+        std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
     (*report)["totals"]["timeUp"] = true;
-    (*report)["totals"]["neededSeconds"] = NeededSeconds(noisy, result);
+    if (unknown == 0) (*report)["totals"]["neededSeconds"] = NeededSeconds(noisy, result);
     for (const NoisyBlock& block : noisy) {
         Json& json = (*report)["blocks"][size_t(block.block)];
         json["neededSpp"] = block.neededSpp;

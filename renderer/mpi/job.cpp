@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 
 #include "renderer/base/error.h"
@@ -68,6 +69,10 @@ Job::~Job() {
 
 void Job::Begin(const std::string& what) {
     if (count == 1) return;
+    if (givenUp >= 0) {
+        phase = Phase::Working;
+        throw Error(fmt::format("rank {} gives no sign of life; start again without it", givenUp));
+    }
     const MpiAgreement all = AgreeByMpi(false, HashOf(what));
     if (all.failed >= 0) throw OtherRankFailed();
     phase = Phase::Working;
@@ -78,6 +83,12 @@ void Job::Begin(const std::string& what) {
         fmt::format("rank {} is about to render something else: the version of lull, the "
                     "scene and what it refers to have to be the same everywhere",
                     all.different));
+}
+
+void Job::EndWithout(int exitCode) {
+    if (givenUp < 0) return;
+    std::fflush(nullptr);
+    AbortMpi(exitCode);
 }
 
 void Job::Warn(const std::string& message) const {
@@ -93,7 +104,7 @@ void Job::Fail(const std::string& message) {
         const std::string line = fmt::format("lull: error: {}{}\n", who, message);
         if (write(errorOutput, line.data(), line.size()) < 0) return;
     }
-    if (phase == Phase::Working) AbortMpi();
+    if (phase == Phase::Working) AbortMpi(1);
 }
 
 }  // namespace lull

@@ -29,6 +29,11 @@ class Job {
     void Begin(const std::string& what);
     // Declares that the others are not needed until the next Begin().
     void End() { phase = Phase::After; }
+    // Declares that a rank gives no sign of life, and will not be waited for again.
+    void GiveUp(int rank) { givenUp = rank; }
+    // Ends this process, and all others, with the exit code, if one of them was given up: it would
+    // not end by itself. Else does nothing.
+    void EndWithout(int exitCode);
     // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
     // Prints an error, once for all ranks, and ends them all if others would wait for this one.
@@ -38,6 +43,7 @@ class Job {
     enum class Phase { Before, Working, After };
 
     int rank = 0, count = 1;
+    int givenUp = -1;  // the last rank that was; -1: none
     Phase phase = Phase::Before;
     int errorOutput = 2;  // where errors go; 2 itself is silenced in all ranks but the first
     std::unique_ptr<Peers> peers;

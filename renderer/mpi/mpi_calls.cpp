@@ -4,6 +4,7 @@
 #include <chrono>
 #include <climits>
 #include <list>
+#include <set>
 #include <thread>
 
 #include "renderer/base/error.h"
@@ -42,7 +43,7 @@ class MpiPeers final : public Peers {
     }
     ~MpiPeers() override {
         Flush();
-        MPI_Comm_free(&world);
+        if (sent.empty()) MPI_Comm_free(&world);
     }
 
     int Rank() const override { return rank; }
@@ -55,6 +56,7 @@ class MpiPeers final : public Peers {
                 "smaller");
         while (!sent.empty() && HasLeft(&sent.front())) sent.pop_front();
         Sent& entry = sent.emplace_back();
+        entry.to = to;
         entry.message = std::move(message);
         MPI_Isend(entry.message.data(), int(entry.message.size()), MPI_BYTE, to, tag, world,
                   &entry.request);
@@ -73,13 +75,18 @@ class MpiPeers final : public Peers {
         return message;
     }
 
+    // What a rank given up has not taken has to stay where it is.
     void Flush() override {
-        for (Sent& entry : sent) WaitFor(entry.request);
-        sent.clear();
+        std::erase_if(sent, [&](Sent& entry) {
+            if (!givenUp.contains(entry.to)) WaitFor(entry.request);
+            return !givenUp.contains(entry.to);
+        });
     }
+    void GiveUp(int other) override { givenUp.insert(other); }
 
   private:
     struct Sent {
+        int to = 0;
         std::vector<std::byte> message;
         MPI_Request request = MPI_REQUEST_NULL;
     };
@@ -93,6 +100,7 @@ class MpiPeers final : public Peers {
     MPI_Comm world = MPI_COMM_NULL;
     int rank = 0, count = 1;
     std::list<Sent> sent;
+    std::set<int> givenUp;
 };
 
 }  // namespace
@@ -135,7 +143,7 @@ MpiAgreement AgreeByMpi(bool failed, uint64_t value) {
     return {all[0] == INT_MAX ? -1 : all[0], all[1] == INT_MAX ? -1 : all[1]};
 }
 
-void AbortMpi() { MPI_Abort(MPI_COMM_WORLD, 1); }
+void AbortMpi(int exitCode) { MPI_Abort(MPI_COMM_WORLD, exitCode); }
 
 std::unique_ptr<Peers> MakeMpiPeers() { return std::make_unique<MpiPeers>(); }
 
@@ -146,7 +154,7 @@ const bool hasMpi = false;
 MpiWorld StartMpi() { return {}; }
 void EndMpi() {}
 MpiAgreement AgreeByMpi(bool, uint64_t) { return {}; }
-void AbortMpi() {}
+void AbortMpi(int) {}
 std::unique_ptr<Peers> MakeMpiPeers() { return nullptr; }
 
 #endif

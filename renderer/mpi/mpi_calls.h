@@ -24,8 +24,8 @@ MpiWorld StartMpi();
 void EndMpi();  // if it was started
 // Waits for all ranks.
 MpiAgreement AgreeByMpi(bool failed, uint64_t value);
-// Ends all ranks with exit code 1.
-void AbortMpi();
+// Ends all ranks.
+void AbortMpi(int exitCode);
 std::unique_ptr<Peers> MakeMpiPeers();
 
 }  // namespace lull

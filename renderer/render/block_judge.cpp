@@ -11,11 +11,14 @@ namespace {
 
 constexpr int smallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
 
-bool HasSamplesBeyond(int spp, const PixelRect& rect, const Film& film) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y)
-        for (int x = rect.min.x(); x < rect.max.x(); ++x)
-            if (film.At({x, y}).count > uint32_t(spp)) return true;
-    return false;
+// Returns the end of the pass that pixels of a block have samples of, beyond its spp; 0: none have.
+int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film) {
+    options.worstFirst = true;
+    const int most = MostSamples(block.pixels, film);
+    if (most <= block.spp) return 0;
+    int end = block.spp;
+    while (end < std::min(most, options.cap)) end = PassEndAfter(end, options);
+    return end;
 }
 
 // Returns the visible noise of a block, of any size, both of whose means are in the view.
@@ -44,6 +47,14 @@ std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderOptions& option
 
 }  // namespace
 
+int MostSamples(const PixelRect& rect, const Film& film) {
+    uint32_t most = 0;
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x)
+            most = std::max(most, film.At({x, y}).count);
+    return int(most);
+}
+
 std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions& options,
                                  const Film& film) {
     std::vector<BlockStart> starts;
@@ -51,11 +62,12 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const Rend
         const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
         BlockStart start{
             .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
-        if (options.secondsLeft && spp > 0) {
+        if (options.secondsLeft && !b.block.stopped)
+            start.passEnd = EndOfPassBegun(b.block, options.schedule, film);
+        if (options.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {
             FilmView view;
             film.Extract(rect, true, &view);
             start.noise = NoiseOf({view.width, view.height, spp, view.mean, view.halfMean});
-            start.begun = HasSamplesBeyond(spp, rect, film);
         }
         starts.push_back(start);
     }
@@ -71,10 +83,12 @@ std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOpt
 BlockJudge::BlockJudge(const RenderOptions& options, const Film& film,
                        std::span<const Block> blocks, const RenderState* interrupted)
     : film(film),
+      schedule(options.schedule),
       hasClock(options.secondsLeft),
       criteria(MakeCriteria(options, film.Region(), blocks, interrupted)) {}
 
 ViewNeed BlockJudge::NeedAt(int block, int spp) const {
+    if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
     const ViewNeed own = hasClock ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
     const auto& criterion = criteria[size_t(block)];
     return criterion ? std::max(own, criterion->Need(spp)) : own;
@@ -83,7 +97,7 @@ ViewNeed BlockJudge::NeedAt(int block, int spp) const {
 Judgement BlockJudge::Judge(int index, const Block& block, int spp, double seconds,
                             const std::function<void(int, FilmView*)>& complete) {
     const auto& criterion = criteria[size_t(index)];
-    if (!criterion && !hasClock) return {};
+    if ((!criterion && !hasClock) || !IsPassEnd(spp, schedule)) return {};
     const double start = ThreadSeconds();
     BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
     view.spp = spp;

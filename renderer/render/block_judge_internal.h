@@ -37,10 +37,14 @@ class BlockJudge {
                      const std::function<void(int block, FilmView*)>& complete);
 
     const Film& film;
+    const ScheduleOptions schedule;
     const bool hasClock;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     tbb::enumerable_thread_specific<FilmView> views;
 };
+
+// Returns the most samples that a pixel has.
+int MostSamples(const PixelRect&, const Film&);
 
 // Says where blocks are that an interrupted render has left, null if there is none; with a clock,
 // also how noisy.

@@ -28,6 +28,7 @@ void LiveSchedule::Restart(std::span<const BlockStart> starts, TileShare given) 
     std::lock_guard lock(mutex);
     share = std::move(given);
     schedule = Schedule(film->Region(), ScheduleFor(options), starts, share);
+    if (timeCalled) schedule.CallTime();
     undo = {};
 }
 

@@ -24,6 +24,9 @@
 //
 // With Start, tiles go to where there is time: the sums of those that have another owner are sent
 // to it, and it adds to them as the one before would have.
+//
+// Rank 0 asks those it hears nothing of for a sign of life. Who gives none for long is given up:
+// its tiles go to the others, who take its samples again from where rank 0 has its sums.
 #pragma once
 
 #include <cstddef>
@@ -47,8 +50,10 @@ class Peers {
     virtual void Send(int to, std::vector<std::byte> message) = 0;
     // Returns the next message that has arrived; nothing if there is none.
     virtual std::optional<PeerMessage> Receive() = 0;
-    // Waits until all that was sent has left.
+    // Waits until all that was sent has left, but for what was sent to ranks given up.
     virtual void Flush() = 0;
+    // Nothing more is sent to this rank, and nothing waits for it any more.
+    virtual void GiveUp(int rank) = 0;
 };
 
 }  // namespace lull

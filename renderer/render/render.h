@@ -70,6 +70,12 @@ struct RenderOptions {
     double dealInterval = 5;
     // Is told, once the render has been cancelled, of ranks that do not answer. Can be empty.
     std::function<void(const std::vector<int>& ranks)> onSilence;
+    // For how many seconds rank 0 waits for a sign of life of another before it goes on without it;
+    // with a clock a tenth of the time left, if that is less. Once the render has been cancelled,
+    // and at the least, a twelfth of it.
+    double rankPatience = 60;
+    // Is told of a rank that was given up, and for how many seconds it was silent. Can be empty.
+    std::function<void(int rank, double seconds)> onGivenUp;
 
     // What is collected beside the film, from the same samples; they are the same bits with it.
     Layers layers;

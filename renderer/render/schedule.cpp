@@ -45,6 +45,18 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& op
     return blocks;
 }
 
+int PassEndAfter(int spp, const ScheduleOptions& options) {
+    const int pass = options.passLength;
+    int end = (spp / pass + 1) * pass;
+    // A step that would leave less than itself to the pass is all that is left of it.
+    if (const int step = std::max(1, 2 * spp); options.worstFirst && 2 * step <= pass) end = step;
+    return std::min(end, options.cap);
+}
+
+bool IsPassEnd(int spp, const ScheduleOptions& options) {
+    return spp % options.passLength == 0 || spp >= options.cap;
+}
+
 std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
                                const TileShare& share) {
     std::vector<PixelRect> tiles;
@@ -62,22 +74,21 @@ Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
     for (size_t i = 0; i < starts.size(); ++i) {
         blocks[i].spp = progress[i].decidedSpp = starts[i].spp;
         blocks[i].noise = starts[i].noise;
-        progress[i].mustEnd = starts[i].begun;
+        progress[i].mustEnd = starts[i].passEnd > 0;
         if (starts[i].stopped) Stop(int(i), starts[i].stoppedByVote);
     }
     for (int i = 0; i < int(blocks.size()); ++i)
         if (blocks[i].leader >= 0)
             progress[blocks[i].leader].followers.push_back(i);
         else if (!blocks[i].stopped)
-            GoOn(i);
+            StartPass(i, progress[i].mustEnd ? starts[size_t(i)].passEnd
+                                             : PassEndAfter(blocks[i].spp, options));
     for (int i = 0; i < int(blocks.size()); ++i)
         if (blocks[i].leader >= 0) CatchUp(i);
 }
 
 // Starts the next pass of a block that nobody leads.
-void Schedule::GoOn(int i) {
-    StartPass(i, std::min(blocks[i].spp + options.passLength, options.cap));
-}
+void Schedule::GoOn(int i) { StartPass(i, PassEndAfter(blocks[i].spp, options)); }
 
 void Schedule::StartPass(int block, int target) {
     Progress& pass = progress[block];
@@ -177,7 +188,7 @@ void Schedule::CatchUp(int follower) {
     if (progress[follower].underWay || block.stopped) return;
     const int leaderSpp = progress[block.leader].decidedSpp;
     if (block.spp < leaderSpp)
-        StartPass(follower, std::min(block.spp + options.passLength, leaderSpp));
+        StartPass(follower, std::min(PassEndAfter(block.spp, options), leaderSpp));
     else if (leader.stopped)
         Stop(follower, leader.stoppedByVote);
 }

@@ -22,9 +22,17 @@ struct ScheduleOptions {
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (small_blocks.h)
     // For renders that have a clock: the next pass is that of the block with the most visible
-    // noise, so that at any moment the worst block is as good as it can be.
+    // noise, so that at any moment the worst block is as good as it can be, after a first pass in
+    // steps.
     bool worstFirst = false;
 };
+
+// Returns the spp at the end of the pass that begins at `spp`, a multiple of the length of passes
+// or the cap. With a clock the first pass is done in steps of 1, 2, 4, ... spp, in case that there
+// is no time for all of it.
+int PassEndAfter(int spp, const ScheduleOptions&);
+// Says whether a pass, or the first as a whole, ends at `spp`.
+bool IsPassEnd(int spp, const ScheduleOptions&);
 
 // Returns how a film is cut by the schedule.
 inline TileGrid GridOf(const ScheduleOptions& options) {
@@ -66,7 +74,9 @@ struct BlockStart {
     bool stopped = false;
     bool stoppedByVote = false;
     double noise = unknownNoise;
-    bool begun = false;  // some pixels have samples of the next pass
+    // The spp at the end of a pass that has been begun, and has to be finished though time is
+    // called; 0: none.
+    int passEnd = 0;
 };
 
 // Holds a piece of a block's pass: `count` samples from `first` on for each of the pixels.
@@ -119,8 +129,9 @@ class Schedule {
     // blocks that do not vote, and how much noise it shows. Makes the tiles of the next pass ready
     // (its own and those of followers).
     void Decide(int block, bool stop, double noise = unknownNoise);
-    // Gives out no more tiles, but those of passes that have to be finished: the first of each
-    // block, so that no part of the image is black, and those begun before this schedule was.
+    // Gives out no more tiles, but those of passes that have to be finished: the first, or its
+    // first step, of each block, so that no part of the image is black, and those begun before this
+    // schedule was.
     void CallTime();
 
     bool Done() const { return stoppedBlocks == int(blocks.size()); }

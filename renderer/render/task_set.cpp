@@ -4,6 +4,10 @@ namespace lull {
 
 template <typename Work>
 void TaskSet::Guarded(const Work& work) {
+    struct Leaving {
+        std::atomic<int>& open;
+        ~Leaving() { --open; }
+    } leaving{open};
     try {
         work();
     } catch (...) {
@@ -13,6 +17,7 @@ void TaskSet::Guarded(const Work& work) {
 }
 
 void TaskSet::Spawn(int count) {
+    open += count;
     tileTask.order.Leave();
     for (int i = 0; i < count; ++i) group.run(std::ref(tileTask));
 }
@@ -22,6 +27,7 @@ void TaskSet::Enqueue(tbb::task_arena* arena, std::function<void()> work) {
         std::lock_guard lock(worksMutex);
         works.push_back(std::move(work));
     }
+    ++open;
     workTask.order.Leave();
     arena->enqueue(group.defer(std::ref(workTask)));
 }

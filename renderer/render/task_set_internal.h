@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -27,6 +28,8 @@ class TaskSet {
     void Enqueue(tbb::task_arena*, std::function<void()> work);
     // Waits until there is no task any more.
     void Wait();
+    // Says whether there is none now.
+    bool IsIdle() const { return open == 0; }
 
   private:
     // Is what all tasks of tiles do.
@@ -49,7 +52,8 @@ class TaskSet {
     const std::function<void(std::exception_ptr)> take;
     TileTask tileTask{this};
     WorkTask workTask{this};
-    std::mutex worksMutex;  // guards `works`
+    std::atomic<int> open = 0;  // tasks that have not come to their end
+    std::mutex worksMutex;      // guards `works`
     std::deque<std::function<void()>> works;
     tbb::task_group group;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 namespace {
 
@@ -25,9 +27,10 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
                 bool asPbrtV3, Warnings& warnings) {
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
     entity.parameters.GetInt("nsamples", 1);
-    if (entity.name == "point") return PointLight::Make(entity);
-    if (entity.name == "spot" || entity.name == "spot-squared") return SpotLight::Make(entity);
-    if (entity.name == "distant") return DistantLight::Make(entity, worldRadius);
+    if (entity.name == "point") return PointLight::Make(entity, warnings);
+    if (entity.name == "spot" || entity.name == "spot-squared")
+        return SpotLight::Make(entity, warnings);
+    if (entity.name == "distant") return DistantLight::Make(entity, worldRadius, warnings);
     if (entity.name == "infinite" || entity.name == "exinfinite")
         return InfiniteLight::Make(description, entity, worldRadius, !asPbrtV3, warnings);
     if (entity.name == "goniometric") return GoniometricLight::Make(description, entity, warnings);
@@ -35,14 +38,6 @@ Light MakeLight(const Description& description, const LightEntity& entity, float
     throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; point, spot, distant, "
                                         "infinite, goniometric and projection are",
                                         entity.name));
-}
-
-// Light of a colour outside of sRGB has a negative part, and so would have one that is mistyped.
-void WarnOfNegative(const Rgb& color, const Entity& entity, const std::string& what,
-                    Warnings& warnings) {
-    if ((color < 0).any())
-        warnings.Add(entity.loc, "a light has a negative part, which its pixels will have too",
-                     what + " \"" + entity.name + "\"");
 }
 
 // Refuses lights to whose place no ray is traced.
@@ -66,8 +61,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
                                             entity.name));
     const Parameters& params = entity.parameters;
     AreaLight light;
-    light.L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
-    WarnOfNegative(light.L, entity, "AreaLightSource", warnings);
+    light.L = LightColor(entity, "L", warnings);
     light.twoSided = params.GetBool("twosided", false);
     params.GetInt("samples", 1);
     params.GetInt("nsamples", 1);
@@ -120,8 +114,6 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         lights.push_back(MakeLight(description, entity, world.radius, asPbrtV3, warnings));
         CheckReach(lights.back(), entity, shapes.reach);
         entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
-        WarnOfNegative(std::visit([](const auto& light) { return light.Power(); }, lights.back()),
-                       entity, "LightSource", warnings);
         if (std::holds_alternative<InfiniteLight>(lights.back())) infinite.push_back(Count() - 1);
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {

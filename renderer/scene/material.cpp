@@ -1,5 +1,7 @@
 #include "renderer/scene/material.h"
 
+#include <fmt/format.h>
+
 #include "renderer/scene/materials/bump_map.h"
 #include "renderer/scene/materials/disney.h"
 #include "renderer/scene/materials/fourier.h"

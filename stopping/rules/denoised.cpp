@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t kTag = 0x31534e44;  // "DNS1"
 constexpr int kVotes = 2;
-constexpr int kFirstSpp = 40;
+constexpr int kFirstSpp = 20;
 constexpr double kGrowth = 1.25;
 
 }  // namespace

@@ -160,6 +160,26 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     ExpectSame("one", "parts");
 }
 
+// For ever: the clock still ends the render, and the others make up for it.
+TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
+    const Outcome stopped =
+        Run("timeout -s KILL 120 " + Ranks(3) + kRender +
+            "--stop fixed:100000 -o parts.exr --time 9s --checkpoint c.h5 --checkpoint-interval 0.5"
+            " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
+            "mpi=$(echo $(cat /proc/$p/task/$p/children)); "
+            "for child in $(cat /proc/$mpi/task/$mpi/children); do last=$child; done; "
+            "kill -STOP $last; wait $p");
+    ASSERT_EQ(stopped.exitCode, 0) << stopped.err;
+    const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
+    EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
+    EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
+    ASSERT_EQ(Run(std::string(kRender) +
+                  "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr")
+                  .exitCode,
+              0);
+    EXPECT_EQ(Texels("parts"), Texels("again"));
+}
+
 TEST_F(RanksTest, CompareBenchAndRecord) {
     const std::string size = " scene.pbrt --resolution 60x45 --quiet --cap 60 --threads 1 ";
     const auto runBoth = [&](const std::string& command) {

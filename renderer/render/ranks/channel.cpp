@@ -1,6 +1,7 @@
 #include "renderer/render/ranks/channel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lull {
 
@@ -44,6 +45,30 @@ void RankChannel::CheckLife() {
     silent.clear();
 }
 
+std::vector<int> RankChannel::FindSilent(double quiet, double patience) {
+    const auto now = Clock::now();
+    const auto unseen = now - std::exchange(lastLook, now);
+    const bool wasAway = unseen > std::chrono::duration<double>(quiet);
+    std::vector<int> found;
+    for (int rank = 0; rank < Count(); ++rank) {
+        Life& life = lives[size_t(rank)];
+        if (rank == Rank() || life.givenUp) continue;
+        if (!life.asked && now - life.heard > std::chrono::duration<double>(quiet)) {
+            life.asked = now;
+            Post(rank, Pack(RankWord::Ping));
+        }
+        if (wasAway && life.asked) *life.asked += unseen;
+        if (life.asked && now - *life.asked > std::chrono::duration<double>(patience))
+            found.push_back(rank);
+    }
+    return found;
+}
+
+void RankChannel::GiveUp(int rank) {
+    lives[size_t(rank)].givenUp = true;
+    peers.GiveUp(rank);
+}
+
 void RankChannel::Exchange(const Handler& handle) {
     const bool hasSent = Send(), hasReceived = Receive(handle);
     CheckLife();
@@ -61,14 +86,19 @@ bool RankChannel::Send() {
         if (failure) std::rethrow_exception(failure);
         posted.swap(outbox);
     }
-    for (auto& [to, message] : posted) peers.Send(to, std::move(message));
+    for (auto& [to, message] : posted)
+        if (!HasGivenUp(to)) peers.Send(to, std::move(message));
     return !posted.empty();
 }
 
 bool RankChannel::Receive(const Handler& handle) {
     bool any = false;
     while (const std::optional<PeerMessage> message = peers.Receive()) {
-        StateReader reader(message->bytes);
+        Life& life = lives[size_t(message->from)];
+        if (life.givenUp) continue;
+        life.heard = Clock::now();
+        life.asked.reset();
+        StateReader reader(message->bytes, "a message of a rank");
         const RankWord word = reader.Get<RankWord>();
         if (word == RankWord::Ping)
             peers.Send(message->from, Pack(RankWord::Alive));

@@ -1,11 +1,13 @@
 // Carries what the ranks of a render say to each other (peers.h).
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "renderer/render/peers.h"
@@ -18,7 +20,7 @@ class RankChannel {
   public:
     // `onSilence` is told of ranks that do not answer; it can be empty.
     RankChannel(Peers* peers, std::function<void(const std::vector<int>&)> onSilence)
-        : peers(*peers), onSilence(std::move(onSilence)) {}
+        : peers(*peers), onSilence(std::move(onSilence)), lives(size_t(peers->Count())) {}
 
     int Rank() const { return peers.Rank(); }
     int Count() const { return peers.Count(); }
@@ -39,8 +41,24 @@ class RankChannel {
     // Asks whether the ranks are there, and tells `onSilence` of those that are not.
     void AskForLife(const std::vector<int>& ranks);
 
+    // Asks ranks of which nothing was heard for `quiet` seconds for a sign of life, and returns
+    // those that have given none for `patience` seconds since. To be called often: what goes by
+    // between two calls that are far apart counts for nobody's silence.
+    std::vector<int> FindSilent(double quiet, double patience);
+    // Sends nothing more to the rank, and passes on nothing that it says.
+    void GiveUp(int rank);
+    bool HasGivenUp(int rank) const { return lives[size_t(rank)].givenUp; }
+    bool HasGivenUpAny() const { return std::ranges::any_of(lives, &Life::givenUp); }
+
   private:
     using Clock = std::chrono::steady_clock;
+
+    // Is what is known of another rank.
+    struct Life {
+        Clock::time_point heard = Clock::now();
+        std::optional<Clock::time_point> asked;  // since it was heard
+        bool givenUp = false;
+    };
 
     bool Send();
     bool Receive(const Handler& handle);
@@ -58,6 +76,8 @@ class RankChannel {
     Clock::time_point lastMessage = Clock::now();
     std::set<int> silent;  // have been asked, and have not answered
     Clock::time_point silentSince;
+    std::vector<Life> lives;  // of the ranks
+    Clock::time_point lastLook = Clock::now();
 };
 
 }  // namespace lull

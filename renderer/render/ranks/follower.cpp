@@ -29,6 +29,7 @@ class Follower {
         while (!ended) {
             channel.Exchange(
                 [this](int, RankWord word, StateReader& reader) { Handle(word, reader); });
+            if (isAskedToPause && executor.tasks.IsIdle()) SayQuiet();
             if (told || !executor.IsCancelled()) continue;
             channel.Post(0, Pack(RankWord::Interrupted));
             if (channel.Rank() == 1) channel.AskForLife({0});  // one is enough to say so
@@ -52,8 +53,7 @@ class Follower {
         } else if (word == RankWord::TimeUp) {
             schedule.CallTime();
         } else if (word == RankWord::Pause) {
-            executor.Quiesce();
-            channel.Post(0, Pack(RankWord::Quiet));
+            executor.pausing = isAskedToPause = true;
         } else if (word == RankWord::Collect) {
             if (reader.Get<uint8_t>())
                 for (const int block : executor.Undo()) touched[size_t(block)] = true;
@@ -64,6 +64,13 @@ class Follower {
         } else if (word == RankWord::End) {
             ended = true;
         }
+    }
+
+    // Not before the tiles under way are done, until which it still gives signs of life.
+    void SayQuiet() {
+        isAskedToPause = false;
+        executor.Quiesce();
+        channel.Post(0, Pack(RankWord::Quiet));
     }
 
     // Goes on from where rank 0 says, as soon as the sums have come. It has those of all pixels.
@@ -111,7 +118,7 @@ class Follower {
     std::vector<ViewNeed> needs;
     std::vector<char> touched;  // blocks that had a pass since their pixels were sent
     std::vector<int> before;    // the deal before this one
-    bool begun = false, ended = false;
+    bool begun = false, isAskedToPause = false, ended = false;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Rank 0: asks the criteria, writes checkpoints, deals out tiles, and says when to end.
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "renderer/render/ranks/deal.h"
@@ -43,11 +44,14 @@ class Leader {
             const double pause = Seconds();
             const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
             Gather(undo);
-            const bool over =
-                IsOver() && (undo || !schedule.TimeCalled() || executor.IsCancelled());
+            const bool takesOver = std::exchange(hasGivenUp, false) && !executor.IsCancelled();
+            const bool over = !takesOver && IsOver() &&
+                              (undo || !schedule.TimeCalled() || executor.IsCancelled());
             if (over || Seconds() >= executor.nextCheckpoint) WriteCheckpoint();
             if (over) break;
-            if (deal.empty() || schedule.TimeCalled())
+            if (takesOver)
+                TakeOver();
+            else if (deal.empty() || schedule.TimeCalled())
                 channel.PostToAll(Pack(RankWord::Resume));
             else
                 Deal();
@@ -70,20 +74,52 @@ class Leader {
             [this](int from, RankWord word, StateReader& reader) { Handle(from, word, reader); });
     }
 
+    // Not while blocks are behind what their criteria have seen.
     void WriteCheckpoint() {
-        executor.WriteCheckpoint();
+        if (!channel.HasGivenUpAny() || (answers.empty() && !AreBehind()))
+            executor.WriteCheckpoint();
         executor.nextCheckpoint = Seconds() + options.checkpointInterval;
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
-    void Deal() {
+    void Deal() { Deal(executor.ledger.Blocks(schedule.Unlocked())); }
+
+    void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
-        const auto& blocks = executor.ledger.Blocks(schedule.Unlocked());
         schedule.Restart(StartsOf(blocks, options, *film), {0, std::exchange(deal, {})});
         executor.ledger.TakeEffort();
         ForgetParts();
         SendStart(before);
         speeds.Forget();
+    }
+
+    // Deals out the tiles of ranks that were given up to the others. Where their samples are lost,
+    // blocks go back by a pass, for which all those are taken again; the answer to it is known. A
+    // pass that is under way takes them too.
+    void TakeOver() {
+        deal = schedule.Share().deal;
+        std::erase_if(deal, [&](int other) { return channel.HasGivenUp(other); });
+        std::vector<BlockResult> blocks = executor.ledger.Blocks(schedule.Unlocked());
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            Block& block = blocks[i].block;
+            if (!IsBehind(block) || MostSamples(block.pixels, *film) > block.spp) continue;
+            answers.insert({int(i), {block.stoppedByVote, block.noise}});
+            block.spp = PassStart(block.spp);
+            block.stopped = block.stoppedByVote = false;
+        }
+        Deal(blocks);
+    }
+
+    // Says whether pixels lack samples of passes that were decided on.
+    bool IsBehind(const Block& block) const {
+        for (int y = block.pixels.min.y(); y < block.pixels.max.y(); ++y)
+            for (int x = block.pixels.min.x(); x < block.pixels.max.x(); ++x)
+                if (film->At({x, y}).count < uint32_t(block.spp)) return true;
+        return false;
+    }
+    bool AreBehind() {
+        return std::ranges::any_of(executor.ledger.Blocks(schedule.Unlocked()),
+                                   [&](const BlockResult& b) { return IsBehind(b.block); });
     }
 
     void ForgetParts() {
@@ -114,8 +150,9 @@ class Leader {
         const std::span<const Block> blocks = schedule.Unlocked().Blocks();
         for (int i = 0; i < int(blocks.size()); ++i) {
             const Block& block = blocks[size_t(i)];
+            const bool mustEnd = schedule.HasClock() && schedule.Unlocked().MustEnd(i);
             message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
-                                      schedule.HasClock() && schedule.Unlocked().MustEnd(i)});
+                                      mustEnd ? schedule.Unlocked().PassEnd(i) : 0});
             message.needs.push_back(block.stopped ? ViewNeed::Nothing
                                                   : executor.judge.NeedAt(i, NextSpp(block.spp)));
         }
@@ -128,8 +165,13 @@ class Leader {
         channel.PostToAll(Pack(RankWord::Begin));
     }
 
-    int NextSpp(int spp) const {
-        return std::min(spp + options.schedule.passLength, options.schedule.cap);
+    int NextSpp(int spp) const { return PassEndAfter(spp, schedule.Unlocked().Options()); }
+
+    // Returns the spp from which the pass that ends at `spp` > 0 began.
+    int PassStart(int spp) const {
+        int start = 0;
+        for (int end = 0; (end = NextSpp(start)) < spp;) start = end;
+        return start;
     }
 
     int PartCount(int block) const {
@@ -144,6 +186,7 @@ class Leader {
     void RunUntilPause() {
         while (!executor.pausing && !IsOver()) {
             Exchange();
+            WatchOthers();
             if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
                 schedule.CallTime();
                 channel.PostToAll(Pack(RankWord::TimeUp));
@@ -160,7 +203,8 @@ class Leader {
 
     // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
-        quiet = collected = 0;  // now: a rank that is idle answers before Exchange() returns
+        quiet.clear();  // now: a rank that is idle answers before Exchange() returns
+        collected.clear();
         channel.PostToAll(Pack(RankWord::Pause));
         Exchange();  // sends it
         executor.Quiesce();
@@ -175,14 +219,29 @@ class Leader {
 
     // Waits until all others have said a word. Who cancels a render may do so because one of them
     // has died, so that it is asked then.
-    void Await(const int& heard) {
-        while (heard < channel.Count() - 1) {
-            if (executor.IsCancelled() && !std::exchange(hasAsked, true)) {
-                std::vector<int> others(size_t(channel.Count()) - 1);
-                std::iota(others.begin(), others.end(), 1);
+    void Await(const std::set<int>& heard) {
+        const auto isAwaited = [&](int other) {
+            return !channel.HasGivenUp(other) && !heard.contains(other);
+        };
+        std::vector<int> others(size_t(channel.Count()) - 1);
+        std::iota(others.begin(), others.end(), 1);
+        while (std::ranges::any_of(others, isAwaited)) {
+            if (executor.IsCancelled() && !std::exchange(hasAsked, true))
                 channel.AskForLife(others);
-            }
             Exchange();
+            WatchOthers();
+        }
+    }
+
+    // Gives up who has given no sign of life for too long.
+    void WatchOthers() {
+        const double least = options.rankPatience / 12;
+        double patience = executor.IsCancelled() ? least : options.rankPatience;
+        if (schedule.HasClock()) patience = std::clamp(options.secondsLeft() / 10, least, patience);
+        for (const int silent : channel.FindSilent(least / 5, patience)) {
+            channel.GiveUp(silent);
+            hasGivenUp = executor.pausing = true;
+            if (options.onGivenUp) options.onGivenUp(silent, patience);
         }
     }
 
@@ -193,9 +252,9 @@ class Leader {
             const int block = GetBlock(reader, parts.size());
             GetPixels(reader, schedule.TilesOfRank(block, from), film, options.layers);
         } else if (word == RankWord::Quiet) {
-            ++quiet;
+            quiet.insert(from);
         } else if (word == RankWord::Collected) {
-            ++collected;
+            collected.insert(from);
         } else if (word == RankWord::Interrupted) {
             executor.peerInterrupted = true;
         }
@@ -218,7 +277,20 @@ class Leader {
         return true;
     }
 
-    void Decide(int block) { executor.tasks.Spawn(executor.DecideBlock(block)); }
+    void Decide(int block) {
+        if (const std::optional<BlockAnswer> known = TakeAnswer(block)) {
+            TellAnswer(block, *known);
+            executor.tasks.Spawn(schedule.Decide(block, *known));
+        } else {
+            executor.tasks.Spawn(executor.DecideBlock(block));
+        }
+    }
+
+    std::optional<BlockAnswer> TakeAnswer(int block) {
+        std::lock_guard lock(partsMutex);
+        const auto node = answers.extract(block);
+        return node ? std::optional(node.mapped()) : std::nullopt;
+    }
 
     void EndPass(int block) {
         const TileEffort own = rank.TakeEffort();
@@ -256,13 +328,15 @@ class Leader {
     // theirs.
     std::vector<std::vector<std::pair<int, std::vector<float>>>> parts;
     std::vector<int> missing;
+    std::map<int, BlockAnswer> answers;  // to passes that are done again, of these blocks
     RankSpeeds speeds;
 
-    double nextDeal;               // seconds, before which nobody thinks of it
-    std::vector<int> deal;         // that is to come; empty: none
-    bool hasAsked = false;         // whether the others are there
-    int quiet = 0, collected = 0;  // ranks that have said so
-    int64_t samplesGathered = 0;   // at the last checkpoint
+    double nextDeal;                 // seconds, before which nobody thinks of it
+    std::vector<int> deal;           // that is to come; empty: none
+    bool hasAsked = false;           // whether the others are there
+    std::set<int> quiet, collected;  // ranks that have said so
+    int64_t samplesGathered = 0;     // at the last checkpoint
+    bool hasGivenUp = false;         // a rank whose tiles are still to be taken over
 };
 
 }  // namespace

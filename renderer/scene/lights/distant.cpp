@@ -1,10 +1,12 @@
 #include "renderer/scene/lights/distant.h"
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 
-DistantLight DistantLight::Make(const LightEntity& entity, float worldRadius) {
+DistantLight DistantLight::Make(const LightEntity& entity, float worldRadius, Warnings& warnings) {
     const Parameters& params = entity.parameters;
-    const Rgb L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Rgb L = LightColor(entity, "L", warnings);
     const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
     const Vec3f to = params.GetPoint3("to", Vec3f(0, 0, 1));
     const Vec3f w = TransformVector(entity.worldFromLight, from - to);

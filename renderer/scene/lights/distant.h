@@ -11,7 +11,7 @@ struct DistantLight {
     Rgb L;
     float worldRadius = 1;
 
-    static DistantLight Make(const LightEntity&, float worldRadius);
+    static DistantLight Make(const LightEntity&, float worldRadius, Warnings&);
     std::optional<LightSample> Sample() const;
     Rgb Power() const { return kPi * Sqr(worldRadius) * L; }
 };

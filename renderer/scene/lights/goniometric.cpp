@@ -1,11 +1,12 @@
 #include "renderer/scene/lights/goniometric.h"
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 
 GoniometricLight GoniometricLight::Make(const Description& description, const LightEntity& entity,
                                         Warnings& warnings) {
-    const Parameters& params = entity.parameters;
-    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Rgb I = LightColor(entity, "I", warnings);
     return {TransformPoint(entity.worldFromLight, Vec3f::Zero()), I,
             entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
             ReadLightImage(description, entity, warnings)};

@@ -2,6 +2,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
+#include "renderer/scene/lights/light_color.h"
 
 namespace lull {
 namespace {
@@ -44,7 +45,7 @@ InfiniteLight InfiniteLight::Make(const Description& description, const LightEnt
     light.worldRadius = worldRadius;
     light.worldFromLight = entity.worldFromLight.topLeftCorner<3, 3>().cast<float>();
     light.lightFromWorld = entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
-    const Rgb L = params.GetSpectrum("L", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Rgb L = LightColor(entity, "L", warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
     if (file.empty()) return light;

@@ -1,11 +1,13 @@
 #include "renderer/scene/lights/point.h"
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 
-PointLight PointLight::Make(const LightEntity& entity) {
+PointLight PointLight::Make(const LightEntity& entity, Warnings& warnings) {
     const Parameters& params = entity.parameters;
     const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
-    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Rgb I = LightColor(entity, "I", warnings);
     return {TransformPoint(entity.worldFromLight, from), I};
 }
 

@@ -11,7 +11,7 @@ struct PointLight {
     Vec3f p;
     Rgb I;
 
-    static PointLight Make(const LightEntity&);
+    static PointLight Make(const LightEntity&, Warnings&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
     Rgb Power() const { return 4 * kPi * I; }
     LightBounds Bounds() const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 
 ProjectionLight ProjectionLight::Make(const Description& description, const LightEntity& entity,
@@ -9,7 +11,7 @@ ProjectionLight ProjectionLight::Make(const Description& description, const Ligh
     const Parameters& params = entity.parameters;
     ProjectionLight light;
     light.p = TransformPoint(entity.worldFromLight, Vec3f::Zero());
-    light.I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    light.I = LightColor(entity, "I", warnings);
     light.lightFromWorld = entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
     const float fov = params.GetFloat("fov", 45);
     if (!(fov > 0 && fov < 180))

@@ -1,10 +1,12 @@
 #include "renderer/scene/lights/spot.h"
 
+#include "renderer/scene/lights/light_color.h"
+
 namespace lull {
 
-SpotLight SpotLight::Make(const LightEntity& entity) {
+SpotLight SpotLight::Make(const LightEntity& entity, Warnings& warnings) {
     const Parameters& params = entity.parameters;
-    const Rgb I = params.GetSpectrum("I", Rgb::Ones()) * params.GetSpectrum("scale", Rgb::Ones());
+    const Rgb I = LightColor(entity, "I", warnings);
     const float cone = params.GetFloat("coneangle", 30);
     const float delta = params.GetFloat("conedeltaangle", 5);
     const Vec3f from = params.GetPoint3("from", Vec3f::Zero());

@@ -15,7 +15,7 @@ struct SpotLight {
     float cosTotalWidth, cosFalloffStart;
     bool isSquared = false;
 
-    static SpotLight Make(const LightEntity&);
+    static SpotLight Make(const LightEntity&, Warnings&);
     std::optional<LightSample> Sample(const Vec3f& from) const;
     LightBounds Bounds() const;
     Rgb Power() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)) * I; }

@@ -120,12 +120,39 @@ TEST(Clock, CanBeRepeatedFromTheSamplesOfEachBlock) {
     EXPECT_TRUE(SamePixels(again.film, render.film));
 }
 
-TEST(Clock, CompletesTheFirstPassWhateverItTakes) {
+TEST(Clock, TakesOneSampleOfEachPixelWhateverItTakes) {
     const Clocked render(1);
     EXPECT_TRUE(render.result.timeUp);
-    for (int i = 0; i < 4; ++i) EXPECT_EQ(render.Spp(i), 20);
-    EXPECT_EQ(render.taken, Pixels(4));
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(render.Spp(i), 1);
+    EXPECT_EQ(render.taken, Pixels(4) / 20);
     ExpectEvenBlocks(render);
+}
+
+// And goes on to the same bits without a clock, with the rule asked only where passes end.
+TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
+    for (const int64_t time : {Pixels(4) / 4, Pixels(4) / 2, Pixels(4) * 9 / 10}) {
+        RenderState state;
+        Clocked render(time, 2, nullptr, [&](RenderOptions* o) {
+            o->onCheckpoint = [&](const RenderState& s) { state = s; };
+        });
+        EXPECT_TRUE(render.result.timeUp);
+        EXPECT_LT(render.taken, time + 2 * 8 * 8 * 20);
+        EXPECT_GT(render.film.SampleCount(), time / 4);
+        ExpectEvenBlocks(render);
+        for (int i = 0; i < 4; ++i) EXPECT_GE(render.Spp(i), 4);
+        for (const BlockResult& b : render.result.blocks)
+            for (const DecisionRecord& decision : b.decisions) EXPECT_EQ(decision.spp, 20);
+
+        RenderOptions options = render.options;
+        options.secondsLeft = nullptr;
+        options.onCheckpoint = nullptr;
+        const RenderResult whole = Render(UnevenSample, options, &render.film, &state);
+        const Clocked reference(0);
+        EXPECT_TRUE(SamePixels(render.film, reference.film));
+        for (size_t i = 0; i < 4; ++i)
+            EXPECT_EQ(whole.blocks[i].decisions.size(),
+                      reference.result.blocks[i].decisions.size());
+    }
 }
 
 // A render without a clock is cut off within a pass; what goes on by the clock completes it.
@@ -167,7 +194,7 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
 }
 
 TEST(Clock, TakesBlocksOfAnySize) {
-    const Clocked render(Pixels(3), 1, nullptr,
+    const Clocked render(Pixels(6), 1, nullptr,
                          [](RenderOptions* o) { o->schedule.blockSize = 7; });
     EXPECT_TRUE(render.result.timeUp);
     for (const BlockResult& b : render.result.blocks) EXPECT_TRUE(std::isfinite(b.block.noise));

@@ -84,6 +84,45 @@ TEST(Schedule, TakesACapBelowOnePass) {
     EXPECT_EQ(tiles[0].count, 7);
 }
 
+// With a clock there may be no time for all of the first pass.
+TEST(Schedule, TakesTheFirstPassInStepsByTheClock) {
+    for (const auto& [pass, cap, ends] :
+         {std::tuple(20, 50, std::vector<int>{1, 2, 4, 8, 20, 40, 50}),
+          {20, 7, {1, 2, 4, 7}},
+          {3, 7, {1, 3, 6, 7}},
+          {1, 3, {1, 2, 3}},
+          {2, 2, {1, 2}},
+          {20, 1, {1}}}) {
+        ScheduleOptions options{.passLength = pass, .cap = cap, .worstFirst = true};
+        Schedule schedule({{0, 0}, {8, 8}}, options);
+        std::vector<int> found;
+        for (const Tile& tile : RunAll(schedule, Never)) found.push_back(tile.first + tile.count);
+        EXPECT_EQ(found, ends) << pass << " " << cap;
+        options.worstFirst = false;
+        EXPECT_EQ(PassEndAfter(0, options), std::min(pass, cap));
+    }
+}
+
+// Where steps have ended, a render without a clock goes on to the ends of whole passes.
+TEST(Schedule, KeepsToMultiplesOfPasses) {
+    const ScheduleOptions options{.passLength = 20, .cap = 90};
+    EXPECT_EQ(PassEndAfter(4, options), 20);
+    EXPECT_EQ(PassEndAfter(50, options), 60);
+    EXPECT_EQ(PassEndAfter(80, options), 90);
+    for (const int spp : {20, 60, 90}) EXPECT_TRUE(IsPassEnd(spp, options)) << spp;
+    for (const int spp : {1, 8, 89}) EXPECT_FALSE(IsPassEnd(spp, options)) << spp;
+}
+
+TEST(Schedule, CompletesPassesThatWereBegun) {
+    const std::vector<BlockStart> starts = {{.spp = 4, .passEnd = 20}, {.spp = 40, .passEnd = 60}};
+    Schedule schedule({{0, 0}, {16, 8}},
+                      {.blockSize = 8, .passLength = 20, .cap = 90, .worstFirst = true}, starts);
+    schedule.CallTime();
+    EXPECT_EQ(RunAll(schedule, Never).size(), 2u);
+    EXPECT_EQ(schedule.Blocks()[0].spp, 20);
+    EXPECT_EQ(schedule.Blocks()[1].spp, 60);
+}
+
 TEST(Schedule, StopsBlocksIndependently) {
     Schedule schedule({{0, 0}, {32, 8}}, {.blockSize = 8, .passLength = 20, .cap = 200});
     auto stop = [](int block, int spp) { return spp >= 40 * (block + 1); };

@@ -183,6 +183,29 @@ TEST(Lights, WithoutAreaGiveWhatTheirFormulasSay) {
     EXPECT_TRUE(!s || s->L.isZero());
 }
 
+// As pbrt-v3 counts samples of negative luminance; here no pixel is negative either.
+TEST(Lights, CountNegativePartsAsBlack) {
+    for (const std::string light :
+         {"LightSource \"point\" \"rgb I\"", "LightSource \"spot\" \"rgb I\"",
+          "LightSource \"distant\" \"rgb L\"", "LightSource \"infinite\" \"rgb L\"",
+          "LightSource \"goniometric\" \"rgb I\"", "LightSource \"projection\" \"rgb I\"",
+          "AreaLightSource \"area\" \"rgb L\""}) {
+        const TemporaryDirectory directory;
+        Warnings warnings;
+        const std::string text = "Camera \"perspective\"\nWorldBegin\n" + light +
+                                 " [16 -0.5 12]\nShape \"sphere\"\nWorldEnd\n";
+        const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
+        const std::unique_ptr<const Scene> scene = Compile(d, {}, warnings);
+        const Rgb power = std::visit([](const auto& l) { return l.Power(); }, scene->lights[0]);
+        EXPECT_EQ(power.y(), 0) << light;
+        EXPECT_GT(power.x(), power.z()) << light;
+        EXPECT_EQ(
+            warnings.Counts(),
+            (std::map<std::string, int>{{"a light has a negative part, which counts as black", 1}}))
+            << light;
+    }
+}
+
 // Writes a 4x2 image whose texel (x, y) is x + 10 y in red, and 1 in green and blue.
 std::string WriteBeam(const TemporaryDirectory& directory) {
     ExrImage image;

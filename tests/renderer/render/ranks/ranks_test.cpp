@@ -6,21 +6,30 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/messages.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
 namespace {
 
-struct Mailboxes {
+struct Habits {
     // How long rank 0 sleeps when it has sent a mere word, so that the others answer meanwhile.
     std::chrono::milliseconds nap{0};
+    // Which rank neither says nor hears anything once it has sent so many messages; -1: none.
+    int sleeper = -1, messagesBefore = 0;
+};
+
+struct Mailboxes {
+    Habits how;
     std::mutex mutex;
     std::vector<std::deque<PeerMessage>> boxes;
     int64_t bytes = 0;
+    bool isOver = false;  // for the sleeper too
 };
 
 class QueuePeers final : public Peers {
@@ -32,24 +41,35 @@ class QueuePeers final : public Peers {
         const bool isWord = message.size() == 1;
         {
             std::lock_guard lock(mail->mutex);
+            if (Sleeps()) return;
+            ++messages;
             mail->bytes += int64_t(message.size());
             mail->boxes[size_t(to)].push_back({rank, std::move(message)});
         }
-        if (rank == 0 && isWord) std::this_thread::sleep_for(mail->nap);
+        if (rank == 0 && isWord) std::this_thread::sleep_for(mail->how.nap);
     }
     std::optional<PeerMessage> Receive() override {
         std::lock_guard lock(mail->mutex);
         std::deque<PeerMessage>& box = mail->boxes[size_t(rank)];
-        if (box.empty()) return {};
+        if (Sleeps() && mail->isOver && !std::exchange(hasEnded, true))
+            return PeerMessage{0, Pack(RankWord::End)};
+        if (box.empty() || Sleeps()) return {};
         PeerMessage message = std::move(box.front());
         box.pop_front();
         return message;
     }
     void Flush() override {}
+    void GiveUp(int) override {}
 
   private:
+    bool Sleeps() const {
+        return rank == mail->how.sleeper && messages >= mail->how.messagesBefore;
+    }
+
     Mailboxes* mail;
     int rank;
+    int messages = 0;  // that were sent
+    bool hasEnded = false;
 };
 
 // What a render came to at rank 0.
@@ -89,11 +109,11 @@ AovSource WithHits(const SampleSource& source) {
 
 // Renders with `ranks` ranks; 0: without peers.
 Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
-                    const SourceOfRank& sourceOf = SameForAll, std::chrono::milliseconds nap = {},
+                    const SourceOfRank& sourceOf = SameForAll, const Habits& how = {},
                     bool withLayers = false) {
     Shared shared;
     Mailboxes mail;
-    mail.nap = nap;
+    mail.how = how;
     mail.boxes.resize(size_t(std::max(1, ranks)));
     const auto runRank = [&](int rank) {
         QueuePeers peers(&mail, rank);
@@ -122,6 +142,10 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
     std::vector<std::thread> others;
     for (int rank = 1; rank < ranks; ++rank) others.emplace_back(runRank, rank);
     runRank(0);
+    {
+        std::lock_guard lock(mail.mutex);
+        mail.isOver = true;
+    }
     for (std::thread& thread : others) thread.join();
     shared.bytes = mail.bytes;
     return shared;
@@ -222,7 +246,7 @@ TEST(Ranks, PauseForCheckpoints) {
 TEST(Ranks, MayAnswerAtOnce) {
     const auto change = [](RenderOptions* o, int) { o->makeCriterion = nullptr; };
     const auto nap = std::chrono::milliseconds(20);
-    EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, nap).film,
+    EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, {.nap = nap}).film,
                            *RenderShared(0, change).film));
 }
 
@@ -246,13 +270,14 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
         EXPECT_TRUE(shared.result.timeUp);
         const Shared again = RenderShared(2, [&](RenderOptions* o, int) {
             o->schedule.smallestSide = 0;
+            o->schedule.passLength = 1;  // the time may have ended within the first pass
             o->makeCriterion = [&](const BlockInfo& block) {
                 return std::make_unique<ScriptedCriterion>(
                     shared.result.blocks[size_t(block.index)].block.spp);
             };
         });
         EXPECT_TRUE(SamePixels(*again.film, *shared.film));
-        for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 20);
+        for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, time > 1 ? 20 : 1);
     }
 }
 
@@ -373,6 +398,65 @@ TEST(Ranks, MoveLayersWithTheirTiles) {
     ExpectSameLayers(RenderLayers(3, change, nullptr, source), RenderLayers(0), 3);
 }
 
+struct GivenUp {
+    std::vector<int> ranks;
+
+    // Returns what has ranks given up soon.
+    Change Soon(const Change& change = {}) {
+        return [this, change](RenderOptions* o, int rank) {
+            o->rankPatience = 2;
+            o->onGivenUp = [this](int given, double) { ranks.push_back(given); };
+            if (change) change(o, rank);
+        };
+    }
+};
+
+// One falls asleep at the beginning, amid the passes, and when many blocks have stopped; with
+// checkpoints rank 0 has some of its samples.
+TEST(Ranks, GoOnWithoutOneThatSleeps) {
+    const Shared reference = RenderLayers(0);
+    for (const auto& [messages, interval] :
+         {std::pair(0, 60.0), {3, 0.002}, {12, 60.0}, {25, 0.002}}) {
+        GivenUp givenUp;
+        const Shared shared =
+            RenderShared(3, givenUp.Soon([seconds = interval](RenderOptions* o, int) {
+                o->checkpointInterval = seconds;
+            }),
+                         nullptr, SameForAll, {.sleeper = 2, .messagesBefore = messages}, true);
+        ExpectSameLayers(shared, reference, messages);
+        EXPECT_EQ(givenUp.ranks, std::vector<int>{2}) << messages;
+        EXPECT_EQ(shared.result.shares.at(2), 0);
+        EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
+    }
+}
+
+// What is left of the time does not leave holes, nor parts of passes.
+TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
+    for (const int messages : {0, 8, 20}) {
+        std::atomic<int64_t> taken = 0;
+        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            ++taken;
+            return SyntheticSample(sampler, pixel, index);
+        };
+        GivenUp givenUp;
+        const Shared shared = RenderShared(3, givenUp.Soon([&](RenderOptions* o, int rank) {
+            o->makeCriterion = nullptr;
+            o->secondsLeft = [&taken, rank] {
+                return rank > 0 ? 1 : double(kImage.Area() * 35 - taken);
+            };
+        }),
+                                           nullptr, [&](int) { return source; },
+                                           {.sleeper = 1, .messagesBefore = messages});
+        EXPECT_EQ(givenUp.ranks, std::vector<int>{1}) << messages;
+        EXPECT_FALSE(shared.result.cancelled);
+        for (const BlockResult& b : shared.result.blocks)
+            for (int y = b.block.pixels.min.y(); y < b.block.pixels.max.y(); ++y)
+                for (int x = b.block.pixels.min.x(); x < b.block.pixels.max.x(); ++x)
+                    ASSERT_EQ(int(shared.film->At({x, y}).count), b.block.spp);
+        for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 20);
+    }
+}
+
 // Passes that the time does not suffice for are undone in the layers of all ranks.
 TEST(Ranks, UndoLayers) {
     const int64_t time = kImage.Area() * 35;
@@ -397,6 +481,7 @@ TEST(Ranks, UndoLayers) {
         undone = timed.film->SampleCount() < taken;
         const Shared again = RenderLayers(0, [&](RenderOptions* o, int) {
             o->schedule.smallestSide = 0;
+            o->schedule.passLength = 1;  // the time may have ended within the first pass
             o->makeCriterion = [&](const BlockInfo& block) {
                 return std::make_unique<ScriptedCriterion>(
                     timed.result.blocks[size_t(block.index)].block.spp);
