@@ -326,6 +326,7 @@ ExitCode RunRender(Options options, Job* job) {
     NoisyPicture picture;
     if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
     session.TheFilm().DropHalf();  // what follows needs the memory
+    session.DropFeatures();
     if (options.denoiseLayers) halves = MakeHalfChannels(picture);
     if (options.denoise) {
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),

@@ -85,19 +85,23 @@ Halves FilterColours(const Halves& noisy, Planes features, const Planes& varianc
         Regress(noisy.a, features, {noisy.b, variance}, kPatches, kBandwidths, rowsPerFit);
     std::vector<Planes> b =
         Regress(noisy.b, features, {noisy.a, variance}, kPatches, kBandwidths, rowsPerFit);
-    const bool isLast = scales == 1 || std::min(variance.width, variance.height) < 2 * kLeastSide;
-    features = isLast ? Planes() : Halved(features);
+    const bool isCoarsest =
+        scales == 1 || std::min(variance.width, variance.height) < 2 * kLeastSide;
+    features = isCoarsest ? Planes() : Halved(features);
     std::vector<Halves> candidates;
     for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
     Halves fine = ChooseCandidates(std::move(candidates), noisy, variance);
-    if (isLast) return fine;
+    if (isCoarsest) return fine;
 
     Planes ofMeans = Halved(variance);
     for (float& v : ofMeans.values) v /= 4;
     const Halves coarse = FilterColours({Halved(noisy.a), Halved(noisy.b)}, std::move(features),
                                         ofMeans, scales - 1, rowsPerFit);
     Halves both{WithCoarsePart(fine.a, coarse.a), WithCoarsePart(fine.b, coarse.b)};
-    return ChooseCandidates({std::move(fine), std::move(both)}, noisy, variance);
+    candidates.clear();
+    candidates.push_back(std::move(fine));
+    candidates.push_back(std::move(both));
+    return ChooseCandidates(std::move(candidates), noisy, variance);
 }
 
 }  // namespace

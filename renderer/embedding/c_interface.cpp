@@ -112,8 +112,9 @@ void Write(const DenoisedPicture& denoised, lull_denoised_picture* clean) {
 extern "C" const char* lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean) {
     try {
         if (!noisy || !clean) return lull::Fail("a null pointer instead of a picture");
+        lull::NoisyPicture picture = lull::Read(*noisy);
         lull::CheckOutput(*noisy, *clean);
-        lull::Write(lull::Denoise(lull::Read(*noisy)), clean);
+        lull::Write(lull::Denoise(std::move(picture)), clean);
         return nullptr;
     } catch (const std::bad_alloc&) {
         return lull::Fail("out of memory");

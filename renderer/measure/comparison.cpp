@@ -92,11 +92,15 @@ void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& bloc
     const PixelRect& region = render.film.Region();
     std::vector<int> spp;
     for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
-    Film film(region);
-    FeatureFilm features(region);
-    RenderBlocks(render, spp, &film, &features);
+    NoisyPicture picture;
+    {
+        Film film(region);
+        FeatureFilm features(region);
+        RenderBlocks(render, spp, &film, &features);
+        picture = PictureOf(film, features, region);
+    }
     const double start = ProcessSeconds();
-    image->image = DenoiseImage(PictureOf(film, features, region), region, blocks).image;
+    image->image = DenoiseImage(std::move(picture), region, blocks).image;
     const double seconds = ProcessSeconds() - start;
     for (size_t i = 0; i < blocks.size(); ++i)
         image->costs[i].ruleSeconds +=
