@@ -5,12 +5,15 @@
 # lull_room_headers(TARGET FOLDER [PRIVATE]): lets those who link the target include FOLDER/..., which
 # is given relative to the project; or the target alone.
 function(lull_room_headers target folder)
+  set(visibility PUBLIC ${ARGN})
+  list(GET visibility -1 visibility)
   set(view ${PROJECT_BINARY_DIR}/rooms/${target})
+  if(visibility STREQUAL PRIVATE)
+    string(APPEND view _private)
+  endif()
   get_filename_component(parent ${view}/${folder} DIRECTORY)
   file(MAKE_DIRECTORY ${parent})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
-  set(visibility PUBLIC ${ARGN})
-  list(GET visibility -1 visibility)
   target_include_directories(${target} ${visibility} ${view})
 endfunction()
 

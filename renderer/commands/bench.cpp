@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "renderer/base/say.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
@@ -169,8 +170,7 @@ class PointCounter {
   public:
     PointCounter(size_t count, bool quiet) : count(count), quiet(quiet) {}
     void Add() {
-        using namespace std::chrono;
-        const double seconds = duration<double>(steady_clock::now() - start).count();
+        const double seconds = SecondsSince(start);
         ++done;
         if (quiet || (seconds < next && done < count)) return;
         next = seconds + 10;

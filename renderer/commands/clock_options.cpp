@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "renderer/base/seconds_since.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -48,7 +49,7 @@ std::function<double()> StartClock(const ClockOptions& options) {
         // Of the steady clock, as nobody sets that; of `until`, the one that people look at.
         using Clock = std::chrono::steady_clock;
         return [end = ParseDuration(options.time), start = Clock::now()] {
-            return end - std::chrono::duration<double>(Clock::now() - start).count();
+            return end - SecondsSince(start);
         };
     }
     if (options.until.empty()) return {};

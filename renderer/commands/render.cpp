@@ -242,10 +242,6 @@ ExitCode RunRender(Options options, Job* job) {
     const PixelRect& region = input.region;
     std::shared_ptr<BlockDenoiser> denoiser;
     const CriterionFactory factory = ReadRule(options, region, &denoiser, &settings);
-    if (job->Count() > 1 && options.rule.starts_with(denoisedRuleName))
-        throw Error(
-            "--stop denoised: blocks are denoised by one process; with several ranks give "
-            "another rule, or --spp");
     CheckBlocks(region, settings.schedule, input.warnings);
     const FilmOptions film = CheckedFilm(options, factory, region);
     const RenderFiles files =

@@ -6,7 +6,7 @@ namespace lull {
 
 namespace {
 
-constexpr int kErrorRadius = 4, kChoiceRadius = 4;  // pixels over which both are smoothed
+constexpr int kErrorRadius = 5, kChoiceRadius = 6;  // pixels over which both are smoothed
 constexpr float kDarkest = 1e-3f;     // squared luminance below which errors are no longer relative
 constexpr float kLeastNoise = 1e-4f;  // relative variance, squared, below which pixels count alike
 constexpr float kDoubt = 2;           // standard deviations
@@ -37,16 +37,18 @@ ErrorScale MakeErrorScale(const Halves& smooth, const Planes& variance) {
     return scale;
 }
 
-// Estimates the squared error of the mean of both halves.
-Planes ErrorOf(const Halves& candidate, const Halves& noisy, const ErrorScale& scale) {
+// Estimates the squared error of the mean of both halves by that of `made`, of which `other` is the
+// other half, against `judge`, whose noise squared is estimated by `noise`.
+Planes ErrorOf(const Planes& made, const Planes& other, const Planes& judge, const Planes& noise,
+               const ErrorScale& scale) {
     const auto square = [](float x) { return x * x; };
-    Planes error(noisy.a.width, noisy.a.height, 1);
+    Planes error(made.width, made.height, 1);
     for (size_t i = 0; i < error.Area(); ++i) {
         float sum = 0;
         for (int c = 0; c < kColours; ++c) {
-            const float a = noisy.a.Plane(c)[i], b = noisy.b.Plane(c)[i];
-            const float x = candidate.a.Plane(c)[i], y = candidate.b.Plane(c)[i];
-            sum += (square(x - b) + square(y - a) - square(a - b)) / 2 - square(x - y) / 4;
+            const float x = made.Plane(c)[i];
+            sum += square(x - judge.Plane(c)[i]) - noise.Plane(c)[i] -
+                   square(x - other.Plane(c)[i]) / 4;
         }
         error.values[i] = sum * scale.ofSquares.values[i] * scale.weight.values[i];
     }
@@ -72,34 +74,41 @@ Planes ErrorOfNoise(const Planes& variance, const ErrorScale& scale) {
     return error;
 }
 
+// Returns, for each of several images, 1 at the pixels where it has the least value, smoothed.
+std::vector<Planes> SharesOfLeast(const std::vector<Planes>& images) {
+    std::vector<Planes> shares(images.size(), Planes(images[0].width, images[0].height, 1));
+    for (size_t i = 0; i < images[0].Area(); ++i) {
+        size_t least = 0;
+        for (size_t k = 1; k < images.size(); ++k)
+            if (images[k].values[i] < images[least].values[i]) least = k;
+        shares[least].values[i] = 1;
+    }
+    for (Planes& share : shares) share = BoxMean(std::move(share), kChoiceRadius);
+    return shares;
+}
+
 }  // namespace
 
 Halves ChooseCandidates(std::vector<Halves> candidates, const Halves& noisy,
                         const Planes& variance) {
-    const int width = variance.width, height = variance.height;
     const ErrorScale scale = MakeErrorScale(candidates.back(), variance);
-    std::vector<Planes> errors;
-    for (const Halves& candidate : candidates) errors.push_back(ErrorOf(candidate, noisy, scale));
-    errors.push_back(ErrorOfNoise(variance, scale));
-    candidates.push_back(noisy);
-
-    std::vector<Planes> shares(candidates.size(), Planes(width, height, 1));
-    for (size_t i = 0; i < variance.Area(); ++i) {
-        size_t best = 0;
-        for (size_t k = 1; k < candidates.size(); ++k)
-            if (errors[k].values[i] < errors[best].values[i]) best = k;
-        shares[best].values[i] = 1;
-    }
-    Halves result{Planes(width, height, kColours), Planes(width, height, kColours)};
-    for (size_t k = 0; k < candidates.size(); ++k) {
-        const Planes share = BoxMean(std::move(shares[k]), kChoiceRadius);
-        for (int c = 0; c < kColours; ++c)
-            for (size_t i = 0; i < share.Area(); ++i) {
-                result.a.Plane(c)[i] += candidates[k].a.Plane(c)[i] * share.values[i];
-                result.b.Plane(c)[i] += candidates[k].b.Plane(c)[i] * share.values[i];
-            }
-    }
-    return result;
+    const Planes noise = VarianceOf(noisy.a, noisy.b), ofSamples = ErrorOfNoise(variance, scale);
+    const auto mix = [&](Planes Halves::*half, Planes Halves::*other) {
+        std::vector<Planes> errors;
+        for (const Halves& c : candidates)
+            errors.push_back(ErrorOf(c.*other, c.*half, noisy.*half, noise, scale));
+        errors.push_back(ofSamples);
+        const std::vector<Planes> shares = SharesOfLeast(errors);
+        Planes result(variance.width, variance.height, kColours);
+        for (size_t k = 0; k < shares.size(); ++k) {
+            const Planes& from = k < candidates.size() ? candidates[k].*half : noisy.*half;
+            for (int c = 0; c < kColours; ++c)
+                for (size_t i = 0; i < result.Area(); ++i)
+                    result.Plane(c)[i] += from.Plane(c)[i] * shares[k].values[i];
+        }
+        return result;
+    };
+    return {mix(&Halves::a, &Halves::b), mix(&Halves::b, &Halves::a)};
 }
 
 }  // namespace lull

@@ -4,13 +4,16 @@
 
 #include "renderer/denoise/feature_filter.h"
 #include "renderer/denoise/fireflies.h"
+#include "renderer/denoise/scales.h"
 
 namespace lull {
 
 namespace {
 
-constexpr PatchOptions kPatches{.radius = 9, .patchRadius = 3};
-constexpr float kBandwidths[] = {0.5f, 1.f};
+constexpr PatchOptions kPatches{.radius = 7, .patchRadius = 3};
+constexpr float kBandwidths[] = {0.5f, 1.4f};
+constexpr int kScales = 3;          // of which each has half the size of that before
+constexpr int kLeastSide = 20;      // pixels of a picture that is looked at in half of its size
 constexpr float kFireflyLimit = 8;  // standard deviations
 constexpr float kLargest = 1e18f;   // its square is finite
 constexpr float kLeastLuminance = 1e-3f;
@@ -76,6 +79,27 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
     return BoxMean(std::move(variance), 1);
 }
 
+// Returns what is made of both halves: by fits in windows of some pixels, and by the same at half
+// of the size for what is wider than these.
+Halves FilterColours(const Halves& noisy, const Planes& features, const Planes& variance,
+                     int scales, int rowsPerFit) {
+    std::vector<Planes> a =
+        Regress(noisy.a, features, {noisy.b, variance}, kPatches, kBandwidths, rowsPerFit);
+    std::vector<Planes> b =
+        Regress(noisy.b, features, {noisy.a, variance}, kPatches, kBandwidths, rowsPerFit);
+    std::vector<Halves> candidates;
+    for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
+    Halves fine = ChooseCandidates(std::move(candidates), noisy, variance);
+    if (scales == 1 || std::min(variance.width, variance.height) < 2 * kLeastSide) return fine;
+
+    Planes ofMeans = Halved(variance);
+    for (float& v : ofMeans.values) v /= 4;
+    const Halves coarse = FilterColours({Halved(noisy.a), Halved(noisy.b)}, Halved(features),
+                                        ofMeans, scales - 1, rowsPerFit);
+    Halves both{WithCoarsePart(fine.a, coarse.a), WithCoarsePart(fine.b, coarse.b)};
+    return ChooseCandidates({std::move(fine), std::move(both)}, noisy, variance);
+}
+
 }  // namespace
 
 DenoisedPicture Denoise(const NoisyPicture& in, int rowsPerFit) {
@@ -89,14 +113,7 @@ DenoisedPicture Denoise(const NoisyPicture& in, int rowsPerFit) {
 
     const Halves scaled = ScaleFeatures(in.features);
     const Planes features = FilterFeatures(scaled.a, scaled.b);
-    const Halves& noisy = result.noisy;
-    std::vector<Planes> a =
-        Regress(noisy.a, features, {noisy.b, result.variance}, kPatches, kBandwidths, rowsPerFit);
-    std::vector<Planes> b =
-        Regress(noisy.b, features, {noisy.a, result.variance}, kPatches, kBandwidths, rowsPerFit);
-    std::vector<Halves> candidates;
-    for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
-    result.halves = ChooseCandidates(std::move(candidates), noisy, result.variance);
+    result.halves = FilterColours(result.noisy, features, result.variance, kScales, rowsPerFit);
 
     result.picture = result.halves.a;
     for (size_t i = 0; i < result.picture.values.size(); ++i)

@@ -11,7 +11,7 @@ constexpr int kUnknowns = 1 + kFeatures + 2;
 constexpr int kSlopeX = kUnknowns - 2, kSlopeY = kUnknowns - 1;
 constexpr int kMoments = kUnknowns * (kUnknowns + 1) / 2;
 // Features whose variance in a window is below this say nothing of its colours.
-constexpr float kRidge = 1e-3f;
+constexpr float kRidge = 1e-4f;
 // Neighbours of less weight are left out where that is so of all sixteen.
 constexpr float kLeastWeight = 1e-3f;
 constexpr float kOwnWeight = 0.1f;  // of a pixel's own colour, where there is no fit around it

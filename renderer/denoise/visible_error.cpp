@@ -12,9 +12,10 @@ namespace lull {
 
 namespace {
 
-constexpr int kSide = 10;         // sub-blocks a side
-constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
-constexpr int kSmoothRadius = 5;  // pixels
+constexpr int kSide = 10;             // sub-blocks a side
+constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
+constexpr int kSmoothRadius = 5;      // pixels
+constexpr double kLeastDoubt = 0.01;  // of the mean doubt
 
 // Returns L, in [0, 100], of what a display shows, and the slope by which luminance changes it.
 LightnessSlope<float> DisplayedLightness(float y) {
@@ -58,27 +59,32 @@ Squares SquaresOf(const Sums& sums) {
     return {seen * sums.squared, seen * seen * sums.variance, seen * sums.least};
 }
 
-Squares MeanOf(std::span<const Squares> all) {
-    Squares mean;
-    const double n = double(all.size());
-    for (const Squares& s : all) {
-        mean.estimate += s.estimate / n;
-        mean.variance += s.variance / (n * n);
-        mean.least += s.least / n;
-    }
-    return mean;
+// Returns the root of the mean of all, which is not below the mean of their roots.
+double RootOfMean(std::span<const Squares> all) {
+    double sum = 0;
+    for (const Squares& s : all) sum += s.estimate;
+    return std::sqrt(std::max(0.0, sum / double(all.size())));
 }
 
-// Returns a bound of the mean of root mean squares: the mean over groups of sub-blocks of the root
-// of each group's mean square, which is not below it. Within a group doubts average out, between
-// groups they add up; groups of like doubts keep what one sub-block does not know from all others.
-double UpperBound(std::vector<Squares>* all, size_t groups) {
-    std::ranges::stable_sort(*all, {}, &Squares::variance);
-    const size_t size = all->size() / groups;
-    double sum = 0;
-    for (size_t i = 0; i < groups; ++i)
-        sum += MeanOf(std::span(*all).subspan(i * size, size)).Root(kUpper);
-    return sum / double(groups);
+// Returns a bound of the mean of roots. By Cauchy's inequality it is at most the root of
+// mean(1 / w) mean(w s), for any weights w > 0 of the mean squares s, and about that where w goes
+// as 1 / sqrt(s). Of s itself little is known, of the doubts much, which go with s; and what one
+// sub-block of much noise does not know weighs less so.
+double UpperBound(std::span<const Squares> all) {
+    const double n = double(all.size());
+    double doubts = 0;
+    for (const Squares& s : all) doubts += std::sqrt(s.variance) / n;
+    Squares mean;
+    double inverse = 0;
+    for (const Squares& s : all) {
+        const double doubt = std::max({std::sqrt(s.variance), kLeastDoubt * doubts, 1e-12});
+        const double w = 1 / std::sqrt(doubt);
+        inverse += 1 / (w * n);
+        mean.estimate += w * s.estimate / n;
+        mean.variance += w * w * s.variance / (n * n);
+        mean.least += w * s.least / n;
+    }
+    return std::sqrt(inverse) * mean.Root(kUpper);
 }
 
 }  // namespace
@@ -121,9 +127,10 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
             result.estimate += all.back().Root(0) / (kSide * kSide);
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    result.upper = std::min(UpperBound(&all, 1), UpperBound(&all, kSide));
-    // Chance is never below 0 in the mean of roots, and averages out in the other.
-    result.estimate = std::min({result.estimate, MeanOf(all).Root(0), result.upper});
+    result.upper = UpperBound(all);
+    // Chance is never below 0 in the mean of roots, and averages out in the root of the mean.
+    result.estimate = std::clamp(RootOfMean(all), result.least, result.estimate);
+    result.upper = std::max(result.upper, result.estimate);
     return result;
 }
 

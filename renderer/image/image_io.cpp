@@ -9,6 +9,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/image/files/exr_file.h"
 #include "renderer/image/files/other_formats.h"
 #include "renderer/image/files/png_file.h"
@@ -42,19 +43,13 @@ void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape
                 "use a smaller version of it");
 }
 
-std::vector<std::byte> ReadBytes(const std::string& path, std::ifstream& in, size_t size) {
-    std::vector<std::byte> bytes(size);
-    in.seekg(0);
-    in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
-    if (!in) FailToRead(path, "it cannot be read, or is cut short");
-    return bytes;
-}
-
-// Holds a file that has been found: its bytes where the program reads its format itself.
+// Holds a file that has been found: its contents where the program reads its format itself.
 struct FoundFile {
     std::string path;
     size_t size = 0;
-    std::vector<std::byte> bytes;
+    FileContents contents;
+
+    std::span<const std::byte> Bytes() const { return std::as_bytes(std::span(contents.View())); }
 
     explicit FoundFile(const std::string& path) : path(path) {
         std::error_code error;
@@ -65,14 +60,16 @@ struct FoundFile {
         size = size_t(std::filesystem::file_size(path, error));
         std::ifstream in(path, std::ios::binary);
         if (error || !in) FailToRead(path, "it cannot be opened");
-        bytes = ReadBytes(path, in, std::min(size, kSignature));
-        if (IsPng(bytes) || IsExr(bytes)) bytes = ReadBytes(path, in, size);
+        char signature[kSignature];
+        in.read(signature, kSignature);
+        const auto bytes = std::as_bytes(std::span(signature, size_t(in.gcount())));
+        if (IsPng(bytes) || IsExr(bytes)) contents = ReadFile(path);
     }
 };
 
 std::unique_ptr<ImageFile> Open(const FoundFile& file) {
-    if (IsPng(file.bytes)) return OpenPng(file.bytes);
-    if (IsExr(file.bytes)) return OpenExr(file.bytes);
+    if (IsPng(file.Bytes())) return OpenPng(file.Bytes());
+    if (IsExr(file.Bytes())) return OpenExr(file.Bytes());
     return OpenOtherFormat(file.path);
 }
 
@@ -127,7 +124,7 @@ ExrImage ExrOf(const Image& picture) {
 }
 
 ExrImage ReadExr(const FoundFile& found) try {
-    ExrFile file(found.bytes);
+    ExrFile file(found.Bytes());
     ExrImage image = file.Header();
     const std::vector<std::string>& names = file.Channels();
     const size_t count = names.size();
@@ -169,7 +166,7 @@ const ExrChannel* ExrImage::Find(const std::string& name) const {
 
 ExrImage ReadExr(const std::string& path) {
     const FoundFile file(path);
-    if (IsExr(file.bytes)) return ReadExr(file);
+    if (IsExr(file.Bytes())) return ReadExr(file);
     return ExrOf(Read(path, file.size, [&] { return Open(file); }));
 }
 

@@ -41,9 +41,9 @@ BlockObserver::BlockObserver(std::vector<std::unique_ptr<Criterion>> rules,
 }
 
 ViewNeed BlockObserver::Need(int spp) const {
-    if (options.curves || (options.snapshots && options.noise)) return ViewNeed::MeanAndHalf;
     // A rule that only counts needs no view, but where it stops, the snapshot does.
     ViewNeed need = options.snapshots ? ViewNeed::Mean : ViewNeed::Nothing;
+    if (options.curves || (options.snapshots && options.noise)) need = ViewNeed::MeanAndHalf;
     for (const std::unique_ptr<Criterion>& rule : rules)
         if (rule) need = std::max(need, rule->Need(spp));
     return need;

@@ -90,9 +90,9 @@ BlockJudge::BlockJudge(const RenderOptions& options, const Film& film,
 
 ViewNeed BlockJudge::NeedAt(int block, int spp) const {
     if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
-    if (hasClock) return ViewNeed::MeanAndHalf;
+    const ViewNeed own = hasClock ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
     const auto& criterion = criteria[size_t(block)];
-    return criterion ? criterion->Need(spp) : ViewNeed::Nothing;
+    return criterion ? std::max(own, criterion->Need(spp)) : own;
 }
 
 Judgement BlockJudge::Judge(int index, const Block& block, int spp, double seconds,
@@ -121,7 +121,7 @@ BlockView BlockJudge::ViewOf(int index, const Block& block, ViewNeed need,
     if (need == ViewNeed::Nothing) return blockView;
     const double start = ThreadSeconds();
     FilmView& view = views.local();
-    film.Extract(block.pixels, need == ViewNeed::MeanAndHalf, &view);
+    film.Extract(block.pixels, need >= ViewNeed::MeanAndHalf, &view);
     if (complete) complete(index, &view);
     blockView.mean = view.mean;
     blockView.halfMean = view.halfMean;

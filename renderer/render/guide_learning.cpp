@@ -6,6 +6,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/render/guide_trial.h"
 #include "renderer/render/progress.h"
 
@@ -88,7 +89,7 @@ RefineOptions MakeRefineOptions(const LearningOptions& options, int round) {
 class Stopwatch {
   public:
     explicit Stopwatch(double* seconds) : seconds(seconds) {}
-    ~Stopwatch() { *seconds += std::chrono::duration<double>(Clock::now() - start).count(); }
+    ~Stopwatch() { *seconds += SecondsSince(start); }
 
   private:
     using Clock = std::chrono::steady_clock;

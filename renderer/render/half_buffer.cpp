@@ -8,7 +8,7 @@ bool LooksAtHalf(const CriterionFactory& factory, const ScheduleOptions& schedul
     const std::unique_ptr<Criterion> criterion = factory.make({});
     for (int spp = 0; spp < schedule.cap;) {
         spp = int(std::min<int64_t>(int64_t(spp) + schedule.passLength, schedule.cap));
-        if (criterion->Need(spp) == ViewNeed::MeanAndHalf) return true;
+        if (criterion->Need(spp) >= ViewNeed::MeanAndHalf) return true;
     }
     return false;
 }

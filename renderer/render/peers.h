@@ -8,8 +8,9 @@
 //     rank 0                                    rank r
 //       Start: where blocks are, who has     ->   renders its tiles of a block's pass
 //       which tiles, their sums; Begin
-//       asks the criterion when the parts    <-   Part: the means of its pixels
-//       of all ranks are there
+//       asks the criterion when the parts    <-   Part: the means of its pixels; or before
+//       of all ranks are there                    it Pixels, their sums, where the rule looks
+//                                                 at more than means
 //       Answer: stop or go on                ->   begins the block's next pass
 //
 // No rank waits for another block. To write a checkpoint, to deal out the tiles anew, or to end,

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "renderer/base/seconds_since.h"
+
 namespace lull {
 
 namespace {
@@ -27,9 +29,7 @@ ProgressLedger::ProgressLedger(const RenderOptions& options, const RenderState* 
       trends(MakeTrends(options, results)),
       samples(samples) {}
 
-double ProgressLedger::Seconds() const {
-    return secondsBefore + std::chrono::duration<double>(Clock::now() - start).count();
-}
+double ProgressLedger::Seconds() const { return secondsBefore + SecondsSince(start); }
 
 void ProgressLedger::AddTile(int block, double processorSeconds, const TileEffort& taken) {
     std::lock_guard lock(mutex);

@@ -10,7 +10,7 @@ void CheckView(const BlockView& view, ViewNeed need) {
         throw std::invalid_argument("a block needs pixels and samples");
     const size_t values = 3 * size_t(view.width) * size_t(view.height);
     if ((need != ViewNeed::Nothing && view.mean.size() != values) ||
-        (need == ViewNeed::MeanAndHalf && view.halfMean.size() != values))
+        (need >= ViewNeed::MeanAndHalf && view.halfMean.size() != values))
         throw std::invalid_argument("the means of a block do not have its size");
 }
 

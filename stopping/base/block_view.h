@@ -18,8 +18,10 @@ struct BlockView {
     double seconds = 0, viewSeconds = 0;
 };
 
-// Says which spans of a BlockView are read; the others may be left empty.
-enum class ViewNeed { Nothing, Mean, MeanAndHalf };
+// Says which spans of a BlockView are read; the others may be left empty. Measured: both, and what
+// the program itself measures (RuleContext::measures in rules/criterion.h), which has to have all
+// that it keeps of the block's samples. Each needs what those before it do.
+enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };
 
 // Checks that a view has a size, samples and the spans in `need`. Throws std::invalid_argument.
 void CheckView(const BlockView& view, ViewNeed need);

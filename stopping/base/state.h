@@ -1,4 +1,5 @@
-// Packs the state of a criterion into bytes and back, in the layout of this machine.
+// Packs the state of a criterion, or whatever else, into bytes and back, in the layout of this
+// machine.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -36,10 +38,11 @@ class StateWriter {
 };
 
 // Reads what a StateWriter has written, in the same order. All calls throw std::runtime_error if
-// the bytes end too early.
+// the bytes end too early; `what` says there what they are.
 class StateReader {
   public:
-    explicit StateReader(std::span<const std::byte> bytes) : rest(bytes) {}
+    explicit StateReader(std::span<const std::byte> bytes, const char* what = "the saved state")
+        : rest(bytes), what(what) {}
 
     template <typename T>
     T Get() {
@@ -51,7 +54,7 @@ class StateReader {
     void GetAll(std::span<T> values) {
         static_assert(std::is_trivially_copyable_v<T>);
         if (rest.size() < values.size_bytes())
-            throw std::runtime_error("the saved state of a stopping rule is cut short");
+            throw std::runtime_error(std::string(what) + " is cut short");
         if (!values.empty()) std::memcpy(values.data(), rest.data(), values.size_bytes());
         rest = rest.subspan(values.size_bytes());
     }
@@ -69,17 +72,17 @@ class StateReader {
     size_t Left() const { return rest.size(); }
     // Checks that nothing is left.
     void Finish() const {
-        if (!rest.empty())
-            throw std::runtime_error("the saved state of a stopping rule is longer than expected");
+        if (!rest.empty()) throw std::runtime_error(std::string(what) + " is longer than expected");
     }
-    // Checks that the next value is `tag`, which tells the states of different rules apart.
+    // Checks that the next value is `tag`, which tells different kinds of states apart.
     void Expect(uint32_t tag) {
         if (Get<uint32_t>() != tag)
-            throw std::runtime_error("the saved state belongs to another stopping rule");
+            throw std::runtime_error(std::string(what) + " is of another kind");
     }
 
   private:
     std::span<const std::byte> rest;
+    const char* what;
 };
 
 }  // namespace lull

@@ -98,7 +98,7 @@ Stopper::Stopper(const lull_settings& settings) {
     identity = IdentityOf(settings, factory, grid);
     const auto first = MakeJudge(0).criterion;
     firstLook = NextLook(*first, 1);
-    needsHalf = firstLook > 0 && first->Need(firstLook) == ViewNeed::MeanAndHalf;
+    needsHalf = firstLook > 0 && first->Need(firstLook) >= ViewNeed::MeanAndHalf;
     for (int i = 0; i < count; ++i) judges.push_back(MakeJudge(i));
     locks = std::vector<std::mutex>(judges.size());
 }

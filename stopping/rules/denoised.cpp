@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t kTag = 0x31534e44;  // "DNS1"
 constexpr int kVotes = 2;
-constexpr int kFirstSpp = 40;
+constexpr int kFirstSpp = 20;
 constexpr double kGrowth = 1.25;
 
 }  // namespace
@@ -17,7 +17,7 @@ CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& co
     return FactoryOf({.threshold = ParseThreshold(argument) / context.caution,
                       .votes = kVotes,
                       .tag = kTag,
-                      .need = ViewNeed::Nothing,
+                      .need = ViewNeed::Measured,
                       .measure = SuppliedMeasure(context, denoisedRuleName),
                       .makeGauge = [](const BlockInfo&) {
                           return MakeMeasuredGauge(1, {.firstSpp = kFirstSpp, .growth = kGrowth});

@@ -96,7 +96,7 @@ constexpr Rule kRules[] = {
      .stops = "when the error that is visible once it is denoised was probably below T@ in "
               "lightness at two looks in a row, each at 1.25 times the samples of the one before; "
               "the default with --denoise",
-     .need = ViewNeed::Nothing,
+     .need = ViewNeed::Measured,
      .compares = RuleTrend::Error,
      .votes = 2,
      .takesCaution = true,

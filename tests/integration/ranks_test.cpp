@@ -111,6 +111,27 @@ TEST_F(RanksTest, ShareLayers) {
     ExpectSameLayers("one", "parts");
 }
 
+// Rank 0 denoises blocks from the sums of all.
+TEST_F(RanksTest, DenoiseTheSame) {
+    const std::string render = std::string(kRender) + "--denoise --cap 300 --report ";
+    ASSERT_EQ(Run(render + "one.html -o one.exr").exitCode, 0);
+    const Outcome outcome = Run(Ranks(3) + render + "some.html -o some.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSame("one", "some");
+    const ExrImage one = ReadExr(directory.File("one.exr")),
+                   some = ReadExr(directory.File("some.exr"));
+    for (const ExrChannel& channel : one.channels)
+        EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
+
+    const std::string parts =
+        std::string(kRender) + "--denoise --cap 300 -o parts.exr --checkpoint c.h5 --resume ";
+    const Outcome interrupted =
+        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
+    ASSERT_EQ(Run(Ranks(3) + parts).exitCode, 0);
+    ExpectSame("one", "parts");
+}
+
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     const std::string render = std::string(kRender) + "--cap 800 --stop lnoise:0.2 ";
     ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);

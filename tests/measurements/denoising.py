@@ -5,7 +5,7 @@
 
 Images are kept in FOLDER: what is there is not rendered again. The truth is the mean of two renders of
 half of --truth spp each, whose difference is its noise, which is subtracted from visible errors but not
-from FLIP and SSIM.
+from FLIP and SSIM. With --truth 0 there is none, and visible errors are those that renders say of themselves.
 """
 
 import argparse
@@ -129,8 +129,7 @@ class Scene:
         for spp in 32, 64, 128, 256, 512:
             self.render(str(spp), '--spp', str(spp), '--denoise', '--seed', '1')
             picture = read(self.file(f'{spp}.exr'))
-            said = [b['visibleError'] for b in json.load(open(self.file(f'{spp}.json')))['blocks']]
-            estimate, upper = (np.mean([s[k] for s in said]) for k in ('estimate', 'upper'))
+            estimate, upper = self.said(str(spp))
             true = visible_error(picture, halves)
             fall = entropy_fall(before, picture, lightness((halves[0] + halves[1]) / 2)) if before is not None else np.nan
             before = picture
@@ -138,19 +137,29 @@ class Scene:
             print(f'| {self.name} | {spp} | {estimate:.2f} | {upper:.2f} | {fall:.2f} | {true:.2f} |', flush=True)
         return rows
 
+    def said(self, name):
+        """Estimate and upper bound of the visible error, as the render's report has them."""
+        blocks = [b['visibleError'] for b in json.load(open(self.file(name + '.json')))['blocks']]
+        return [np.mean([b[k] for b in blocks]) for k in ('estimate', 'upper')]
+
     def row(self):
         self.render('start', '--spp', '1')
         self.render('denoised', '--denoise', '--seed', '1')
         self.render('plain', '--seed', '1')
-        halves = self.truth()
-        truth = self.file('truth.exr')
-        write(truth, (halves[0] + halves[1]) / 2, self.file('a.exr'))
+        halves = self.truth() if self.o.truth else None
+        if halves:
+            truth = self.file('truth.exr')
+            write(truth, (halves[0] + halves[1]) / 2, self.file('a.exr'))
         seconds = {n: self.seconds[n] - self.seconds['start'] for n in ('plain', 'denoised')}
         cells = [self.name]
         for name in 'plain', 'denoised':
-            f = self.judge(name, truth)
-            cells += [f'{self.spp(name):.0f}', f'{seconds[name]:.1f}', f'{visible_error(read(self.file(name + ".exr")), halves):.2f}',
-                      f'{f["rmseLightness"]:.2f}', f'{f["flip"]:.3f}', f'{f["ssim"]:.3f}']
+            cells += [f'{self.spp(name):,.0f}', f'{seconds[name]:.1f}']
+            if halves:
+                f = self.judge(name, truth)
+                cells += [f'{visible_error(read(self.file(name + ".exr")), halves):.2f}',
+                          f'{f["rmseLightness"]:.2f}', f'{f["flip"]:.3f}', f'{f["ssim"]:.3f}']
+            else:
+                cells += [', '.join(f'{v:.2f}' for v in self.said(name)) if name == 'denoised' else '–'] + ['–'] * 3
         print('| ' + ' | '.join(cells + [f'{seconds["plain"] / seconds["denoised"]:.1f}']) + ' |', flush=True)
         return seconds['plain'] / seconds['denoised']
 

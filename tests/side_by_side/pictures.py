@@ -16,6 +16,8 @@ def read(path):
     names = [name.split('.', 1)[-1] for name in image.spec().channelnames]
     pixels = np.asarray(image.get_pixels(oiio.FLOAT), np.float64)
     named = {name: pixels[:, :, i] for i, name in enumerate(names)}
+    # `R` itself comes before the R of a layer, as of the samples of a denoised picture.
+    named.update({name: pixels[:, :, i] for i, name in enumerate(image.spec().channelnames)})
     rgb = np.stack([named[n] if n in named else named['Combined.' + n] for n in 'RGB'], 2)
     return rgb, named.get('spp', named.get('Debug Sample Count.X'))
 

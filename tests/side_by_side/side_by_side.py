@@ -100,6 +100,7 @@ class Scene:
                         [('imported', max(o.spp), 2, 0, 'imported')])
         if o.stop:
             self.lull('lull-stop', '--cap', str(o.cap))
+            self.lull('lull-denoised', '--denoise', '--cap', str(o.cap))
             self.cycles([('cycles-stop', o.cap, 1, 0.01, 'specification')])
 
     def reference(self, program):
@@ -122,6 +123,24 @@ class Scene:
         reference, own = self.reference(program)
         square = ((lightness(read(self.file(name))[0]) - lightness(reference)) ** 2).mean()
         return max(0, square - own) ** 0.5
+
+    def flip(self, program, name):
+        """Returns FLIP against the program's own reference."""
+        truth = self.file(program + '-reference')
+        if not os.path.exists(truth):
+            write(truth, self.reference(program)[0])
+        out, picture = os.path.join(self.folder, name), self.file(name + '-rgb')
+        write(picture, read(self.file(name))[0])  # without the names of Blender's layers
+        subprocess.run([os.path.join(self.o.build, 'renderer/lull'), 'compare', '--reference', truth,
+                        '--automatic', picture, '-o', out], check=True, capture_output=True)
+        images = json.load(open(out + '.compare.json'))['images']
+        return next(i for i in images if i['name'] == 'automatic')['figures']['flip']
+
+
+def write(path, rgb):
+    image = oiio.ImageBuf(oiio.ImageSpec(rgb.shape[1], rgb.shape[0], 3, oiio.FLOAT))
+    image.set_pixels(oiio.ROI(), np.ascontiguousarray(rgb, np.float32))
+    image.write(path)
 
 
 def blocks(image, n=10):
@@ -150,32 +169,34 @@ def print_agreement(scenes):
 
 
 def print_speed(scenes, o):
-    print('\nSamples a second and core, and RMSE of L against processor seconds:\n')
+    print('\nSamples a second and core, and RMSE of L and FLIP against processor seconds:\n')
     print('| scene | program | samples/s | ' + ' | '.join('%d spp' % n for n in o.spp) + ' |')
     print('|---|---|---' + '|---' * len(o.spp) + '|')
     for s in scenes:
         for program in PROGRAMS:
             slope, _ = s.per_sample(program)
-            cells = ['%.2f in %.2f s' % (s.error(program, '%s-%d' % (program, n)), n * slope)
-                     for n in o.spp]
+            names = ['%s-%d' % (program, n) for n in o.spp]
+            cells = ['%.2f, %.3f in %.2f s' % (s.error(program, name), s.flip(program, name), n * slope)
+                     for n, name in zip(o.spp, names)]
             print('| %s | %s | %.0f | %s |' % (s.name, program, o.width * o.height / slope,
                                                ' | '.join(cells)))
 
 
 def print_stops(scenes, o):
-    print("\nEach one's own stopping rule, lull's default and Cycles' threshold of 0.01:\n")
-    print('| scene | program | mean spp | seconds | RMSE of L | worst block |')
-    print('|---|---|---|---|---|---|')
+    print("\nEach one's own stopping rule, lull's default, plain and denoised, and Cycles' threshold of 0.01:\n")
+    print('| scene | program | mean spp | seconds | RMSE of L | worst block | FLIP |')
+    print('|---|---|---|---|---|---|---|')
     for s in scenes:
-        for program in PROGRAMS:
-            name = program + '-stop'
+        for name in 'lull-stop', 'lull-denoised', 'cycles-stop':
+            program = name.split('-')[0]
             rgb, spp = read(s.file(name))
             mean = spp.mean() * (o.cap if program == 'cycles' else 1)
             reference, _ = s.reference(program)
             square = (lightness(rgb) - lightness(reference)) ** 2
-            print('| %s | %s | %.0f | %.1f | %.2f | %.2f |' %
-                  (s.name, program, mean, s.seconds[name] - s.per_sample(program)[1],
-                   s.error(program, name), blocks(square[:, :, None], o.block).max() ** 0.5))
+            print('| %s | %s | %.0f | %.1f | %.2f | %.2f | %.3f |' %
+                  (s.name, name, mean, s.seconds[name] - s.per_sample(program)[1],
+                   s.error(program, name), blocks(square[:, :, None], o.block).max() ** 0.5,
+                   s.flip(program, name)))
 
 
 def save_pair(s):

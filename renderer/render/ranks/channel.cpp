@@ -98,7 +98,7 @@ bool RankChannel::Receive(const Handler& handle) {
         if (life.givenUp) continue;
         life.heard = Clock::now();
         life.asked.reset();
-        StateReader reader(message->bytes);
+        StateReader reader(message->bytes, "a message of a rank");
         const RankWord word = reader.Get<RankWord>();
         if (word == RankWord::Ping)
             peers.Send(message->from, Pack(RankWord::Alive));

@@ -91,6 +91,8 @@ class Follower {
         const PartMessage part{block, taken.samples, executor.ledger.TakeSeconds(block),
                                taken.seconds, MeansOf(tiles, needs[size_t(block)], *film)};
         touched[size_t(block)] = true;
+        if (needs[size_t(block)] == ViewNeed::Measured)
+            channel.Post(0, PackPixels(block, tiles, *film, options.layers));
         channel.Post(0, Pack(part));
     }
 

@@ -303,8 +303,9 @@ class Leader {
 
     void CompleteView(int block, FilmView* view) {
         for (const auto& [from, values] : parts[size_t(block)])
-            PutMeans(values, schedule.TilesOfRank(block, from), schedule.BlockAt(block).pixels,
-                     view);
+            if (!values.empty())  // else its sums are here
+                PutMeans(values, schedule.TilesOfRank(block, from), schedule.BlockAt(block).pixels,
+                         view);
     }
 
     void TellAnswer(int block, const BlockAnswer& answer) {

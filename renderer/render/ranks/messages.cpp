@@ -145,7 +145,7 @@ void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* f
 
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed need, const Film& film) {
     std::vector<float> values;
-    if (need == ViewNeed::Nothing) return values;
+    if (need == ViewNeed::Nothing || need == ViewNeed::Measured) return values;
     const bool withHalf = need == ViewNeed::MeanAndHalf;
     std::vector<float> halves;
     FilmView view;

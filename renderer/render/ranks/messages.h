@@ -47,10 +47,12 @@ struct AnswerMessage {
 // Holds what a rank has of a block after a pass.
 struct PartMessage {
     int block;
-    int64_t samples;            // taken since the last part
-    double seconds;             // of processors, for this block
-    double busySeconds;         // of the rank's threads, on the average, since the last part
-    std::vector<float> values;  // the means of its tiles, then the half means, as far as needed
+    int64_t samples;     // taken since the last part
+    double seconds;      // of processors, for this block
+    double busySeconds;  // of the rank's threads, on the average, since the last part
+    // The means of its tiles, then the half means, as far as needed; empty where the sums
+    // themselves are, which have been sent before.
+    std::vector<float> values;
 };
 
 std::vector<std::byte> Pack(RankWord);
@@ -70,7 +72,8 @@ int GetBlock(StateReader&, size_t blocks);
 // Reads sums of these tiles into the film and the layers.
 void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*, const Layers&);
 
-// Returns the means of tiles, pixel by pixel, then the half means if they are wanted.
+// Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where
+// the sums are to be sent.
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed, const Film&);
 // Puts them where they are in a view of `block`. Throws std::runtime_error if the sizes differ.
 void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,

@@ -48,6 +48,39 @@ TEST(VisibleError, IsKnownWithoutAReference) {
     EXPECT_LE(above, count / 4);
 }
 
+// On average the estimate is the truth: the half that judges has no part in what it judges but for
+// the weights.
+TEST(VisibleError, IsEstimatedWithoutBias) {
+    std::mt19937 generator(1);
+    std::normal_distribution<double> gauss(0, 0.02);
+    const Planes texture = MakePlanes(120, 120, 1, [&](int, int, int) { return gauss(generator); });
+    const Planes truth = MakePlanes(120, 120, 3, [&](int, int x, int y) {
+        return 0.4 + 0.1 * std::sin(x * 0.15) + texture.Row(0, y)[x];
+    });
+    double said = 0, real = 0;
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        const DenoisedPicture denoised =
+            Denoise(AddNoise(truth, FlatFeatures(120, 120), 0.05, seed));
+        const EstimatedError error = MeasureError(denoised);
+        for (size_t i = 0; i < error.squared.Area(); ++i)
+            said += double(error.squared.values[i]) / double(error.squared.Area());
+        real += std::pow(TrueError(denoised.picture, truth), 2);
+    }
+    EXPECT_NEAR(said / real, 1, 0.15);
+}
+
+// One part of which little is known, as its noise is strong, leaves the bound of all others alone.
+TEST(VisibleError, IsBoundedDespiteOneNoisyPart) {
+    EstimatedError error{Planes(100, 100, 1, 50), Planes(100, 100, 1, 1), Planes(100, 100, 1, 0.5f),
+                         Planes(100, 100, 1)};
+    const double calm = MeasureVisibleError(error, 0, 0, 100, 100).upper;
+    for (int y = 0; y < 10; ++y)
+        for (int x = 0; x < 10; ++x) error.deviation.Row(0, y)[x] = 200;
+    const VisibleError noisy = MeasureVisibleError(error, 0, 0, 100, 100);
+    EXPECT_LT(noisy.upper, 1.12 * calm);
+    EXPECT_GT(noisy.upper, calm);
+}
+
 TEST(VisibleError, IsNothingWhereNothingIsWrong) {
     const Planes truth(50, 50, 3, 0.3f);
     const DenoisedPicture denoised = Denoise(AddNoise(truth, FlatFeatures(50, 50), 0, 1));

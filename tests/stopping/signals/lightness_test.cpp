@@ -64,7 +64,7 @@ TEST(Lightness, HasTheKnownValues) {
 }
 
 TEST(Lightness, IsThatOfDisplayedColours) {
-    const std::vector<float> linear = {0, 0, 0, 7, 1, 2, 0.2140411f, -1, 0};
+    const std::vector<float> linear = {0, 0, 0, 7, 1, 2, 0.2122308f, -1, 0};
     const std::vector<double> lightness = LightnessOf(linear);
     ASSERT_EQ(lightness.size(), 3u);
     EXPECT_EQ(lightness[0], 0);

@@ -1,0 +1,14 @@
+// Shows pictures at half of their size, where noise is less and neighbourhoods are wider.
+#pragma once
+
+#include "renderer/denoise/planes.h"
+
+namespace lull {
+
+// Returns the means of 2 x 2 pixels each; at an odd border, of those that are there.
+Planes Halved(const Planes&);
+
+// Returns `fine` with its coarse part, which is what Halved() makes of it, replaced by `coarse`.
+Planes WithCoarsePart(Planes fine, const Planes& coarse);
+
+}  // namespace lull
