@@ -62,7 +62,7 @@ std::function<double()> StartClock(const ClockOptions& options) {
 ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressListener listener) {
     return [=, hasWarned = false](const RenderProgress& p) mutable {
         listener(p);
-        constexpr int64_t share = 10;  // of the samples, from which their speed is taken
+        constexpr int64_t share = 20;  // of the samples, from which their speed is taken
         if (hasWarned || !p.secondsLeft || p.samples >= pixels || p.samples < pixels / share)
             return;
         const double needed = p.seconds / double(p.samples) * double(pixels - p.samples);

@@ -347,13 +347,14 @@ ExitCode RunRender(Options options, Job* job) {
                                                    options.pictures.format});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (display) display->Finish();
+    const CheckpointOptions& checkpoint = settings.checkpoint;
+    const bool goesOn = result.cancelled || (result.timeUp && !checkpoint.file.empty());
+    if (goesOn && !settings.quiet) talk.Note(HowToGoOn(checkpoint.file));
     if (talk.isJson) SayEnd(written, result, session.TheFilm().RejectedCount());
     written.Check();
-    const CheckpointOptions& checkpoint = settings.checkpoint;
     const bool isDone = !result.cancelled && !result.timeUp;
     if (isDone && !checkpoint.file.empty() && !checkpoint.isKept)
         std::filesystem::remove(checkpoint.file);
-    if (!isDone && !settings.quiet) talk.Note(HowToGoOn(checkpoint.file));
     return result.cancelled ? kInterrupted : kDone;
 }
 

@@ -45,7 +45,7 @@ void PrintSummary(const RenderResult& result, int cap, RuleTrend::Kind kind) {
                          : "",
         EndsOf(result, kind), result.progress.medianSpp, FormatCount(double(savings.samples)),
         FormatDuration(result.progress.seconds));
-    Say("{}\n", result.cancelled ? "" : SavingsOf(savings, cap));
+    Say("{}\n", result.cancelled || result.timeUp ? "" : SavingsOf(savings, cap));
 }
 
 void WarnOfRejected(int64_t rejected, const Talk& talk) {

@@ -75,8 +75,12 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
     }
     if (const auto stops = PredictStops(trends, blocks, mostCap))
         for (CappedBlock& c : capped) {
+            // A prediction that is no more than what it has is of a block of which nothing is
+            // known.
+            const int had = blocks[size_t(c.block)].spp;
             const double spp = std::ceil((*stops)[size_t(c.block)]);
-            if (spp < mostCap) c.neededSpp = std::max(int(spp), blocks[size_t(c.block)].spp + 1);
+            if (spp < mostCap && (spp > had || c.value <= c.threshold))
+                c.neededSpp = std::max(int(spp), had + 1);
         }
     std::ranges::stable_sort(capped, [](const CappedBlock& a, const CappedBlock& b) {
         return std::pair(a.neededSpp == 0, a.neededSpp) > std::pair(b.neededSpp == 0, b.neededSpp);

@@ -23,7 +23,7 @@ import sys
 import tempfile
 import time
 
-SECONDS = 30          # that a case may take
+SECONDS = 30          # of a processor that a case may take; of the clock ten times that
 MEMORY = 4 << 30      # bytes that it may take
 
 SCENE = """LookAt 0 1 -4  0 0.5 0  0 1 0
@@ -184,13 +184,14 @@ READERS = [
 def limit():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
 
 
 def run(lull, arguments, folder):
     """Returns the exit code, None for a hang, and what was said."""
     try:
         done = subprocess.run([lull] + arguments.split(), cwd=folder, preexec_fn=limit,
-                              timeout=SECONDS, stdin=subprocess.DEVNULL,
+                              timeout=10 * SECONDS, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         return done.returncode, done.stderr.decode("utf-8", "replace")
     except subprocess.TimeoutExpired:

@@ -212,8 +212,8 @@ TEST(CommandLine, WarnsOfFirstSamplesThatTakeLongerThanTheClock) {
     const SceneDirectory directory;
     const std::string render = "LULL render scene.pbrt --quiet ";
     const std::string part = "warning: the first sample of each pixel";
-    const Outcome late = RunShell(directory, "timeout -s TERM 5 " + render +
-                                                 "--resolution 4000x3000 --spp 20 --threads 1 "
+    const Outcome late = RunShell(directory, "timeout -s TERM 100 " + render +
+                                                 "--resolution 3000x2000 --spp 20 --threads 1 "
                                                  "--time 1ms");
     EXPECT_TRUE(Contains(late.err, part)) << late.err;
     EXPECT_EQ(late.err.find(part), late.err.rfind(part)) << late.err;

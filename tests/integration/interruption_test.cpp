@@ -183,8 +183,6 @@ TEST(Interruption, SaysHowToGoOn) {
     const Outcome resumed = RunShell(directory, command + " --time 1s");
     EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
     EXPECT_TRUE(Contains(resumed.err, "going on from c.h5")) << resumed.err;
-    const Outcome without = RunShell(directory, render + " --time 1s");
-    EXPECT_TRUE(Contains(without.err, "with --checkpoint F.h5 it could go on")) << without.err;
 }
 
 TEST(Interruption, RecordingsComeToTheSameBits) {
