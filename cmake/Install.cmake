@@ -9,8 +9,8 @@ file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
 install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull)
 install(FILES ${models} DESTINATION ${lull_data}/models)
-install(TARGETS lull_stopping EXPORT lullTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES stopping/embedding/include/lull/stopping.h
+install(TARGETS lull_stopping lull_denoising EXPORT lullTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES stopping/embedding/include/lull/stopping.h renderer/embedding/include/lull/denoising.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
 install(EXPORT lullTargets NAMESPACE lull:: DESTINATION ${lull_cmake})
 set(LULL_INSTALLED_MODELS ${lull_data}/models)
@@ -50,7 +50,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer that knows when to stop")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
     "A path tracer for pbrt-v3 and glTF scenes that stops each part of a picture when people would
 see no more noise there; the library lull::stopping, for C, C++ and Python, tells other renderers
-when to.")
+when to, and lull::denoising takes the noise out of their pictures.")
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -19,6 +19,8 @@
 #include "renderer/measure/compared_files.h"
 #include "renderer/mpi/job.h"
 #include "renderer/pages/bench_page.h"
+#include "renderer/render/block_denoiser.h"
+#include "stopping/rules/denoised.h"
 
 namespace lull {
 
@@ -29,6 +31,7 @@ struct Options {
     GuideOptions guide;
     std::vector<std::string> samplers = {"sobol", "random"};
     std::vector<std::string> rules;  // beside those that are always measured
+    bool denoise = false;
     std::string reference, external, output, report;
 };
 
@@ -41,6 +44,9 @@ its sampler's other images in it, so that their error is understated near the ca
 
 With --guide, each sampler renders once more with paths that are guided, "sobol+guide"; learning
 counts among the seconds of each of these points. With auto, only where the guide is used.
+
+With --denoise, images where the rule `denoised` stops (with --rule also at other thresholds than
+its own) are rendered again and denoised. What that takes is counted, as are the looks at blocks.
 
 Images of other renderers join in from a CSV with lines "name,seconds,file.exr".
 
@@ -65,6 +71,8 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--rule", o->rules, "Another stopping rule to measure; can be given again")
         ->take_all()
         ->type_name("RULE");
+    app.add_flag("--denoise", o->denoise,
+                 "Also measure `denoised`, and images that are denoised where it stops");
     app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
     app.add_option("--external", o->external, "Images of other renderers: name,seconds,file.exr")
         ->type_name("E.csv");
@@ -82,16 +90,23 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer(kFooter);
 }
 
-std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& region) {
+std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& region,
+                                    const std::shared_ptr<BlockDenoiser>& denoiser) {
     const ScheduleOptions& schedule = options.render.schedule;
     std::vector<std::string> texts = BenchRules(schedule.passLength, schedule.cap);
     texts.push_back("learned");
+    std::map<std::string, SignalMeasure> measures;
+    if (denoiser) {
+        texts.push_back(denoisedRuleName);
+        measures[denoisedRuleName] = MeasureOf(denoiser);
+    }
     for (const std::string& rule : options.rules)
         if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
     std::vector<ObservedRule> rules;
     for (const std::string& text : texts) {
-        const CriterionFactory factory = ReadRule("--rule", text, options.render, region);
-        rules.push_back({text, factory.rule, factory.smallestSide, factory.make});
+        const CriterionFactory factory = ReadRule("--rule", text, options.render, region, measures);
+        rules.push_back({text, factory.rule, factory.smallestSide, factory.make,
+                         text.starts_with(denoisedRuleName)});
     }
     return rules;
 }
@@ -126,6 +141,7 @@ struct PreparedScene {
     std::string sceneHash;
     Provenance provenance;
     std::vector<ObservedRule> rules;
+    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
     std::vector<ExternalImage> external;
     std::vector<RgbImage> externalImages;
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
@@ -152,7 +168,12 @@ PreparedScene Prepare(const Options& options, const Job& job) {
     SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
                      {.isJson = settings.jsonProgress});
     PreparedScene prepared;
-    prepared.rules = MakeRules(options, input.region);
+    if (options.denoise) {
+        CheckLayersFit({}, true, input.region);
+        prepared.denoiser =
+            std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
+    }
+    prepared.rules = MakeRules(options, input.region, prepared.denoiser);
     if (!options.external.empty()) prepared.external = ReadExternalImages(options.external);
     if (job.Rank() == 0) CheckFiles(options, input.description, prepared.external);
     if (!options.reference.empty())
@@ -203,6 +224,7 @@ SessionOptions MakeOptions(const Options& options, const Variant& variant,
     how.checkpoint.keepsGuide = false;
     how.identity = IdentityOf(provenance, prepared.sceneHash);
     how.render.checkpointAtEnd = true;
+    how.features = options.denoise;
     return how;
 }
 
@@ -238,6 +260,7 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
     how.render.makeCriterion = MakeObservers(prepared->rules, region, settings.schedule,
                                              {.snapshots = true, .goesOn = true}, &histories);
     Session session(*prepared->scene, region, how);
+    if (options.denoise) prepared->denoiser->Show(&session.TheFilm(), session.Features());
     if (!session.Learn()) return false;
     if (variant.isGuided && !session.Guidance().isUsed) return true;
     session.Resume();

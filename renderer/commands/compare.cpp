@@ -17,6 +17,8 @@
 #include "renderer/measure/compared_files.h"
 #include "renderer/measure/image_files.h"
 #include "renderer/mpi/job.h"
+#include "renderer/render/block_denoiser.h"
+#include "stopping/rules/denoised.h"
 
 namespace lull {
 
@@ -87,6 +89,7 @@ struct PreparedScene {
     std::vector<ObservedRule> rules;
     RenderIdentity identity;
     std::map<std::string, int> warnings;
+    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
 };
 
 ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) {
@@ -110,6 +113,15 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
             ReadRule("--human", "thresholds:" + options.human, plain, input.region);
         prepared.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
+    }
+    if (options.denoise) {
+        CheckLayersFit({}, true, input.region);
+        prepared.denoiser =
+            std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
+        ObservedRule& rule = prepared.rules.emplace_back(
+            MakeRule("denoised", ReadRule("--denoise", denoisedRuleName, settings, input.region,
+                                          {{denoisedRuleName, MeasureOf(prepared.denoiser)}})));
+        rule.isDenoised = true;
     }
     if (job.Rank() == 0) {
         std::vector<std::string> rendered;
@@ -236,9 +248,11 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
                                               .curves = !options.report.empty(),
                                               .goesOn = options.snapshots},
                                              &report.histories);
+    how.features = options.denoise;
     how.checkpoint = settings.checkpoint;
     how.identity = prepared.identity;
     Session session(*prepared.scene, region, how);
+    if (options.denoise) prepared.denoiser->Show(&session.TheFilm(), session.Features());
     session.Resume();
     CatchInterrupts();
     const RenderResult result = session.Run();

@@ -13,6 +13,10 @@ of a pixel is always the same, so they are the images that three renders would g
 With --reference instead, blocks are only rendered as far as the last of both. Without a scene,
 images rendered before are compared.
 
+With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
+denoised as a whole; its samples are rendered again for that. What looking and denoising take is
+counted as the rule's.
+
 Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
 lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
 8-bit image that a display shows; "seams", how much more the noise jumps across the borders of
@@ -20,12 +24,14 @@ blocks than inside (1: not at all). Images from files are .exr, or .png and .jpe
 which there are no linear figures. Seconds are of processors; "~" marks those that are estimated.
 
 Files, beside each other:
-  OUT.automatic.exr .png, OUT.human..., OUT.reference...   the images, where they were rendered
+  OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
+                       were rendered
   OUT.thresholds.csv   samples per pixel at which the rule stopped each block
   OUT.compare.json     all figures
 
 Examples:
   lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
+  lull compare scene.pbrt --snapshots --denoise -o room
   lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
   lull compare --automatic a.png --reference photo.jpg -o room
@@ -53,6 +59,9 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
         ->needs(scene)
         ->excludes(reference);
+    app.add_flag("--denoise", o->denoise,
+                 "Also make the image that `lull render --denoise` gives, \"denoised\"")
+        ->needs(scene);
     app.add_option("--verify", o->verify,
                    "Render the automatic image by itself as well, on each of these numbers of\n"
                    "threads (0: all), and measure what the rule costs and saves")

@@ -10,7 +10,7 @@ struct CompareOptions {
     std::string rule = defaultRule;
     std::string human, automatic, reference;  // empty: none
     std::string output, report;
-    bool snapshots = false;
+    bool snapshots = false, denoise = false;
     std::vector<int> verify;  // numbers of threads
 };
 

@@ -60,6 +60,19 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
     return mean;
 }
 
+// Throws where nothing says what is noise.
+void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
+    if (!options.half.empty() && picture.colour.a.values == picture.colour.b.values)
+        throw Error(options.half + ": it has the same pixels as " + options.input +
+                    "; render once more, with another --seed");
+    const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
+    if (spp && std::ranges::min(spp->values) < float(leastDenoisedSpp))
+        throw Error(
+            fmt::format("{}: some pixels have fewer than {} samples, too few to know what "
+                        "is noise; render more",
+                        options.input, leastDenoisedSpp));
+}
+
 ExitCode RunDenoise(Options options) {
     using std::filesystem::path;
     if (options.output.empty())
@@ -72,17 +85,19 @@ ExitCode RunDenoise(Options options) {
         throw Error("--half " + options.half + ": it is the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
-    const NoisyPicture picture =
+    NoisyPicture picture =
         options.half.empty() ? ReadPicture(exr, options.input)
                              : ReadPicture(exr, options.input, ReadExr(options.half), options.half);
+
+    CheckHalves(options, exr, picture);
 
     const PixelRect region{{0, 0}, {exr.width, exr.height}};
     ScheduleOptions schedule;
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
-    const DenoisedImage denoised = DenoiseAndSay(picture, region, blocks, options.quiet);
-
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
+    const DenoisedImage denoised = DenoiseAndSay(std::move(picture), region, blocks, options.quiet);
+
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));
     std::ranges::move(MakeDenoisedChannels(denoised, noisy), std::back_inserter(exr.channels));

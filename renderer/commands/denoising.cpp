@@ -8,10 +8,10 @@
 
 namespace lull {
 
-DenoisedImage DenoiseAndSay(const NoisyPicture& picture, const PixelRect& region,
+DenoisedImage DenoiseAndSay(NoisyPicture picture, const PixelRect& region,
                             const std::vector<Block>& blocks, bool quiet, const Talk& talk) {
     const auto start = std::chrono::steady_clock::now();
-    DenoisedImage image = DenoiseImage(picture, region, blocks);
+    DenoisedImage image = DenoiseImage(std::move(picture), region, blocks);
     const std::string text = fmt::format("denoised in {}; {}", FormatDuration(SecondsSince(start)),
                                          TextOf(image.blocks));
     if (!quiet && talk.isJson)

@@ -7,7 +7,7 @@
 namespace lull {
 
 // Is DenoiseImage(), which says how long it took and how clean the picture is, unless `quiet`.
-DenoisedImage DenoiseAndSay(const NoisyPicture&, const PixelRect& region,
-                            const std::vector<Block>& blocks, bool quiet, const Talk& = {});
+DenoisedImage DenoiseAndSay(NoisyPicture, const PixelRect& region, const std::vector<Block>& blocks,
+                            bool quiet, const Talk& = {});
 
 }  // namespace lull

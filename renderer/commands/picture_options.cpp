@@ -25,7 +25,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
                  "Colours and normals of the EXR take 16 bits, up to 65504, instead of 32");
     app.add_option("--display", options->display,
                    "Show the render as it goes on in the viewer tev, or another that speaks its\n"
-                   "protocol and listens there")
+                   "protocol and listens there; with --denoise, blocks as they were last denoised")
         ->check([](const std::string& text) -> std::string {
             try {
                 ParseDisplayAddress(text);
@@ -44,7 +44,7 @@ std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::s
         throw Error(
             "--display: no rank has the whole picture before the end; render it by one "
             "process");
-    CheckMemory(region.Area() * int64_t(5 * sizeof(float)),
+    CheckMemory(region.Area() * int64_t(5 * sizeof(float) + 1),
                 fmt::format("--display of {}x{} pixels", region.Width(), region.Height()),
                 "leave it out");
     return std::make_unique<Display>(ParseDisplayAddress(options.display), name, region,

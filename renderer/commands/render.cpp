@@ -227,7 +227,39 @@ RenderIdentity IdentityFor(const Options& options, const Provenance& provenance,
     return identity;
 }
 
+// Where all samples belong to one half, nothing says how large their noise is.
+void CheckSamplesSuffice(const Options& options) {
+    if (CollectsFeatures(options) && options.spp > 0 && options.spp < int(leastDenoisedSpp))
+        throw UsageError(
+            fmt::format("--spp {}: {} needs at least {}, to know what is noise", options.spp,
+                        options.denoise ? "--denoise" : "--denoise-layers", leastDenoisedSpp));
+}
+
+// Takes back what is said of blocks that have too few samples to know what is noise: they stay as
+// they are, and may be as wrong as can be.
+void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
+                 DenoisedImage* denoised) {
+    constexpr float mostLightness = 100;
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(leastDenoisedSpp)) continue;
+        ++count;
+        denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), mostLightness);
+    }
+    if (count > 0)
+        talk.Warn(
+            fmt::format("{} of {} blocks are not denoised: they have fewer than {} samples per "
+                        "pixel",
+                        count, result.blocks.size(), leastDenoisedSpp));
+}
+
 ExitCode RunRender(Options options, Job* job) {
+    CheckSamplesSuffice(options);
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
                        : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
@@ -272,6 +304,10 @@ ExitCode RunRender(Options options, Job* job) {
     how.clock = clock;
     Session session(*scene, region, how);
     if (denoiser) denoiser->Show(&session.TheFilm(), session.Features());
+    if (denoiser && display)
+        denoiser->ShowPictures([&](const PixelRect& pixels, std::span<const float> rgb) {
+            display->ShowDenoised(pixels, rgb);
+        });
     session.Resume();
     CatchInterrupts();
     if (!session.Learn()) {
@@ -287,14 +323,17 @@ ExitCode RunRender(Options options, Job* job) {
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;
-    if (session.Features()) {
-        const NoisyPicture picture = PictureOf(session.TheFilm(), *session.Features(), region);
-        if (options.denoise)
-            denoised = DenoiseAndSay(picture, region, MakeBlocks(region, settings.schedule),
-                                     settings.quiet, talk);
-        if (options.denoiseLayers) halves = MakeHalfChannels(picture);
-    }
+    NoisyPicture picture;
+    if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
     session.TheFilm().DropHalf();  // what follows needs the memory
+    session.DropFeatures();
+    if (options.denoiseLayers) halves = MakeHalfChannels(picture);
+    if (options.denoise) {
+        denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
+                                 settings.quiet, talk);
+        DoubtBlocks(result, region, talk, &*denoised);
+    }
+    if (display && denoised) display->ShowDenoised(region, denoised->image.values);
 
     const ResultFiles written = WriteFiles(files, {{*scene, provenance},
                                                    session.TheFilm(),

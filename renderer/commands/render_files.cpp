@@ -38,15 +38,17 @@ std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
 }
 
 ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
-    const auto& [origin, film, result, histories, warnings, aovs, denoised, halves, description,
-                 pictures] = render;
+    const PictureOrigin& origin = render.origin;
     const Provenance& provenance = origin.provenance;
-    ExtraLayers extra =
-        aovs ? MakeExtraLayers(*aovs, film, description, origin.scene) : ExtraLayers();
-    extra.channels.insert(extra.channels.end(), halves.begin(), halves.end());
+    const Film& film = render.film;
+    const RenderResult& result = render.result;
+    ExtraLayers extra = render.aovs
+                            ? MakeExtraLayers(*render.aovs, film, render.description, origin.scene)
+                            : ExtraLayers();
+    extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
     ResultFiles results;
-    WriteImage({files.exr, files.png}, origin, film, denoised, result, std::move(extra), pictures,
-               &results);
+    WriteImage({files.exr, files.png}, origin, film, render.denoised, result, std::move(extra),
+               render.pictures, &results);
     results.Write(files.sppMap,
                   [&](const std::string& file) { WriteSppMap(file, provenance, result); });
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.
@@ -62,11 +64,11 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         results.Write(files.ranges,
                       [&](const std::string& file) { WriteRanges(file, provenance, result); });
     if (files.report.ends_with(".html"))
-        results.WriteText(files.report, MakeRenderPage(provenance, result, film, histories,
-                                                       warnings.Counts(), denoised));
+        results.WriteText(files.report, MakeRenderPage(provenance, result, film, render.histories,
+                                                       render.warnings.Counts(), render.denoised));
     else if (!files.report.empty())
         results.WriteText(files.report, MakeReport(provenance, result, film.RejectedCount(),
-                                                   warnings.Counts(), denoised));
+                                                   render.warnings.Counts(), render.denoised));
     return results;
 }
 

@@ -89,7 +89,10 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
                           const RenderSettings& settings, const PixelRect& region,
                           std::map<std::string, SignalMeasure> measures) try {
     if (rule.starts_with(denoisedRuleName) && measures.empty())
-        throw Error(option + " " + rule + ": blocks are denoised by `lull render --denoise` alone");
+        throw Error(
+            option + " " + rule +
+            ": it stops what is denoised: `lull render --denoise`; `lull compare --denoise` "
+            "and `lull bench --denoise` add such an image to theirs");
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),

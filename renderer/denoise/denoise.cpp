@@ -22,18 +22,17 @@ constexpr float kLeastVariance = 1e-10f;
 
 float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
 
-Halves SaneColours(Halves halves) {
-    for (Planes* half : {&halves.a, &halves.b})
+void MakeSane(Halves* halves) {
+    for (Planes* half : {&halves->a, &halves->b})
         for (float& v : half->values) v = Sane(v);
-    return halves;
 }
 
-// Returns features in [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
+// Brings features to [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
 // there is nothing.
-Halves ScaleFeatures(Halves halves) {
+void ScaleFeatures(Halves* halves) {
     constexpr int disparity = kFeatures - 1;
     std::vector<float> found;
-    for (Planes* half : {&halves.a, &halves.b}) {
+    for (Planes* half : {&halves->a, &halves->b}) {
         for (int f = 0; f < disparity; ++f)
             for (size_t i = 0; i < half->Area(); ++i) {
                 float& v = half->Plane(f)[i];
@@ -45,15 +44,14 @@ Halves ScaleFeatures(Halves halves) {
             if (d > 0) found.push_back(d);
         }
     }
-    if (found.empty()) return halves;
+    if (found.empty()) return;
     const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
     std::nth_element(found.begin(), middle, found.end());
-    for (Planes* half : {&halves.a, &halves.b})
+    for (Planes* half : {&halves->a, &halves->b})
         for (size_t i = 0; i < half->Area(); ++i) {
             float& d = half->Plane(disparity)[i];
             d /= d + *middle;
         }
-    return halves;
 }
 
 // Estimates the variance of a pixel of either half: what the samples' squares say of the luminance,
@@ -81,39 +79,48 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
 
 // Returns what is made of both halves: by fits in windows of some pixels, and by the same at half
 // of the size for what is wider than these.
-Halves FilterColours(const Halves& noisy, const Planes& features, const Planes& variance,
-                     int scales, int rowsPerFit) {
+Halves FilterColours(const Halves& noisy, Planes features, const Planes& variance, int scales,
+                     int rowsPerFit) {
     std::vector<Planes> a =
         Regress(noisy.a, features, {noisy.b, variance}, kPatches, kBandwidths, rowsPerFit);
     std::vector<Planes> b =
         Regress(noisy.b, features, {noisy.a, variance}, kPatches, kBandwidths, rowsPerFit);
+    const bool isCoarsest =
+        scales == 1 || std::min(variance.width, variance.height) < 2 * kLeastSide;
+    features = isCoarsest ? Planes() : Halved(features);
     std::vector<Halves> candidates;
     for (size_t i = 0; i < a.size(); ++i) candidates.push_back({std::move(a[i]), std::move(b[i])});
     Halves fine = ChooseCandidates(std::move(candidates), noisy, variance);
-    if (scales == 1 || std::min(variance.width, variance.height) < 2 * kLeastSide) return fine;
+    if (isCoarsest) return fine;
 
     Planes ofMeans = Halved(variance);
     for (float& v : ofMeans.values) v /= 4;
-    const Halves coarse = FilterColours({Halved(noisy.a), Halved(noisy.b)}, Halved(features),
+    const Halves coarse = FilterColours({Halved(noisy.a), Halved(noisy.b)}, std::move(features),
                                         ofMeans, scales - 1, rowsPerFit);
     Halves both{WithCoarsePart(fine.a, coarse.a), WithCoarsePart(fine.b, coarse.b)};
-    return ChooseCandidates({std::move(fine), std::move(both)}, noisy, variance);
+    candidates.clear();
+    candidates.push_back(std::move(fine));
+    candidates.push_back(std::move(both));
+    return ChooseCandidates(std::move(candidates), noisy, variance);
 }
 
 }  // namespace
 
-DenoisedPicture Denoise(const NoisyPicture& in, int rowsPerFit) {
-    const Halves sane = SaneColours(in.colour);
-    CalmedHalves calm = TakeFireflies(sane.a, sane.b, kFireflyLimit);
+DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
+    MakeSane(&in.colour);
+    CalmedHalves calm = TakeFireflies(in.colour.a, in.colour.b, kFireflyLimit);
     DenoisedPicture result;
     result.noisy = {std::move(calm.a), std::move(calm.b)};
     result.excess = std::move(calm.excess);
-    result.variance = EstimateVariance(sane, in.variance);
+    result.variance = EstimateVariance(in.colour, in.variance);
     for (float& v : result.variance.values) v = std::max(v, kLeastVariance);
+    in.colour = {};  // a large picture needs the memory, here and below
 
-    const Halves scaled = ScaleFeatures(in.features);
-    const Planes features = FilterFeatures(scaled.a, scaled.b);
-    result.halves = FilterColours(result.noisy, features, result.variance, kScales, rowsPerFit);
+    ScaleFeatures(&in.features);
+    Planes features = FilterFeatures(in.features.a, in.features.b);
+    in.features = {};
+    result.halves =
+        FilterColours(result.noisy, std::move(features), result.variance, kScales, rowsPerFit);
 
     result.picture = result.halves.a;
     for (size_t i = 0; i < result.picture.values.size(); ++i)

@@ -55,6 +55,14 @@ Planes Filter(Planes image, int radius, bool asMean) {
 
 }  // namespace
 
+std::vector<float> Interleaved(const Planes& image) {
+    std::vector<float> values(image.values.size());
+    for (int c = 0; c < image.count; ++c)
+        for (size_t i = 0; i < image.Area(); ++i)
+            values[i * size_t(image.count) + size_t(c)] = image.Plane(c)[i];
+    return values;
+}
+
 Planes VarianceOf(const Planes& a, const Planes& b) {
     Planes result = a;
     for (size_t i = 0; i < result.values.size(); ++i) {

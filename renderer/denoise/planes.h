@@ -32,6 +32,9 @@ inline float LuminanceOf(const Planes& image, size_t i) {
     return Luminance(Rgb(image.Plane(0)[i], image.Plane(1)[i], image.Plane(2)[i]));
 }
 
+// Returns the values pixel by pixel, all channels of one beside each other.
+std::vector<float> Interleaved(const Planes&);
+
 // Returns half the squared difference of two images: of a value of either, where they differ by
 // noise alone, the variance, with one degree of freedom.
 Planes VarianceOf(const Planes& a, const Planes& b);

@@ -169,6 +169,10 @@ void Display::Show(const PixelRect& pixels, const Film& film) {
     state->snapshot.Show(pixels, film);
 }
 
+void Display::ShowDenoised(const PixelRect& pixels, std::span<const float> rgb) {
+    state->snapshot.ShowDenoised(pixels, rgb);
+}
+
 void Display::ShowStop(const PixelRect& block) { state->snapshot.ShowStop(block); }
 
 void Display::Finish(double seconds) { state->End(Seconds(seconds)); }

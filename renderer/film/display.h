@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "renderer/film/film.h"
@@ -35,6 +36,8 @@ class Display {
     // Copies pixels of the region, which nobody may change meanwhile. Can be called from any
     // thread; takes about a nanosecond per number, whatever the viewer does.
     void Show(const PixelRect& pixels, const Film& film);
+    // Shows colours, R, G, B of each pixel, row by row, from now on in place of the film's means.
+    void ShowDenoised(const PixelRect& pixels, std::span<const float> rgb);
     void ShowStop(const PixelRect& block);
 
     // Sends what has not been sent yet, if there is a viewer, for at most this many seconds.

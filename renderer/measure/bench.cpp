@@ -55,7 +55,7 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
     std::vector<BenchPoint> points(rules.size());
     std::mutex mutex;  // guards onPoint
     const double pixels = double(render.film.Region().Area());
-    ForEachIndex(int(rules.size()), [&](int index) {
+    const auto measure = [&](int index) {
         const ObservedRule& rule = rules[size_t(index)];
         const ComparedImage image = TakeImage(render, rules, size_t(index));
         BenchPoint& point = points[size_t(index)];
@@ -74,6 +74,12 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
         point.figures = Average(CompareImages(image.image, reference));
         const std::lock_guard lock(mutex);
         if (onPoint) onPoint();
+    };
+    // One after the other, as denoising is timed.
+    for (int i = 0; i < int(rules.size()); ++i)
+        if (rules[size_t(i)].isDenoised) measure(i);
+    ForEachIndex(int(rules.size()), [&](int i) {
+        if (!rules[size_t(i)].isDenoised) measure(i);
     });
     return points;
 }

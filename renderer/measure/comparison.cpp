@@ -4,6 +4,9 @@
 #include <limits>
 
 #include "renderer/base/error.h"
+#include "renderer/base/thread_clock.h"
+#include "renderer/measure/denoised_image.h"
+#include "renderer/render/film_picture.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
@@ -40,9 +43,11 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
 }
 
 // Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
-void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film) {
+void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film,
+                  FeatureFilm* features = nullptr) {
     RenderState state;
     RenderOptions options;
+    if (features) options.layers = {.features = features, .source = render.options.layers.source};
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
     options.sampler = render.options.sampler;
@@ -79,6 +84,28 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
         image->noise.clear();
     else if (!image->noise.empty())
         Paste(snapshot.noise, local, 1, region.Width(), &image->noise);
+}
+
+// Denoises the image of the samples that its blocks took.
+void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& blocks,
+                    ComparedImage* image) {
+    const PixelRect& region = render.film.Region();
+    std::vector<int> spp;
+    for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
+    NoisyPicture picture;
+    {
+        Film film(region);
+        FeatureFilm features(region);
+        RenderBlocks(render, spp, &film, &features);
+        picture = PictureOf(film, features, region);
+    }
+    const double start = ProcessSeconds();
+    image->image = DenoiseImage(std::move(picture), region, blocks).image;
+    const double seconds = ProcessSeconds() - start;
+    for (size_t i = 0; i < blocks.size(); ++i)
+        image->costs[i].ruleSeconds +=
+            seconds * double(blocks[i].pixels.Area()) / double(region.Area());
+    image->noise.clear();
 }
 
 // Leaves only the figures of the display image.
@@ -188,6 +215,7 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
         }
         if (blocks[i].votes) cost.ruleSeconds = stop.ruleSeconds;
         image.costs.push_back(cost);
+        if (rule.isDenoised) continue;
 
         const auto& kept = render.histories[i].snapshots;
         if (const auto snapshot = kept.find(cost.spp); snapshot != kept.end())
@@ -198,6 +226,7 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
         else
             again[i] = cost.spp;
     }
+    if (rule.isDenoised) DenoiseSamples(render, blocks, &image);
     if (std::ranges::none_of(again, [](int spp) { return spp > 0; })) return image;
     Film film(region);
     RenderBlocks(render, again, &film);

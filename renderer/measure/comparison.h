@@ -69,6 +69,7 @@ struct ObservedRule {
     std::string name, text;
     int smallestSide = 0;  // pixels; smaller blocks follow a neighbour
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
+    bool isDenoised = false;  // its image is to be denoised
 };
 
 // Makes the observers of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
@@ -87,7 +88,9 @@ struct ObservedRender {
 };
 
 // Returns the image that rule number `index` would have rendered by itself, bit for bit. Blocks too
-// small to be judged are rendered again, as only their neighbour determined how far.
+// small to be judged are rendered again, as only their neighbour determined how far. So are all of
+// an image to be denoised, for which the render must have collected features; it has no `noise`,
+// and denoising it is among the rule's seconds, of which the work of other threads must be no part.
 ComparedImage TakeImage(const ObservedRender&, const std::vector<ObservedRule>& rules,
                         size_t index);
 // Returns the image of all samples that were taken.

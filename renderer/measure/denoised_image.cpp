@@ -10,29 +10,29 @@ constexpr int kSmallest = 10;  // pixels a side of a block whose visible error c
 
 }  // namespace
 
-DenoisedImage DenoiseImage(const NoisyPicture& picture, const PixelRect& region,
+DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
-    const DenoisedPicture denoised = Denoise(picture);
-    DenoisedImage result{{region.Width(), region.Height(), {}}, {}, {}};
-    result.image.values.resize(denoised.picture.values.size());
-    for (int c = 0; c < kColours; ++c)
-        for (size_t i = 0; i < denoised.picture.Area(); ++i)
-            result.image.values[3 * i + size_t(c)] = denoised.picture.Plane(c)[i];
+    DenoisedPicture denoised = Denoise(std::move(picture));
     const EstimatedError error = MeasureError(denoised);
+    DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)}, {}, {}};
+    denoised = {};  // a large picture needs the memory
     result.error = StandardError(error).values;
     for (const Block& block : blocks) {
         const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
         const bool isSmall = std::min(max.x() - min.x(), max.y() - min.y()) < kSmallest;
-        result.blocks.push_back(
-            isSmall ? VisibleError()
-                    : MeasureVisibleError(error, min.x(), min.y(), max.x(), max.y()));
+        result.blocks.emplace_back();
+        if (!isSmall)
+            result.blocks.back() = MeasureVisibleError(error, min.x(), min.y(), max.x(), max.y());
     }
     return result;
 }
 
-std::string TextOf(const std::vector<VisibleError>& blocks) {
+std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     std::vector<double> upper;
-    for (const VisibleError& error : blocks) upper.push_back(error.upper);
+    for (const auto& error : blocks)
+        if (error) upper.push_back(error->upper);
+    if (upper.empty())
+        return fmt::format("visible error not known of blocks below {} pixels a side", kSmallest);
     std::ranges::sort(upper);
     return fmt::format(
         "visible error in lightness, of 0 to 100, probably at most {:.2f} in half of "

@@ -1,6 +1,8 @@
 // Denoises a finished render.
 #pragma once
 
+#include <optional>
+
 #include "renderer/denoise/visible_error.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/image/image_io.h"
@@ -11,16 +13,17 @@ namespace lull {
 
 struct DenoisedImage {
     RgbImage image;
-    std::vector<float> error;          // estimated standard error of each pixel in lightness
-    std::vector<VisibleError> blocks;  // of each block; 0 of those below 10 pixels a side
+    std::vector<float> error;  // estimated standard error of each pixel in lightness
+    // Of each block; not known of those below 10 pixels a side.
+    std::vector<std::optional<VisibleError>> blocks;
 };
 
 // Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
 // have had.
-DenoisedImage DenoiseImage(const NoisyPicture&, const PixelRect& region, const std::vector<Block>&);
+DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&);
 
 // Says how large the visible errors of blocks probably are at most.
-std::string TextOf(const std::vector<VisibleError>&);
+std::string TextOf(const std::vector<std::optional<VisibleError>>&);
 
 // What the header of an EXR says of R, G, B.
 inline constexpr const char* kDenoisedNote =

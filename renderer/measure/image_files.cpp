@@ -171,13 +171,14 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Fi
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin,
                 const ImageOfBlocks& picture, ResultFiles* results) {
-    const auto& [image, blocks, spp, seconds] = picture;
+    const RgbImage& image = picture.image;
     const PixelRect& region = origin.provenance.crop;
     int64_t samples = 0;
-    for (size_t i = 0; i < blocks.size(); ++i) samples += blocks[i].pixels.Area() * spp[i];
-    const ExrImage exr = MakeExr(origin, region, samples, seconds);
+    for (size_t i = 0; i < picture.blocks.size(); ++i)
+        samples += picture.blocks[i].pixels.Area() * picture.spp[i];
+    const ExrImage exr = MakeExr(origin, region, samples, picture.seconds);
     results->Write(files.exr, [&](const std::string& file) {
-        WriteExr(file, exr, MeansOf(image), SppOf(region, blocks, spp));
+        WriteExr(file, exr, MeansOf(image), SppOf(region, picture.blocks, picture.spp));
     });
     results->Write(files.png, [&](const std::string& file) {
         WritePng(file, MeansOf(image), image.width, image.height);

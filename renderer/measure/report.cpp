@@ -165,8 +165,9 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
             BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
     if (denoised)
         for (size_t i = 0; i < result.blocks.size(); ++i)
-            report["blocks"][i]["visibleError"] = {{"estimate", denoised->blocks[i].estimate},
-                                                   {"upper", denoised->blocks[i].upper}};
+            if (const auto& error = denoised->blocks[i])
+                report["blocks"][i]["visibleError"] = {{"estimate", error->estimate},
+                                                       {"upper", error->upper}};
     if (result.timeUp) AddShortfall(provenance, result, &report);
     AddCapped(provenance, result, &report);
     report["warnings"] = warnings;

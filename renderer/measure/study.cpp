@@ -31,7 +31,7 @@ class Hash {
     uint64_t value = 0xcbf29ce484222325;
 };
 
-std::vector<double> LightnessOf(const DisplayPixels& pixels) {
+std::vector<double> LightnessOfCodes(const DisplayPixels& pixels) {
     std::vector<double> lightness(pixels.size() / 3);
     Lightness(pixels, lightness);
     return lightness;
@@ -54,8 +54,8 @@ std::string StudyId(const Study& study) {
 }
 
 double NoiseOf(const StudyBlock& block, size_t level) {
-    const std::vector<double> picture = LightnessOf(block.pictures.at(level)),
-                              reference = LightnessOf(block.pictures.back());
+    const std::vector<double> picture = LightnessOfCodes(block.pictures.at(level)),
+                              reference = LightnessOfCodes(block.pictures.back());
     double sum = 0;
     for (size_t i = 0; i < picture.size(); ++i)
         sum += (picture[i] - reference[i]) * (picture[i] - reference[i]);

@@ -1,6 +1,9 @@
 // Measures, while a render goes on, what is still wrong with a block once it is denoised.
 #pragma once
 
+#include <functional>
+#include <span>
+
 #include "renderer/denoise/visible_error.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/render/schedule.h"
@@ -20,12 +23,18 @@ class BlockDenoiser {
         featureFilm = features;
     }
 
+    // Has it show what it makes of blocks: their pixels, and R, G, B of each, row by row.
+    void ShowPictures(std::function<void(const PixelRect&, std::span<const float> rgb)> show) {
+        showPicture = std::move(show);
+    }
+
     VisibleError MeasureBlock(int block) const;
 
   private:
     std::vector<Block> blocks;
     const Film* film = nullptr;
     const FeatureFilm* featureFilm = nullptr;
+    std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 
 // Returns what the rule `denoised` looks at: the upper bound.

@@ -123,8 +123,7 @@ NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const Ex
         if (!image.Find("Z") || !other.Find("Z")) return;
         float* disparity = features->Plane(kFeatures - 1);
         Copy(image, name, "Z", disparity);
-        for (size_t i = 0; i < features->Area(); ++i)
-            disparity[i] = disparity[i] > 0 ? 1 / std::max(disparity[i], 1e-12f) : 0;
+        std::transform(disparity, disparity + features->Area(), disparity, DisparityOf);
     };
     read(a, nameOfA, b, &picture.colour.a, &picture.features.a);
     read(b, nameOfB, a, &picture.colour.b, &picture.features.b);

@@ -16,7 +16,7 @@ namespace lull {
 
 namespace {
 
-constexpr int64_t kDenoiserBytes = 320;  // a pixel, while it works
+constexpr int64_t kDenoiserBytes = 230;  // a pixel, while it works
 
 template <typename... Arguments>
 void Tell(const std::function<void(const std::string&)>& listener,
@@ -59,6 +59,11 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         options.render.layers.features = &*features;
         options.identity["features"] = "yes";
     }
+}
+
+void Session::DropFeatures() {
+    features.reset();
+    options.render.layers.features = nullptr;
 }
 
 bool Session::Leads() const { return !options.render.peers || options.render.peers->Rank() == 0; }

@@ -78,6 +78,8 @@ class Session {
     Film& TheFilm() { return film; }
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
     const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
+    // Frees them, once the render is done and nobody asks for them.
+    void DropFeatures();
     const GuideFigures& Guidance() const { return learning.figures; }
     // Return what was rendered, and how.
     const SampleSource& Source() const { return source; }

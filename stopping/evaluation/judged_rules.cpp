@@ -46,7 +46,8 @@ std::vector<ThresholdsRow> ReadHumanThresholds(const std::string& human,
 }
 
 JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
-                           const std::vector<ThresholdsRow>& people, int grid, const Talk& warn) {
+                           const std::vector<ThresholdsRow>& people, int grid,
+                           const WarningSink& warn) {
     const std::vector<ThresholdsRow> rows = ReadThresholds(path);
     JudgedRule rule{.name = Stem(path)};
     for (const ThresholdsRow& judged : people) {

@@ -19,7 +19,8 @@ std::vector<ThresholdsRow> ReadHumanThresholds(const std::string& human,
 // `human` is the name of the file that has people's. Tells how many viewpoints they did not judge.
 // Throws std::runtime_error if both have no viewpoint in common, or not the same blocks.
 JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
-                           const std::vector<ThresholdsRow>& people, int grid, const Talk& warn);
+                           const std::vector<ThresholdsRow>& people, int grid,
+                           const WarningSink& warn);
 
 // Says which rules are judged on recorded blocks.
 struct RulesToJudge {

@@ -154,6 +154,10 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     // Each viewpoint has a row of its own.
     if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
         return ThresholdsSimulator(ArgumentOf(text));
+    if (const Rule* rule = FindRule(text); rule && rule->replay == Replay::Unknown)
+        throw std::invalid_argument("stopping rule '" + text +
+                                    "': recordings hold no denoised pictures, nor what these are "
+                                    "made of; thresholds that a render has written can be judged");
     const CriterionFactory factory = MakeCriterionFactory(text, context);
     const Replay replay = FindRule(text)->replay;
     if (replay == Replay::Counts)
@@ -165,7 +169,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
         return [factory](const JudgedBlock& block) {
             return SimulateCycles(block, factory.voting->threshold);
         };
-    if (replay == Replay::Unknown || !factory.voting->recall)
+    if (!factory.voting->recall)
         throw std::invalid_argument("stopping rule '" + factory.rule + "' cannot be simulated");
     return [factory](const JudgedBlock& block) {
         try {

@@ -21,7 +21,7 @@ std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& pat
 std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>& viewpoints,
                                           const std::string& human,
                                           const std::vector<std::string>& without,
-                                          const Talk& warn) try {
+                                          const WarningSink& warn) try {
     std::vector<ThresholdsRow> rows = ReadThresholds(human);
     for (const std::string& name : without)
         if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0 &&
@@ -41,7 +41,7 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
 
 std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
                                             std::span<const ModelSettings> settings,
-                                            const Talk& warn) {
+                                            const WarningSink& warn) {
     std::vector<JudgedBlock> blocks = judged;
     for (const ModelSettings& s : settings) blocks = KeepRecorded(blocks, s);
     if (blocks.empty()) throw std::runtime_error("no block was recorded with attributes26");

@@ -12,7 +12,7 @@
 namespace lull {
 
 // Is told in words what a user should know, and is called by one thread at a time.
-using Talk = std::function<void(const std::string& message)>;
+using WarningSink = std::function<void(const std::string& message)>;
 
 // Reads data sets as one; blocks of a viewpoint can be in several files. Throws std::runtime_error
 // beginning with the file's name.
@@ -25,12 +25,12 @@ std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& pat
 std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>& viewpoints,
                                           const std::string& human,
                                           const std::vector<std::string>& without,
-                                          const Talk& warn);
+                                          const WarningSink& warn);
 
 // Returns the blocks that were recorded with all that any of the settings asks for, and tells how
 // many were not. Throws std::runtime_error if none is left.
 std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
                                             std::span<const ModelSettings> settings,
-                                            const Talk& warn);
+                                            const WarningSink& warn);
 
 }  // namespace lull

@@ -100,7 +100,7 @@ void CheckGrid(const TrainingPlan& plan, const std::string& grid, std::span<cons
 std::vector<Trial> MakeTrials(const TrainingPlan& plan, const std::string& grid,
                               std::span<const SearchAxis> axes,
                               const std::vector<JudgedBlock>& judged, const OptionSetter& set,
-                              const Talk& warn) {
+                              const WarningSink& warn) {
     std::vector<Trial> trials(CombinationCount(axes));
     const auto each = [&](auto&& work) {
         for (size_t i = 0; i < trials.size(); ++i) try {

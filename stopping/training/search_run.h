@@ -36,7 +36,7 @@ struct Trial {
 std::vector<Trial> MakeTrials(const TrainingPlan& plan, const std::string& grid,
                               std::span<const SearchAxis> axes,
                               const std::vector<JudgedBlock>& judged, const OptionSetter& set,
-                              const Talk& warn);
+                              const WarningSink& warn);
 
 // Checks each value by itself, so that an error can name its line. Throws std::runtime_error.
 void CheckGrid(const TrainingPlan& plan, const std::string& grid, std::span<const SearchAxis> axes,
@@ -63,7 +63,7 @@ struct SearchEvents {
     std::function<void(const SearchProgress&)> step;  // after each step of a training
     // After each combination and when the search is cancelled: the results so far.
     std::function<void(const std::vector<SearchResult>&)> keep;
-    Talk warn;
+    WarningSink warn;
     std::function<bool()> isCancelled;  // is asked before each step of a training
 };
 

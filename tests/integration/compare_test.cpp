@@ -1,5 +1,6 @@
 // Runs `lull compare` and `lull bench` as their help describes them.
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"
@@ -63,6 +64,29 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
     }
     EXPECT_EQ(one["againstHuman"]["spp"], other["againstHuman"]["spp"]);
     EXPECT_EQ(one["images"][2]["cost"]["samples"], 100 * 90 * 160);
+}
+
+TEST(Compare, MakesTheDenoisedImageOfARender) {
+    const SceneDirectory directory;
+    const Outcome outcome =
+        RunLull(directory, std::string("compare scene.pbrt") + kSize +
+                               "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
+                               "room.html");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    RunLull(directory,
+            std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
+    EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
+    EXPECT_EQ(ReadExr(directory.File("room.denoised.exr")).Find("spp")->values,
+              ReadExr(directory.File("clean.exr")).Find("spp")->values);
+    const Json denoised = directory.Read("room.compare.json")["images"][1];
+    EXPECT_EQ(denoised["name"], "denoised");
+    EXPECT_TRUE(denoised["seams"].is_object()) << denoised["seams"];
+    EXPECT_LT(denoised["figures"]["rmseLightness"],
+              directory.Read("room.compare.json")["images"][0]["figures"]["rmseLightness"]);
+    EXPECT_GT(denoised["cost"]["ruleSeconds"], 0);
+    const Outcome files =
+        RunLull(directory, "compare --denoise --automatic a.exr --reference a.exr");
+    EXPECT_EQ(files.exitCode, 2) << files.err;
 }
 
 // Pictures have the figures of the display image of the EXRs beside them, and no others.
@@ -241,6 +265,32 @@ TEST(Bench, GuidesPathsToo) {
                                 "--samplers sobol --guide auto -o few");
     ASSERT_EQ(few.exitCode, 0) << few.err;
     EXPECT_FALSE(Contains(ReadBytes(directory.File("few.csv")), "guide"));
+}
+
+TEST(Bench, DenoisesToo) {
+    const SceneDirectory directory;
+    const Outcome outcome = RunLull(directory,
+                                    "bench scene.pbrt --resolution 48x44 --block 44 --cap 100 "
+                                    "--samplers sobol --denoise --rule denoised:20 -o room");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    std::map<std::string, double> errors, ruleSeconds;
+    std::istringstream lines(ReadBytes(directory.File("room.csv")));
+    for (std::string line; std::getline(lines, line);) {
+        std::vector<std::string> fields;
+        std::istringstream in(line);
+        for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+        if (fields[0] == "rule") continue;
+        const std::string name = fields[0] + ":" + fields[1];
+        errors[name] = std::stod(fields[8]);
+        ruleSeconds[name] = std::stod(fields[6]);
+    }
+    // Two looks, at 20 and at 40 spp.
+    ASSERT_TRUE(errors.contains("denoised:20") && errors.contains("denoised:0.64"));
+    EXPECT_NE(errors["denoised:20"], errors["fixed:40"]);
+    EXPECT_GT(ruleSeconds["denoised:20"], 0);
+    const Outcome without = RunLull(directory, "bench scene.pbrt --rule denoised --cap 20 -o b");
+    EXPECT_EQ(without.exitCode, 1);
+    EXPECT_TRUE(Contains(without.err, "--denoise")) << without.err;
 }
 
 TEST(Bench, GoesOnAfterAnInterruption) {

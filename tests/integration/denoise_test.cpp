@@ -67,7 +67,12 @@ TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {
     const Outcome interrupted = RunAndSignal(directory, parts, SIGTERM, "c.h5");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
     // What is interrupted is denoised as far as it has come.
-    EXPECT_TRUE(ChannelsOf(directory, "parts.exr").contains("noisy.R"));
+    const Channels part = ChannelsOf(directory, "parts.exr");
+    EXPECT_TRUE(part.contains("noisy.R"));
+    for (size_t i = 0; i < part.at("spp").size(); ++i)
+        if (part.at("spp")[i] == 0) {
+            ASSERT_EQ(part.at("error")[i], 100);
+        }
     ASSERT_TRUE(Succeeds(directory, parts + "--resume"));
     EXPECT_EQ(ChannelsOf(directory, "parts.exr"), whole);
 }
@@ -103,6 +108,18 @@ TEST(DenoiseCommand, TakesTwoRendersOfOthers) {
     EXPECT_LT(after, before / 3);
 }
 
+// No error is said to be 0 that nobody knows.
+TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
+    const BoxDirectory directory;
+    ExpectFailure(directory, "render scene.pbrt --spp 3 --denoise -o out.exr", {"--spp 3", "4"}, 2);
+    const Outcome small = RunShell(directory,
+                                   "LULL render scene.pbrt --spp 20 --denoise --resolution 8x8 "
+                                   "-o a.exr --report a.json");
+    EXPECT_EQ(small.exitCode, 0) << small.err;
+    EXPECT_NE(small.err.find("not known of blocks below 10"), std::string::npos) << small.err;
+    EXPECT_EQ(RunShell(directory, "grep visibleError a.json").exitCode, 1);
+}
+
 TEST(DenoiseCommand, SaysWhatIsMissing) {
     const BoxDirectory directory;
     ASSERT_TRUE(Succeeds(directory, "LULL render scene.pbrt --spp 20 -o a.exr"));
@@ -113,6 +130,9 @@ TEST(DenoiseCommand, SaysWhatIsMissing) {
     ExpectFailure(directory, "denoise missing.exr -o out.exr", {"missing.exr"});
     ExpectFailure(directory, "denoise a.exr --half a.exr -o out.exr", {"a.exr", "same"});
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop denoised", {"--denoise"});
+    ASSERT_TRUE(Succeeds(directory, "cp a.exr again.exr"));
+    ExpectFailure(directory, "denoise a.exr --half again.exr -o out.exr",
+                  {"again.exr", "same pixels", "--seed"});
 }
 
 }  // namespace

@@ -206,6 +206,20 @@ TEST_F(LayersTest, ViewersSeeTheImage) {
     EXPECT_EQ(viewed.channels.at("stop"), std::vector<float>(150 * 100, 1.f));
 }
 
+TEST_F(LayersTest, ViewersSeeTheDenoisedImage) {
+    for (const char* rule : {"--cap 100", "--spp 20"}) {  // looks at blocks, and does not
+        ViewerServer server;
+        Render(std::string("--resolution 100x80 --block 40 --denoise -o a.exr ") + rule +
+               " --display " + server.Address());
+        ASSERT_EQ(server.Finish().size(), 1u);
+        const ViewedImage viewed = Reassemble(server.Finish()[0]);
+        const ExrImage image = ReadExr(directory.File("a.exr"));
+        for (const char* name : {"R", "G", "B", "spp"})
+            EXPECT_EQ(viewed.channels.at(name), image.Find(name)->values) << name;
+        EXPECT_NE(image.Find("G")->values, image.Find("noisy.G")->values);
+    }
+}
+
 TEST_F(LayersTest, RendersWithoutAViewerAllTheSame) {
     std::string address;
     {

@@ -188,8 +188,8 @@ TEST_F(RanksTest, CompareBenchAndRecord) {
             ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         }
     };
-    runBoth("compare" + size + "--block 25 --stop lnoise:0.5 --snapshots");
-    for (const char* image : {".automatic", ".reference"})
+    runBoth("compare" + size + "--block 25 --stop lnoise:0.5 --snapshots --denoise");
+    for (const char* image : {".automatic", ".denoised", ".reference"})
         EXPECT_EQ(Texels(std::string("one") + image), Texels(std::string("some") + image));
     EXPECT_EQ(ReadBytes(directory.File("one.thresholds.csv")),
               ReadBytes(directory.File("some.thresholds.csv")));

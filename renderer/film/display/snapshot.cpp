@@ -27,6 +27,7 @@ Snapshot::Snapshot(const PixelRect& region)
       columns(Cells(region.Width())),
       rows(Cells(region.Height())),
       values(size_t(region.Area()) * kChannels),
+      denoised(size_t(region.Area())),
       changed(size_t(columns) * size_t(rows)),
       shown(changed.size()) {}
 
@@ -47,8 +48,20 @@ void Snapshot::Show(const PixelRect& pixels, const Film& film) {
             const FilmPixel pixel = film.At(region.min + Vec2i(x, y));
             const Rgb mean = pixel.Mean();
             float* to = At(x, y);
-            for (int c = 0; c < 3; ++c) to[c] = mean[c];
+            for (int c = 0; c < 3 && !denoised[Index(x, y)]; ++c) to[c] = mean[c];
             to[3] = float(pixel.count);
+        }
+    Mark(r);
+}
+
+void Snapshot::ShowDenoised(const PixelRect& pixels, std::span<const float> rgb) {
+    const PixelRect r = Moved(pixels, region.min);
+    const float* from = rgb.data();
+    std::lock_guard lock(mutex);
+    for (int y = r.min.y(); y < r.max.y(); ++y)
+        for (int x = r.min.x(); x < r.max.x(); ++x, from += 3) {
+            std::copy_n(from, 3, At(x, y));
+            denoised[Index(x, y)] = true;
         }
     Mark(r);
 }

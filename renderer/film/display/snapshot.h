@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "renderer/film/film.h"
@@ -19,6 +20,8 @@ class Snapshot {
     explicit Snapshot(const PixelRect& region);
 
     void Show(const PixelRect& pixels, const Film& film);
+    // Shows these colours, R, G, B of each pixel, from now on in place of those of the film.
+    void ShowDenoised(const PixelRect& pixels, std::span<const float> rgb);
     void ShowStop(const PixelRect& block);
     // Marks everything that was ever shown as not sent.
     void ShowAllAgain();
@@ -32,13 +35,15 @@ class Snapshot {
     bool Take(Update* update);
 
   private:
-    float* At(int x, int y) { return &values[(size_t(y) * size_t(width) + size_t(x)) * kChannels]; }
+    float* At(int x, int y) { return &values[Index(x, y) * kChannels]; }
+    size_t Index(int x, int y) const { return size_t(y) * size_t(width) + size_t(x); }
     void Mark(const PixelRect& pixels);
 
     std::mutex mutex;
     const PixelRect region;
     const int width, columns, rows;
     std::vector<float> values;
+    std::vector<char> denoised;      // whether a pixel is shown so
     std::vector<PixelRect> changed;  // of each cell, from the region's corner
     std::vector<PixelRect> shown;    // the same, of all that was ever shown
     size_t next = 0;                 // the cell whose turn it is

@@ -163,6 +163,38 @@ TEST(Display, ComesToTheImageThatManyThreadsShow) {
     EXPECT_EQ(warned.count, 0);
 }
 
+// What was denoised stays so, while there are more samples.
+TEST(Display, ShowsDenoisedPixelsInPlaceOfTheFilm) {
+    ViewerServer server;
+    Film film(kRegion);
+    const PixelRect denoised = {{20, 30}, {90, 100}};
+    std::vector<float> rgb;
+    for (int i = 0; i < 3 * denoised.Area(); ++i) rgb.push_back(float(i));
+    Warned warned;
+    {
+        Display display(ParseDisplayAddress(server.Address()), "image", kRegion, warned.Sink());
+        AddSamples(kRegion, &film);
+        display.Show(kRegion, film);
+        display.ShowDenoised(denoised, rgb);
+        AddSamples(kRegion, &film);
+        display.Show(kRegion, film);
+        display.Finish(60);
+    }
+    ASSERT_EQ(server.Finish().size(), 1u);
+    ViewedImage image = Reassemble(server.Finish()[0]);
+    for (int y = 0, i = 0; y < denoised.Height(); ++y)
+        for (int x = 0; x < denoised.Width(); ++x, ++i) {
+            const Vec2i p = denoised.min + Vec2i(x, y), at = p - kRegion.min;
+            const size_t pixel = size_t(at.y()) * size_t(kRegion.Width()) + size_t(at.x());
+            for (int c = 0; c < 3; ++c) {
+                float& value = image.channels.at(std::string(1, "RGB"[c]))[pixel];
+                ASSERT_EQ(value, float(3 * i + c));
+                value = film.At(p).Mean()[c];
+            }
+        }
+    ExpectSame(image, film, {{0, 0}, {0, 0}});
+}
+
 TEST(Display, WarnsOnceWhereNobodyIsThere) {
     int port;
     {

@@ -180,6 +180,12 @@ TEST(Simulation, RefusesWhatCannotBeSimulated) {
          {"", "oracle:1", "luxtile", "dammertz:0.1:area", "fixed:x", "cycles:-1", "thresholds:"})
         EXPECT_THROW(MakeSimulator(rule), std::invalid_argument) << rule;
     EXPECT_THROW(MakeSimulator("thresholds:/no/such/file.csv"), std::runtime_error);
+    try {
+        MakeSimulator("denoised:0.5");
+        FAIL();
+    } catch (const std::invalid_argument& e) {
+        EXPECT_NE(std::string(e.what()).find("no denoised pictures"), std::string::npos);
+    }
     EXPECT_THROW(MakeSimulator("learned:/no/such/model.h5"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("learned"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("fixed:20")(MakeBlock(empty)), std::invalid_argument);

@@ -16,7 +16,7 @@ uint8_t Encode(float x) {
     return code;
 }
 
-double LightnessOf(uint8_t r, uint8_t g, uint8_t b) {
+double CodeLightness(uint8_t r, uint8_t g, uint8_t b) {
     const std::array<uint8_t, 3> rgb = {r, g, b};
     double lightness = -1;
     Lightness(rgb, {&lightness, 1});
@@ -56,20 +56,20 @@ TEST(EncodeSrgb8, ClampsAndSurvivesNonsense) {
 }
 
 TEST(Lightness, HasTheKnownValues) {
-    EXPECT_EQ(LightnessOf(0, 0, 0), 0);
-    EXPECT_NEAR(LightnessOf(255, 255, 255), 100, 1e-9);
-    EXPECT_NEAR(LightnessOf(128, 128, 128), 53.58501345216902, 1e-9);
-    EXPECT_NEAR(LightnessOf(0, 255, 0), 116 * std::cbrt(0.715160) - 16, 1e-9);
-    EXPECT_NEAR(LightnessOf(1, 1, 1), 116 * 7.787 / 12.92 / 255, 1e-4);  // the linear part
+    EXPECT_EQ(CodeLightness(0, 0, 0), 0);
+    EXPECT_NEAR(CodeLightness(255, 255, 255), 100, 1e-9);
+    EXPECT_NEAR(CodeLightness(128, 128, 128), 53.58501345216902, 1e-9);
+    EXPECT_NEAR(CodeLightness(0, 255, 0), 116 * std::cbrt(0.715160) - 16, 1e-9);
+    EXPECT_NEAR(CodeLightness(1, 1, 1), 116 * 7.787 / 12.92 / 255, 1e-4);  // the linear part
 }
 
 TEST(Lightness, IsThatOfDisplayedColours) {
     const std::vector<float> linear = {0, 0, 0, 7, 1, 2, 0.2122308f, -1, 0};
-    const std::vector<double> lightness = LightnessOf(linear);
+    const std::vector<double> lightness = lull::LightnessOf(linear);
     ASSERT_EQ(lightness.size(), 3u);
     EXPECT_EQ(lightness[0], 0);
     EXPECT_NEAR(lightness[1], 100, 1e-9);
-    EXPECT_EQ(lightness[2], LightnessOf(127, 0, 0));
+    EXPECT_EQ(lightness[2], CodeLightness(127, 0, 0));
 }
 
 TEST(Lightness, RefusesOtherLengths) {

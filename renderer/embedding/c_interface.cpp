@@ -1,0 +1,126 @@
+// The function of lull/denoising.h: no exception leaves it, and every pointer is looked at first.
+#include <lull/denoising.h>
+
+#include <array>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "renderer/denoise/visible_error.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kLargestSide = 1 << 16, kSmallestBlock = 10;
+
+// Of fixed length, so that running out of memory can be said too.
+thread_local std::array<char, 512> lastError = {};
+
+const char* Fail(const char* message) {
+    const size_t length = std::min(std::strlen(message), lastError.size() - 1);
+    std::memcpy(lastError.data(), message, length);
+    lastError[length] = 0;
+    return lastError.data();
+}
+
+void Require(bool condition, const std::string& message) {
+    if (!condition) throw std::invalid_argument(message);
+}
+
+// Copies an image to planes from number `first` on. Values need not be aligned.
+void Copy(const float* from, const lull_halves& layout, int channels, int first, Planes* to) {
+    const ptrdiff_t channel = layout.channel_stride ? layout.channel_stride : sizeof(float);
+    const ptrdiff_t pixel = layout.pixel_stride ? layout.pixel_stride : channels * channel;
+    const ptrdiff_t row = layout.row_stride ? layout.row_stride : to->width * pixel;
+    const auto* bytes = reinterpret_cast<const std::byte*>(from);
+    for (int c = 0; c < channels; ++c)
+        for (int y = 0; y < to->height; ++y)
+            for (int x = 0; x < to->width; ++x)
+                std::memcpy(to->Row(first + c, y) + x, bytes + y * row + x * pixel + c * channel,
+                            sizeof(float));
+}
+
+// Copies both halves, where they are known.
+void CopyFeature(const char* name, const lull_halves& feature, int channels, int first,
+                 Halves* to) {
+    Require(feature.a || !feature.b, std::string(name) + " has a second half, but no first");
+    if (!feature.a) return;
+    Copy(feature.a, feature, channels, first, &to->a);
+    Copy(feature.b ? feature.b : feature.a, feature, channels, first, &to->b);
+}
+
+NoisyPicture Read(const lull_noisy_picture& noisy) {
+    Require(std::min(noisy.width, noisy.height) >= 1 &&
+                std::max(noisy.width, noisy.height) <= kLargestSide,
+            "a picture of " + std::to_string(noisy.width) + "x" + std::to_string(noisy.height) +
+                " pixels; 1 to 65,536 are possible");
+    Require(noisy.colour.a && noisy.colour.b,
+            "the colours of both halves of the samples are needed");
+    Require(noisy.colour.a != noisy.colour.b,
+            "both halves have the same colours; their difference shows what is noise");
+    const Planes colour(noisy.width, noisy.height, kColours);
+    const Planes features(noisy.width, noisy.height, kFeatures);
+    NoisyPicture picture{{colour, colour}, {features, features}, {}};
+    Copy(noisy.colour.a, noisy.colour, kColours, 0, &picture.colour.a);
+    Copy(noisy.colour.b, noisy.colour, kColours, 0, &picture.colour.b);
+    CopyFeature("albedo", noisy.albedo, 3, 0, &picture.features);
+    CopyFeature("normal", noisy.normal, 3, 3, &picture.features);
+    CopyFeature("depth", noisy.depth, 1, kFeatures - 1, &picture.features);
+    for (Planes* half : {&picture.features.a, &picture.features.b})
+        for (size_t i = 0; i < half->Area(); ++i) {
+            float& depth = half->Plane(kFeatures - 1)[i];
+            depth = DisparityOf(depth);
+        }
+    return picture;
+}
+
+void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& clean) {
+    Require(clean.colour, "there is no room for the colours");
+    Require(clean.block_count >= 0 && (clean.blocks || clean.block_count == 0),
+            std::to_string(clean.block_count) + " blocks, of which there are none");
+    for (int i = 0; i < clean.block_count; ++i) {
+        const lull_block_error& block = clean.blocks[i];
+        Require(block.x >= 0 && block.y >= 0 && block.width >= kSmallestBlock &&
+                    block.height >= kSmallestBlock && block.x <= noisy.width - block.width &&
+                    block.y <= noisy.height - block.height,
+                "block " + std::to_string(i) +
+                    " must lie within the picture, and have at least 10 pixels a side");
+    }
+}
+
+void Write(const DenoisedPicture& denoised, lull_denoised_picture* clean) {
+    const EstimatedError error = MeasureError(denoised);
+    const Planes standard = clean->error ? StandardError(error) : Planes();
+    const std::vector<float> colours = Interleaved(denoised.picture);
+    for (int i = 0; i < clean->block_count; ++i) {
+        lull_block_error& block = clean->blocks[i];
+        const VisibleError visible = MeasureVisibleError(
+            error, block.x, block.y, block.x + block.width, block.y + block.height);
+        block.estimate = visible.estimate;
+        block.upper = visible.upper;
+    }
+    std::ranges::copy(standard.values, clean->error);
+    std::ranges::copy(colours, clean->colour);
+}
+
+}  // namespace
+
+}  // namespace lull
+
+extern "C" const char* lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean) {
+    try {
+        if (!noisy || !clean) return lull::Fail("a null pointer instead of a picture");
+        lull::NoisyPicture picture = lull::Read(*noisy);
+        lull::CheckOutput(*noisy, *clean);
+        lull::Write(lull::Denoise(std::move(picture)), clean);
+        return nullptr;
+    } catch (const std::bad_alloc&) {
+        return lull::Fail("out of memory");
+    } catch (const std::exception& e) {
+        return lull::Fail(e.what());
+    } catch (...) {
+        return lull::Fail("something unknown went wrong");
+    }
+}

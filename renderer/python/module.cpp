@@ -1,0 +1,167 @@
+// The Python module `lull_denoising`: the C interface with numpy arrays and exceptions.
+#include <lull/denoising.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace {
+
+constexpr int kLeastRest =
+    40;  // pixels; less at the right and at the bottom is no block of its own
+
+using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+std::string ShapeOf(const py::array& array) {
+    std::string text;
+    for (py::ssize_t i = 0; i < array.ndim(); ++i)
+        text += (i ? " x " : "") + std::to_string(array.shape(i));
+    return text;
+}
+
+// Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
+Floats ToFloats(const py::array& array, const char* name, int channels, py::ssize_t height,
+                py::ssize_t width) {
+    const bool isFlat = channels == 1 && array.ndim() == 2;
+    if (!(isFlat || array.ndim() == 3) || array.shape(0) != height || array.shape(1) != width ||
+        (!isFlat && array.shape(2) < channels))
+        throw py::value_error(std::string(name) + " has the shape " + ShapeOf(array) +
+                              "; needed are " + std::to_string(height) + " x " +
+                              std::to_string(width) + " x " + std::to_string(channels));
+    if (array.dtype().kind() != 'f')
+        throw py::value_error(std::string(name) + " has the type " +
+                              py::str(array.dtype()).cast<std::string>() +
+                              "; linear floats are needed");
+    if (isFlat) return Floats(array);
+    return Floats(array[py::make_tuple(py::ellipsis(), py::slice(0, channels, 1))]);
+}
+
+// Holds the arrays that a lull_halves points to.
+class Halves {
+  public:
+    Halves(const py::array& a, const py::array& b, const char* name, int channels,
+           py::ssize_t height, py::ssize_t width)
+        : a(ToFloats(a, name, channels, height, width)),
+          b(ToFloats(b, name, channels, height, width)) {}
+
+    // Reads one image, a pair of them, or None.
+    static std::optional<Halves> Read(const py::object& given, const char* name, int channels,
+                                      py::ssize_t height, py::ssize_t width) {
+        if (given.is_none()) return {};
+        if (py::isinstance<py::array>(given)) {
+            const auto image = given.cast<py::array>();
+            return Halves(image, image, name, channels, height, width);
+        }
+        if (!py::isinstance<py::sequence>(given) || py::len(given) != 2)
+            throw py::value_error(std::string(name) + " must be an array, or a pair of arrays");
+        const auto pair = given.cast<py::sequence>();
+        return Halves(pair[0].cast<py::array>(), pair[1].cast<py::array>(), name, channels, height,
+                      width);
+    }
+
+    lull_halves View() const { return {a.data(), b.data(), 0, 0, 0}; }
+
+  private:
+    Floats a, b;
+};
+
+lull_halves ViewOf(const std::optional<Halves>& halves) {
+    return halves ? halves->View() : lull_halves{};
+}
+
+// Returns where blocks begin along an axis, and its end.
+std::vector<int> CutsOf(int length, int side) {
+    std::vector<int> cuts;
+    for (int at = 0; at == 0 || at + kLeastRest <= length; at += side) cuts.push_back(at);
+    cuts.push_back(length);
+    return cuts;
+}
+
+struct Denoised {
+    py::array_t<float> picture, error;
+    int columns = 0;
+    std::vector<lull_block_error> blocks;
+
+    py::array_t<double> Of(double lull_block_error::*field) const {
+        py::array_t<double> values({int(blocks.size()) / columns, columns});
+        for (size_t i = 0; i < blocks.size(); ++i) values.mutable_data()[i] = blocks[i].*field;
+        return values;
+    }
+    std::vector<std::tuple<int, int, int, int>> Rects() const {
+        std::vector<std::tuple<int, int, int, int>> rects;
+        for (const lull_block_error& b : blocks) rects.emplace_back(b.x, b.y, b.width, b.height);
+        return rects;
+    }
+};
+
+Denoised Denoise(const py::array& a, const py::array& b, const py::object& albedo,
+                 const py::object& normal, const py::object& depth, int block) {
+    if (a.ndim() != 3) throw py::value_error("a has the shape " + ShapeOf(a) + ", not H x W x 3");
+    if (block < kLeastRest)
+        throw py::value_error("blocks of " + std::to_string(block) + " pixels; at least " +
+                              std::to_string(kLeastRest) + " are needed");
+    const py::ssize_t height = a.shape(0), width = a.shape(1);
+    const Halves colour(a, b, "a or b", 3, height, width);
+    const auto albedos = Halves::Read(albedo, "albedo", 3, height, width),
+               normals = Halves::Read(normal, "normal", 3, height, width),
+               depths = Halves::Read(depth, "depth", 1, height, width);
+    const lull_noisy_picture noisy = {int(width),      int(height),     colour.View(),
+                                      ViewOf(albedos), ViewOf(normals), ViewOf(depths)};
+    Denoised result{py::array_t<float>({height, width, py::ssize_t(3)}),
+                    py::array_t<float>({height, width}),
+                    0,
+                    {}};
+    const std::vector<int> xs = CutsOf(int(width), block), ys = CutsOf(int(height), block);
+    result.columns = int(xs.size()) - 1;
+    for (size_t v = 0; v + 1 < ys.size(); ++v)
+        for (size_t u = 0; u + 1 < xs.size(); ++u)
+            result.blocks.push_back({xs[u], ys[v], xs[u + 1] - xs[u], ys[v + 1] - ys[v], 0, 0});
+    lull_denoised_picture clean = {result.picture.mutable_data(), result.error.mutable_data(),
+                                   result.blocks.data(), int(result.blocks.size())};
+    std::optional<std::string> wrong;
+    {
+        const py::gil_scoped_release others;
+        if (const char* message = lull_denoise(&noisy, &clean)) wrong = message;
+    }
+    if (wrong) throw py::value_error(*wrong);
+    return result;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(lull_denoising, module) {
+    using namespace py::literals;
+    module.doc() =
+        "Takes the noise out of pictures of any renderer, and says how wrong they may still be.\n\n"
+        "    clean = lull_denoising.denoise(first, second, albedo=albedo, normal=normal)\n"
+        "    clean.picture, clean.upper.max()\n";
+
+    py::class_<Denoised>(module, "Denoised", "A denoised picture, and what is known of its error.")
+        .def_readonly("picture", &Denoised::picture, "H x W x 3, float32, linear.")
+        .def_readonly("error", &Denoised::error,
+                      "H x W: the estimated standard error of each pixel in lightness, 0 to 100.")
+        .def_property_readonly("blocks", &Denoised::Rects,
+                               "Where the blocks lie: (x, y, width, height), row by row.")
+        .def_property_readonly(
+            "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
+            "The visible error of each block, in lightness: an array of rows x columns.")
+        .def_property_readonly(
+            "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
+            "What that hardly exceeds: meant to, in 5 of 100 blocks.");
+
+    module.def(
+        "denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),
+        "normal"_a = py::none(), "depth"_a = py::none(), "block"_a = 200,
+        "Denoises a picture, given as two halves of its samples: linear arrays of H x W x 3,\n"
+        "two renders with other seeds for instance. `albedo` (H x W x 3, 0 to 1), `normal`\n"
+        "(H x W x 3, -1 to 1) and `depth` (H x W) are of what paths meet first: an array, or\n"
+        "a pair of those that belong to a and b. `block` is the pixels a side of the blocks\n"
+        "whose errors are told, which lie as those of lull.Stopper. Returns a Denoised.");
+}

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Tests of the Python module of the denoiser: python_test.py FOLDER, where the module is."""
+import sys
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, sys.argv.pop(1))
+import lull_denoising  # noqa: E402
+
+WIDTH, HEIGHT = 130, 70
+
+
+def pictures(noise=0.08):
+    """Returns a picture, two noisy halves of it, and its albedo."""
+    random = np.random.default_rng(1)
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    albedo = np.where((x // 15 + y // 15) % 2, 0.8, 0.3)[..., None] * np.ones(3)
+    truth = albedo * (0.3 + 0.003 * x[..., None])
+    halves = [np.float32(np.maximum(0, truth + noise * random.standard_normal(truth.shape))) for _ in "ab"]
+    return truth, *halves, np.float32(albedo)
+
+
+def rms(a, b):
+    return np.sqrt(np.mean((a - b) ** 2))
+
+
+class DenoisingTest(unittest.TestCase):
+    def test_takes_noise_out(self):
+        truth, a, b, albedo = pictures()
+        clean = lull_denoising.denoise(a, b, albedo=albedo, block=60)
+        self.assertEqual(clean.picture.shape, truth.shape)
+        self.assertEqual(clean.picture.dtype, np.float32)
+        self.assertLess(rms(clean.picture, truth), rms((a + b) / 2, truth) / 4)
+        self.assertEqual(clean.error.shape, (HEIGHT, WIDTH))
+        self.assertEqual(clean.blocks, [(0, 0, 60, 70), (60, 0, 70, 70)])
+        self.assertEqual(clean.upper.shape, (1, 2))
+        self.assertTrue((clean.upper >= clean.estimate).all())
+        less = lull_denoising.denoise(*pictures(0.02)[1:3], albedo=albedo, block=60)
+        self.assertTrue((less.upper < clean.upper).all())
+
+    def test_reads_any_layout(self):
+        _, a, b, albedo = pictures()
+        depth = np.ones((HEIGHT, WIDTH), np.float32)
+        plain = lull_denoising.denoise(a, b, albedo=albedo, depth=depth).picture
+        alpha = np.ones((HEIGHT, WIDTH, 1), np.float32)
+        other = lull_denoising.denoise(np.concatenate([a, alpha], axis=2), b[::-1].copy()[::-1],
+                                       albedo=(albedo, np.float64(albedo)), depth=[depth[..., None], depth])
+        np.testing.assert_array_equal(other.picture, plain)
+
+    def test_says_what_is_wrong(self):
+        _, a, b, albedo = pictures()
+        for message, call in (
+                ("130 x 3", lambda: lull_denoising.denoise(a, b[:50])),
+                ("normal", lambda: lull_denoising.denoise(a, b, normal=albedo[..., :2])),
+                ("pair", lambda: lull_denoising.denoise(a, b, albedo=[albedo])),
+                ("uint8", lambda: lull_denoising.denoise(np.uint8(a), b)),
+                ("H x W x 3", lambda: lull_denoising.denoise(a[0], b)),
+                ("the same colours", lambda: lull_denoising.denoise(a, a)),
+                ("39 pixels", lambda: lull_denoising.denoise(a, b, block=39))):
+            with self.assertRaisesRegex(ValueError, message):
+                call()
+
+
+unittest.main()
