@@ -19,8 +19,8 @@ void ExpectClose(const BsdfValue& v, const ReferenceValue& r, double tolerance) 
 }
 
 BsdfValue EvaluateLobe(const Lobe& lobe, const Vec3f& wo, const Vec3f& wi) {
-    return VisitLobe(lobe, [&](const auto& l) -> BsdfValue {
-        if constexpr (l.kIsSpecular)
+    return VisitLobe(lobe, [&]<typename L>(const L& l) -> BsdfValue {
+        if constexpr (L::kIsSpecular)
             return {};
         else
             return l.Evaluate(wo, wi);

@@ -95,7 +95,7 @@ TEST(Robustness, LobesAreSoundForAnyDirections) {
         const Vec3f wo = HardDirection(&random, Vec3f::UnitZ());
         const Vec3f wi = HardDirection(&random, wo);
         VisitLobe(HardLobe(&random), [&](const auto& lobe) {
-            if constexpr (!lobe.kIsSpecular) {
+            if constexpr (!std::decay_t<decltype(lobe)>::kIsSpecular) {
                 const BsdfValue v = lobe.Evaluate(wo, wi);
                 ExpectSound(v.f, v.pdf);
             }
