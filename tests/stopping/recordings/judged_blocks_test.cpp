@@ -10,7 +10,7 @@ namespace {
 // Keeps what is said.
 struct Listener {
     std::vector<std::string> said;
-    Talk Ear() {
+    WarningSink Ear() {
         return [this](const std::string& message) { said.push_back(message); };
     }
 };
