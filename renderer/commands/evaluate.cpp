@@ -39,9 +39,11 @@ threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
 Columns:
   views   how many viewpoints, and in them
   blocks  how many blocks were judged
-  open    recordings that ended, before 10,000 spp, when the rule had not stopped the block; it is
-          taken to stop at their end. Predicted thresholds are taken as they are, and clipped in
-          the same way in a row of their own.
+  open    recordings that ended, before 10,000 spp, when the rule had not stopped the block. Such
+          rules have two rows: "at least", with blocks taken to stop at these ends, which is the
+          least error if people wanted no more than was recorded; and "extended", with recordings
+          that go on by the laws that their own noise and entropies follow. Predicted thresholds
+          are taken as they are, and clipped to the ends in a row of their own.
   ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
           not, against the judgement of people, in %
   error   mean distance from the human threshold, in spp, and in % of 10,000 spp
