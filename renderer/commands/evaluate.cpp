@@ -55,9 +55,9 @@ Columns:
           have none (fixed, thresholds, cycles) by its stop / spp
 All are means over the viewpoints, but acc and auc are of all decisions together.
 
---answers judges --stop rules by single answers of people instead, on data sets of one viewpoint. The
-file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the spp of
-the picture that was shown, 1 where noise was seen. All rules are judged by the same answers.
+--answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
+The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
+spp of the picture that was shown, 1 where noise was seen. All rules are judged by the same answers.
   loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
           the rule's number (of its odds, for a network), with a location and a slope to be fitted
   share   % of the way from one threshold for all blocks to one threshold a block, both with one

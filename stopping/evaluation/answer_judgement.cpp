@@ -235,8 +235,8 @@ AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
     const std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
     if (asked.empty())
         throw std::runtime_error(fmt::format(
-            "no answer is to a block of '{}' at an spp that was recorded, where all rules have a "
-            "number",
+            "no answer is to a recorded block of '{}' at an spp where all rules have a number; "
+            "record blocks that were answered",
             viewpoint.name));
     const auto all = [](const Asked&) { return size_t(0); };
     const ScaledFit best = FitAnswers(
