@@ -23,9 +23,9 @@ struct Row {
 std::vector<Row> MakeRows(const JudgedRule& rule, const JudgeOptions& options) {
     std::vector<Row> rows;
     for (const ViewpointOutcome& viewpoint : rule.viewpoints)
-        rows.push_back({rule.name, viewpoint.name, viewpoint.setting,
+        rows.push_back({LabelOf(rule), viewpoint.name, viewpoint.setting,
                         Judge(std::span(&viewpoint, 1), options)});
-    rows.push_back({rule.name, "all", rule.setting, Judge(rule.viewpoints, options)});
+    rows.push_back({LabelOf(rule), "all", rule.setting, Judge(rule.viewpoints, options)});
     return rows;
 }
 
@@ -71,7 +71,7 @@ void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
         const std::vector<Row> rows = MakeRows(rule, options);
         overall.push_back(rows.back());
         if (!each) continue;
-        fmt::print(out, "{}\n", rule.name);
+        fmt::print(out, "{}\n", LabelOf(rule));
         PrintRows(out, "viewpoint", &Row::viewpoint, rows, options);
         fmt::print(out, "\n");
     }

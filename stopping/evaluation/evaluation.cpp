@@ -50,6 +50,11 @@ void AddMeans(const ViewpointOutcome& viewpoint, const JudgeOptions& options, Ju
 
 }  // namespace
 
+std::string LabelOf(const JudgedRule& rule) {
+    if (rule.openStops == OpenStops::None) return rule.name;
+    return rule.name + (rule.openStops == OpenStops::Ends ? ", at least" : ", extended");
+}
+
 RuleOutcome OutcomeOfStop(int stop, int grid) {
     RuleOutcome outcome{.stop = stop};
     for (int x = kPassSpp; x <= kJudgedCap; x += grid)

@@ -20,7 +20,8 @@ struct Verdict {
 // Holds what a rule did to a block.
 struct RuleOutcome {
     int stop = 0;  // spp; kJudgedCap where it never stopped
-    // Whether what is known ends at `stop`, below the cap, and the rule had not stopped the block.
+    // Whether the recording ends below the cap and the rule had not stopped the block there: it
+    // stops at the end then or, on a recording that was extended, beyond it.
     bool open = false;
     std::vector<Verdict> verdicts = {};
 };
@@ -39,12 +40,23 @@ struct ViewpointOutcome {
     std::vector<BlockOutcome> blocks = {};
 };
 
+// Says where blocks stop that a rule had not stopped where their recordings end.
+enum class OpenStops {
+    None,     // there are no such blocks
+    Ends,     // at these ends, although the rule goes on for longer
+    Extended  // where the rule stops if recordings go on by their own laws (extension.h)
+};
+
 // Holds the outcomes of a rule, or of the thresholds in a file.
 struct JudgedRule {
     std::string name;
     std::string setting = {};  // the one for all viewpoints, if there is one
     std::vector<ViewpointOutcome> viewpoints = {};
+    OpenStops openStops = OpenStops::None;
 };
+
+// Returns the name for tables: "NAME, at least" and "NAME, extended" where blocks are open.
+std::string LabelOf(const JudgedRule& rule);
 
 // Returns the critical error of one viewpoint (paper, Table 3), in [0, 1]: over its blocks and the
 // spp x = 20, 20 + grid, ... up to kJudgedCap, the share of x at which the stop S is wrong. With

@@ -7,10 +7,32 @@
 #include <stdexcept>
 
 #include "stopping/evaluation/simulation.h"
+#include "stopping/evaluation/two_figures.h"
+#include "stopping/recordings/extension.h"
 
 namespace lull {
 
 namespace {
+
+// Adds rivals; the settings of those that go on for longer than recordings are chosen on extended
+// recordings as well.
+void AddRivals(std::span<const JudgedBlock> blocks, std::span<const JudgedBlock> extended,
+               const RulesToJudge& judged, std::vector<JudgedRule>* rules) {
+    const auto judge = [&](std::span<const JudgedBlock> on) {
+        return JudgeRivals(on, judged.chooseBy, judged.grid);
+    };
+    const auto ruleOf = [](Rival& rival) {
+        return JudgedRule{rival.rule, rival.bestOfAll, std::move(rival.viewpoints)};
+    };
+    std::vector<Rival> recorded = judge(blocks), longer;
+    for (size_t i = 0; i < recorded.size(); ++i) {
+        const auto extend = [&] {
+            if (longer.empty()) longer = judge(extended);
+            return ruleOf(longer[i]);
+        };
+        AddTwoFigures(blocks, ruleOf(recorded[i]), extend, rules);
+    }
+}
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
@@ -75,15 +97,19 @@ JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
 std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks,
                                       const RulesToJudge& judged) {
     std::vector<JudgedRule> rules;
-    if (judged.rivals)
-        for (Rival& rival : JudgeRivals(blocks, judged.chooseBy, judged.grid))
-            rules.push_back({rival.rule, rival.bestOfAll, std::move(rival.viewpoints)});
+    const ExtendedBlocks extended = ExtendBlocks(blocks);
+    if (judged.rivals) AddRivals(blocks, extended.blocks, judged, &rules);
     RuleContext context = judged.context;
     if (!blocks.empty()) context.passSpp = blocks.front().passSpp;
-    for (const std::string& rule : judged.rules)
-        rules.push_back({rule, "", Simulate(blocks, MakeSimulator(rule, context), "")});
-    const bool anyShort = std::ranges::any_of(
-        blocks, [](const JudgedBlock& b) { return b.recording->spp.back() < kJudgedCap; });
+    for (const std::string& rule : judged.rules) {
+        const Simulator simulator = MakeSimulator(rule, context);
+        const auto judge = [&](std::span<const JudgedBlock> on) {
+            return JudgedRule{.name = rule, .viewpoints = Simulate(on, simulator, "")};
+        };
+        AddTwoFigures(
+            blocks, judge(blocks), [&] { return judge(extended.blocks); }, &rules);
+    }
+    const bool anyShort = !extended.recordings.empty();
     for (const std::string& path : judged.predicted) {
         rules.push_back(JudgeFile(path, blocks, false));
         if (anyShort) rules.push_back(JudgeFile(path, blocks, true));

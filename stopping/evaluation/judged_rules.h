@@ -34,7 +34,8 @@ struct RulesToJudge {
     int grid = 40;  // spp between the judgements of rivals
 };
 
-// Judges rivals, rules and files, in this order. Throws as MakeSimulator() and its simulators do,
+// Judges rivals, rules and files, in this order; rules that had not stopped all blocks where their
+// recordings end come twice, see AddTwoFigures(). Throws as MakeSimulator() and its simulators do,
 // and std::runtime_error for a block that a file does not have.
 std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks, const RulesToJudge&);
 

@@ -6,6 +6,8 @@
 
 #include "stopping/evaluation/certainty.h"
 #include "stopping/evaluation/simulation.h"
+#include "stopping/evaluation/two_figures.h"
+#include "stopping/recordings/extension.h"
 #include "stopping/rules/learned.h"
 
 namespace lull {
@@ -19,6 +21,20 @@ std::string JudgementText(const std::vector<ViewpointOutcome>& viewpoints,
                        options.margins.at(0), 100 * j.criticalErrors.at(0), j.absoluteError,
                        j.auc.value_or(0.5));
 }
+
+// Holds what networks did to blocks that each of them did not see, or did.
+struct NetworkOutcomes {
+    std::string name;
+    std::vector<JudgedBlock> blocks = {};
+    std::vector<ViewpointOutcome> recorded = {}, extended = {};
+
+    void Add(const Network& network, const ModelSettings& settings,
+             std::span<const JudgedBlock> judged) {
+        blocks.insert(blocks.end(), judged.begin(), judged.end());
+        AddOutcomes(network, settings, judged, &recorded);
+        AddOutcomes(network, settings, ExtendBlocks(judged).blocks, &extended);
+    }
+};
 
 }  // namespace
 
@@ -58,7 +74,8 @@ std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
     const std::function<TrainingEvents(const BlockSplit&)>& eventsOf) {
     TrainingResult result;
-    if (plan.crossValidate) result.rules.push_back({.name = "each viewpoint left out"});
+    std::vector<NetworkOutcomes> outcomes;
+    if (plan.crossValidate) outcomes.push_back({.name = "each viewpoint left out"});
     for (size_t i = 0; i < splits.size(); ++i) {
         const BlockSplit& split = splits[i];
         std::optional<Network> network =
@@ -70,12 +87,16 @@ std::optional<TrainingResult> TrainAll(
         const bool isLast = plan.withLast && i + 1 == splits.size();
         const bool isTested = !split.test.empty();
         if (isLast)
-            result.rules.push_back({.name = isTested ? "blocks left out" : "blocks trained on"});
-        AddOutcomes(*network, plan.settings, isTested ? split.test : split.training,
-                    &result.rules.back().viewpoints);
+            outcomes.push_back({.name = isTested ? "blocks left out" : "blocks trained on"});
+        outcomes.back().Add(*network, plan.settings, isTested ? split.test : split.training);
         result.network = std::move(*network);
     }
-    if (plan.crossValidate) result.logRatios = LogRatioQuantiles(result.rules.front().viewpoints);
+    if (plan.crossValidate) result.logRatios = LogRatioQuantiles(outcomes.front().recorded);
+    for (NetworkOutcomes& o : outcomes)
+        AddTwoFigures(
+            o.blocks, {.name = o.name, .viewpoints = std::move(o.recorded)},
+            [&] { return JudgedRule{.name = o.name, .viewpoints = std::move(o.extended)}; },
+            &result.rules);
     return result;
 }
 
@@ -93,7 +114,7 @@ std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const Bl
                                               const JudgeOptions& judge) {
     std::map<std::string, std::string> record = MakeRecord(plan, split);
     for (const JudgedRule& rule : result.rules)
-        record["judged on " + rule.name] = JudgementText(rule.viewpoints, judge);
+        record["judged on " + LabelOf(rule)] = JudgementText(rule.viewpoints, judge);
     if (const std::string certainty = CertaintyText(result); !certainty.empty())
         record["certainty"] = certainty;
     return record;

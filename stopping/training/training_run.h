@@ -37,7 +37,8 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
 struct TrainingResult {
     Network network;  // the last one
     // What networks did: "each viewpoint left out" and, of the last one, "blocks left out" or, if
-    // there are none, "blocks trained on".
+    // there are none, "blocks trained on"; each twice where recordings end too early for it, see
+    // AddTwoFigures().
     std::vector<JudgedRule> rules = {};
     // Of the networks without each viewpoint, see LogRatioQuantiles(); else empty.
     std::vector<double> logRatios = {};

@@ -11,6 +11,7 @@
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
+#include "stopping/evaluation/single_answers.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/observers/observers.h"
@@ -155,6 +156,21 @@ void FuzzAnswers(std::span<const char> bytes) {
     WriteThresholds(out, ThresholdsOf(collected));
 }
 
+// What is read is an answer that somebody can have given.
+void FuzzSingleAnswers(std::span<const char> bytes) {
+    std::istringstream in(std::string(bytes.begin(), bytes.end()));
+    std::vector<SingleAnswer> answers;
+    try {
+        answers = ReadSingleAnswers(in, "input");
+    } catch (const std::runtime_error&) {
+        return;
+    }
+    if (answers.empty()) throw std::logic_error("a file without answers was taken");
+    for (const SingleAnswer& answer : answers)
+        if (answer.block < 0 || answer.spp < 1 || answer.line < 2)
+            throw std::logic_error("an answer that cannot be was taken");
+}
+
 // What is read makes as many combinations as it has.
 void FuzzGrid(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
@@ -186,6 +202,7 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds},
             {"answers", FuzzAnswers},
+            {"single_answers", FuzzSingleAnswers},
             {"grid", FuzzGrid}};
 }
 

@@ -17,8 +17,8 @@ struct NamedFuzzTarget {
 };
 
 // Lists the targets: pbrt, gltf, ply, bsdf, lens, png, exr, scene, model, keras_config, thresholds,
-// answers and grid. Most of what `model` finds is in the HDF5 library, which does not withstand
-// files made to harm it.
+// answers, single_answers and grid. Most of what `model` finds is in the HDF5 library, which does
+// not withstand files made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 
 }  // namespace lull

@@ -94,7 +94,11 @@ TEST(Evaluate, RunsRulesOnRecordings) {
     EXPECT_TRUE(Contains(outcome.err, "no thresholds for 'shed'")) << outcome.err;
     // Seven blocks of two viewpoints; at 0.3 all but the one at the cap end before they stop.
     EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.51"), "  2       7     0")) << outcome.out;
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3"), "  2       7     6")) << outcome.out;
+    EXPECT_EQ(Line(outcome.out, "lnoise:0.51, "), "");
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, at least"), "  2       7     6"))
+        << outcome.out;
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, extended"), "  2       7     6"))
+        << outcome.out;
     // fixed: 500, 0, 700, 1600 and 275, 9100, 325: means of 700 and 3233.
     EXPECT_TRUE(Contains(Line(outcome.out, "fixed:900"), "  1967   19.7")) << outcome.out;
     EXPECT_NE(Line(outcome.out, "thresholds:all.csv"), "");
@@ -122,8 +126,36 @@ TEST(Evaluate, ComparesRivals) {
     EXPECT_TRUE(Contains(alone.err, "other viewpoints")) << alone.err;
 }
 
+TEST(Evaluate, JudgesRulesBySingleAnswers) {
+    const EvaluationDirectory directory;
+    // People stop to see noise where it is 0.5; block 3 of the attic ends at 3,740 spp.
+    std::string answers = "block,spp,noise_seen\n";
+    for (int block = 0; block < 4; ++block)
+        for (int spp = 90; spp < 4000; spp += 180) {
+            const int root = 20 + 10 * block;
+            answers += fmt::format("{},{},{}\n", block, spp, int(spp < root * root));
+        }
+    directory.Write("answers.csv", answers);
+    const std::string command =
+        "evaluate data.h5 --without cellar --without shed --answers answers.csv --stop lnoise:0.5 "
+        "--stop fixed:1600 --csv out.csv ";
+    const Outcome outcome = RunLull(directory, command);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.out, "attic: 45 of 88 answers, to 4 of 4 blocks, count"))
+        << outcome.out;
+    EXPECT_TRUE(Contains(outcome.out, "left out: 43 answers at spp where not every rule has"));
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.5 "), "   100.0  ")) << outcome.out;
+    EXPECT_TRUE(Contains(Line(outcome.out, "fixed:1600 "), "     0.0  ")) << outcome.out;
+    const std::string csv = ReadBytes(directory.File("out.csv"));
+    EXPECT_TRUE(Contains(csv, "\nlnoise:0.5,attic,45,4,")) << csv;
+    const Outcome brief = RunLull(directory, command + "--brief");
+    EXPECT_FALSE(Contains(brief.out, "threshold  stops")) << brief.out;
+}
+
 TEST(Evaluate, SaysWhatIsWrong) {
     const EvaluationDirectory directory;
+    directory.Write("answers.csv", "block,spp,noise_seen\n0,400,1\n4,400,1\n");
+    directory.Write("torn.csv", "block,spp,noise_seen\n0,400,1\n0,4\n");
     directory.Write("bad.csv", "attic;20;x;\n");
     directory.Write("short.csv", "attic;20;\n");
     const struct {
@@ -140,7 +172,14 @@ TEST(Evaluate, SaysWhatIsWrong) {
         {"evaluate data.h5 --human human.csv --stop cycles:0.05", {"0.06 0.04"}},
         {"evaluate data.h5 --human human.csv --stop learned:human.csv", {"human.csv"}},
         {"evaluate data.h5 --human human.csv --stop fixed:20 --without barn", {"'barn'"}},
-        {"evaluate data.h5 --human human.csv --stop fixed:20 --csv no/such/f.csv", {"no/such"}}};
+        {"evaluate data.h5 --human human.csv --stop fixed:20 --csv no/such/f.csv", {"no/such"}},
+        {"evaluate data.h5 --without cellar --without shed --answers answers.csv --stop fixed:20",
+         {"answers.csv:3: ", "block 4", "0 to 3"}},
+        {"evaluate data.h5 --answers torn.csv --stop fixed:20", {"torn.csv:3: ", "'0,4'"}},
+        {"evaluate data.h5 --answers human.csv --stop fixed:20",
+         {"human.csv:1: ", "block,spp,noise_seen"}},
+        {"evaluate data.h5 --answers answers.csv --stop fixed:20",
+         {"'attic', 'cellar', 'shed'", "--without"}}};
     for (const auto& [arguments, parts] : cases) ExpectFailure(directory, arguments, parts);
     for (const char* arguments :
          {"evaluate", "evaluate --human human.csv", "evaluate --human human.csv --rivals",
@@ -148,7 +187,11 @@ TEST(Evaluate, SaysWhatIsWrong) {
           "evaluate --human no.csv --predicted predicted.csv",
           "evaluate --human human.csv --predicted predicted.csv --grid 0",
           "evaluate --human human.csv --predicted predicted.csv --margins 2,x",
-          "evaluate data.h5 --human human.csv --rivals --choose-by taste"})
+          "evaluate data.h5 --human human.csv --rivals --choose-by taste",
+          "evaluate data.h5 --stop fixed:20", "evaluate --answers answers.csv --stop fixed:20",
+          "evaluate data.h5 --answers answers.csv",
+          "evaluate data.h5 --answers answers.csv --rivals --stop fixed:20",
+          "evaluate data.h5 --answers answers.csv --human human.csv --stop fixed:20"})
         EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
     EXPECT_EQ(RunLull(directory, "evaluate --help").exitCode, 0);
 }

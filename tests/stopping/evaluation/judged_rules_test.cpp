@@ -60,6 +60,14 @@ TEST(JudgedRules, RunOnRecordings) {
     EXPECT_EQ(files[1].viewpoints[0].blocks[1].outcome.stop, 1200);
     EXPECT_TRUE(files[1].viewpoints[0].blocks[1].outcome.open);
     EXPECT_FALSE(files[1].viewpoints[0].blocks[0].outcome.open);
+    // So is a block of a rule, which has a second row on extended recordings.
+    const std::vector<JudgedRule> open = JudgeOnBlocks(blocks, {.rules = {"lnoise:0.5"}});
+    ASSERT_EQ(open.size(), 2u);
+    EXPECT_EQ(open[0].openStops, OpenStops::Ends);
+    EXPECT_EQ(open[1].openStops, OpenStops::Extended);
+    EXPECT_EQ(open[0].viewpoints[0].blocks[0].outcome.stop, 1200);
+    // Noise of 20 / sqrt(n).
+    EXPECT_NEAR(open[1].viewpoints[0].blocks[0].outcome.stop, 1600, 150);
     const ScratchFile part(".csv", Line(MakeHumanRow("attic")));
     EXPECT_THROW(JudgeOnBlocks(blocks, {.predicted = {part.path}}), std::runtime_error);
 }
