@@ -169,7 +169,7 @@ void Session::SetSources() {
 void Session::KeepCheckpoints() {
     if (!HasCheckpoint()) return;
     options.render.checkpointInterval = options.checkpoint.interval;
-    options.render.checkpointAtEnd = options.checkpoint.isKept;
+    if (options.checkpoint.isKept) options.render.checkpointAtEnd = true;
     options.render.onCheckpoint = [this, said = std::string()](const RenderState& state) mutable {
         said = TryToWrite(state, film, options.render.layers, said);
     };

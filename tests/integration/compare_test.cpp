@@ -329,7 +329,7 @@ TEST(Bench, SaysWhatIsWrong) {
     ExpectFailure(directory, "bench scene.pbrt --external others.csv",
                   {"others.csv:1: ", "name,seconds,file.exr"});
     ExpectFailure(directory, "bench scene.pbrt --external lost.csv", {"lost.exr"});
-    ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"});
+    ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"}, 2);
     ExpectFailure(directory, "bench scene.pbrt --guide on --estimator pbrt-v3", {"--guide on"});
     EXPECT_EQ(RunLull(directory, "bench scene.pbrt --samplers halton").exitCode, 2);
     EXPECT_EQ(RunLull(directory, "bench").exitCode, 2);
