@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/stopping/what_of.h"
+
 namespace lull::single_answers_test {
 namespace {
 
@@ -14,12 +16,7 @@ std::vector<SingleAnswer> Read(const std::string& text) {
 }
 
 std::string ErrorOf(const std::string& text) {
-    try {
-        Read(text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return WhatOf([&] { Read(text); });
 }
 
 TEST(SingleAnswers, AreReadLineByLine) {

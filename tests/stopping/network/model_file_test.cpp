@@ -18,6 +18,7 @@
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
+#include "tests/stopping/what_of.h"
 
 namespace lull::model_file_test {
 namespace {
@@ -163,12 +164,7 @@ TEST(ModelFile, WritesNoBrokenModel) {
 
 // Returns the message of the error that reading the file leads to.
 std::string ErrorOf(const std::string& path) {
-    try {
-        ReadModel(path);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return WhatOf([&] { ReadModel(path); });
 }
 
 void ExpectError(const std::string& path, const std::string& part) {

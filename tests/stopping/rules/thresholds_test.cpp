@@ -8,6 +8,7 @@
 
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/scratch_file.h"
+#include "tests/stopping/what_of.h"
 
 namespace lull::thresholds_test {
 namespace {
@@ -18,12 +19,7 @@ std::vector<ThresholdsRow> Parse(const std::string& text) {
 }
 
 std::string ErrorOf(const std::string& text) {
-    try {
-        Parse(text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return WhatOf([&] { Parse(text); });
 }
 
 TEST(Thresholds, ReadThePublishedFilesAndWriteThemBack) {

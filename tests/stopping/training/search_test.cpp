@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/stopping/recordings/made_up_recordings.h"
+#include "tests/stopping/what_of.h"
 
 namespace lull::search_test {
 namespace {
@@ -18,12 +19,7 @@ std::vector<SearchAxis> Read(const std::string& text) {
 }
 
 std::string ErrorOf(const std::string& text) {
-    try {
-        Read(text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return WhatOf([&] { Read(text); });
 }
 
 TEST(SearchGrid, HasAllCombinations) {

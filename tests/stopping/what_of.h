@@ -1,0 +1,20 @@
+// Says what calls refuse.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace lull {
+
+// Returns what a std::runtime_error thrown by `call` says; empty where none was thrown.
+template <typename Call>
+std::string WhatOf(const Call& call) {
+    try {
+        call();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace lull
