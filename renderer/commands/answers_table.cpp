@@ -20,10 +20,6 @@ std::string NumberText(const std::optional<double>& number, double factor, int d
     return fmt::format("{:.{}f}", std::round(factor * *number * unit) / unit + 0.0, digits);
 }
 
-std::string NumberField(const std::optional<double>& number) {
-    return number ? fmt::format("{:.6f}", *number) : "";
-}
-
 void PrintUsed(std::FILE* out, const std::string& viewpoint, const AnswersUsed& used) {
     fmt::print(out, "{}: {} of {} answers, to {} of {} blocks, count\n", viewpoint, used.answers,
                used.all, used.blocks, used.allBlocks);
@@ -79,8 +75,8 @@ std::string AnswerJudgementCsv(const AnswerJudgement& judgement) {
             fmt::format("{},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.6f},{:.6f},{},{},{},{}\n",
                         CsvField(rule.rule), CsvField(judgement.viewpoint), judgement.used.answers,
                         judgement.used.blocks, rule.logLikelihood, judgement.best, judgement.worst,
-                        NumberField(rule.explained), rule.slope, rule.auc, NumberField(rule.early),
-                        NumberField(rule.late), NumberField(rule.level), rule.open);
+                        CsvField(rule.explained), rule.slope, rule.auc, CsvField(rule.early),
+                        CsvField(rule.late), CsvField(rule.level), rule.open);
     return csv;
 }
 

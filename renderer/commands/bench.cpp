@@ -165,8 +165,7 @@ void CheckFiles(const Options& options, const Description& description,
 
 PreparedScene Prepare(const Options& options, const Job& job) {
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
-                     {.isJson = settings.jsonProgress});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
     PreparedScene prepared;
     if (options.denoise) {
         CheckLayersFit({}, true, input.region);

@@ -99,8 +99,7 @@ ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) 
 // Loads the scene and checks all that can be wrong before the work begins.
 PreparedScene Prepare(const CompareOptions& options, const Job& job) {
     const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
-                     {.isJson = settings.jsonProgress});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
 
     PreparedScene prepared;
     const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);

@@ -88,8 +88,7 @@ ExitCode RunDataset(const Options& options, Job* job) {
     const bool leads = job->Rank() == 0;  // prints, and writes files
     const RenderSettings& settings = options.render;
     SetWording(settings, job);
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)},
-                     {.isJson = settings.jsonProgress});
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
     const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
     if (leads) {
         std::vector<NamedFile> inputs = InputsOf(settings.scene, input.description);

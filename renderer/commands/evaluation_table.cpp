@@ -58,10 +58,6 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
     }
 }
 
-std::string ShareField(std::optional<double> share) {
-    return share ? fmt::format("{:.6f}", *share) : "";
-}
-
 }  // namespace
 
 void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
@@ -91,7 +87,7 @@ std::string EvaluationCsv(const std::vector<JudgedRule>& rules, const JudgeOptio
                            CsvField(row.setting), j.viewpoints, j.blocks, j.open);
             for (const double error : j.criticalErrors) fmt::format_to(out, ",{:.6f}", error);
             fmt::format_to(out, ",{:.2f},{:.6f},{:.6f},{},{}\n", j.absoluteError, j.early, j.late,
-                           ShareField(j.accuracy), ShareField(j.auc));
+                           CsvField(j.accuracy), CsvField(j.auc));
         }
     return csv;
 }

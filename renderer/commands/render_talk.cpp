@@ -126,7 +126,7 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
 
 std::function<void(int, const Block&)> StopEvents(RuleTrend::Kind kind) {
     return [kind](int index, const Block& block) {
-        const bool atCap = kind != RuleTrend::Samples && !block.stoppedByVote;
+        const bool atCap = kind != RuleTrend::Samples && block.IsAtCap();
         Say(R"({{"event":"stop","block":{},"x":{},"y":{},"spp":{},"end":"{}"}})"
             "\n",
             index, block.pixels.min.x(), block.pixels.min.y(), block.spp,

@@ -18,8 +18,7 @@ void WriteSppMap(const std::string& file, const Provenance& provenance,
     std::vector<SppBlock> blocks;
     const bool isNoisyAtCap = provenance.trend.kind != RuleTrend::Samples;
     for (const BlockResult& b : result.blocks)
-        blocks.push_back({b.block.pixels, b.block.spp,
-                          isNoisyAtCap && b.block.stopped && !b.block.stoppedByVote});
+        blocks.push_back({b.block.pixels, b.block.spp, isNoisyAtCap && b.block.IsAtCap()});
     const int lowest = std::min(schedule.passLength, schedule.cap);
     const SppMap map = DrawSppMap(provenance.crop, blocks, lowest, schedule.cap);
     WritePng(file, map.srgb, map.width, map.height);

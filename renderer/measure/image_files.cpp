@@ -55,7 +55,7 @@ ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t s
 ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResult& result) {
     const Provenance& provenance = origin.provenance;
     ExrImage exr = MakeExr(origin, film.Region(), film.SampleCount(), result.progress.seconds);
-    const int atCap = BlocksAtCap(result), stopped = result.progress.stoppedBlocks - atCap;
+    const int atCap = result.progress.blocksAtCap, stopped = result.progress.stoppedBlocks - atCap;
     exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
     exr.attributes["blocks"] = std::to_string(result.progress.blocks);
     exr.attributes["stoppedBlocks"] = std::to_string(stopped);
@@ -67,8 +67,7 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
         exr.attributes["note"] = fmt::format(
             "the time was up when {} of {} blocks had stopped and {} were at the cap: the samples "
             "of the others depend on the machine; --stop thresholds: with the file beside the "
-            "image "
-            "repeats it",
+            "image repeats it",
             stopped, result.progress.blocks, atCap);
     else if (atCap > 0 && provenance.trend.kind != RuleTrend::Samples)
         exr.attributes["note"] =

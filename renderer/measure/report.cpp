@@ -79,8 +79,8 @@ Json GuideJson(const Provenance& p) {
 Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
     const Savings savings = ComputeSavings(result, provenance.schedule.cap);
     return {{"blocks", result.blocks.size()},
-            {"stoppedBlocks", result.progress.stoppedBlocks - BlocksAtCap(result)},
-            {"blocksAtCap", BlocksAtCap(result)},
+            {"stoppedBlocks", result.progress.stoppedBlocks - result.progress.blocksAtCap},
+            {"blocksAtCap", result.progress.blocksAtCap},
             {"medianSpp", result.progress.medianSpp},
             {"seconds", result.progress.seconds},
             {"samples", savings.samples},
@@ -106,12 +106,6 @@ Savings ComputeSavings(const RenderResult& result, int cap) {
         if (b.block.spp > 0) savings.secondsAtCap += b.seconds / b.block.spp * cap;
     }
     return savings;
-}
-
-int BlocksAtCap(const RenderResult& result) {
-    return int(std::ranges::count_if(result.blocks, [](const BlockResult& b) {
-        return b.block.stopped && !b.block.stoppedByVote;
-    }));
 }
 
 Json RectJson(const PixelRect& r) {

@@ -27,9 +27,6 @@ struct Savings {
 
 Savings ComputeSavings(const RenderResult&, int cap);
 
-// Counts the blocks that no rule has stopped before the cap.
-int BlocksAtCap(const RenderResult&);
-
 // Returns the report as a JSON text. `warnings` are counts by kind; `denoised` is null where the
 // image is the mean of the samples.
 std::string MakeReport(const Provenance&, const RenderResult&, int64_t rejectedSamples,

@@ -68,7 +68,7 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
         for (const DecisionRecord& record : decisions) trends[i].Add(record.spp, record.decision);
         blocks.push_back(result.blocks[i].block);
         Block& block = blocks.back();
-        if (!block.stopped || block.stoppedByVote || decisions.empty()) continue;
+        if (!block.IsAtCap() || decisions.empty()) continue;
         block.stopped = false;
         const Decision& last = decisions.back().decision;
         capped.push_back({int(i), last.value, last.threshold, 0});

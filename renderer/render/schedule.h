@@ -50,6 +50,9 @@ struct Block {
     bool stopped = false;         // takes no more samples
     bool stoppedByVote = false;   // stopped by its own vote or its leader's, not by the cap
     double noise = unknownNoise;  // visible at the end of the last pass, as Decide() was told
+
+    // Says whether it ended at the cap, with no rule that had stopped it before.
+    bool IsAtCap() const { return stopped && !stoppedByVote; }
 };
 
 // Says which tiles of each block are one's own, where several machines share the work: `deal` names

@@ -1,7 +1,10 @@
 // Writes tables of comma-separated values.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 namespace lull {
@@ -22,6 +25,11 @@ inline std::string CsvField(const std::string& text) {
     std::string quoted = "\"";
     for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + '"';
+}
+
+// Returns a number as a field, which is empty where it is not defined.
+inline std::string CsvField(const std::optional<double>& number) {
+    return number ? fmt::format("{:.6f}", *number) : "";
 }
 
 }  // namespace lull

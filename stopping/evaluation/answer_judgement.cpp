@@ -83,9 +83,7 @@ RuleRun RunRule(const std::string& rule, const RuleContext& context,
 }
 
 std::vector<JudgedBlock> BlocksOf(const ViewpointRecording& viewpoint,
-                                  std::span<const SingleAnswer> answers) {
-    std::set<int> answered;
-    for (const SingleAnswer& answer : answers) answered.insert(answer.block);
+                                  const std::set<int>& answered) {
     std::vector<JudgedBlock> blocks;
     for (const auto& [number, recording] : viewpoint.blocks)
         if (answered.contains(number))
@@ -218,9 +216,9 @@ RuleByAnswers JudgeRule(const RuleRun& run, size_t index, std::span<const Asked>
 AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
                                std::span<const SingleAnswer> answers,
                                std::span<const std::string> rules, const RuleContext& context) {
-    std::set<int> numbers;
-    for (const SingleAnswer& answer : answers) numbers.insert(answer.block);
-    const std::vector<JudgedBlock> recorded = BlocksOf(viewpoint, answers);
+    std::set<int> answered;
+    for (const SingleAnswer& answer : answers) answered.insert(answer.block);
+    const std::vector<JudgedBlock> recorded = BlocksOf(viewpoint, answered);
     const ExtendedBlocks extended = ExtendBlocks(recorded);
     RuleContext ofRecording = context;
     ofRecording.passSpp = viewpoint.passSpp;
@@ -231,7 +229,7 @@ AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
     AnswerJudgement judgement{.viewpoint = viewpoint.name};
     AnswersUsed& used = judgement.used;
     used.all = int(answers.size());
-    used.allBlocks = int(numbers.size());
+    used.allBlocks = int(answered.size());
     const std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
     if (asked.empty())
         throw std::runtime_error(fmt::format(

@@ -23,8 +23,12 @@ RenderResult TwoBlocks() {
     result.blocks[1].block = {
         .pixels = {{10, 0}, {20, 10}}, .spp = 100, .votes = false, .leader = 0, .stopped = true};
     result.blocks[1].seconds = 20;
-    result.progress = {
-        .blocks = 2, .stoppedBlocks = 2, .medianSpp = 100, .samples = 12000, .seconds = 12};
+    result.progress = {.blocks = 2,
+                       .stoppedBlocks = 2,
+                       .blocksAtCap = 1,
+                       .medianSpp = 100,
+                       .samples = 12000,
+                       .seconds = 12};
     return result;
 }
 
