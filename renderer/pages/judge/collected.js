@@ -29,7 +29,7 @@ function drawViewpointOverlay(viewpoint, svg, legend, name) {
   viewpoint.places.forEach((p, i) => {
     const place = overlay.places[i], size = Math.min(p.width / 4, p.height / 3, viewpoint.width / 18);
     svg.append(make("rect", {...p, class: "shade", style: `fill:${viridis(place)}`}),
-      make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size, fill: inkOn(place)}, overlay.values[i]));
+      make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size}, overlay.values[i]));
   });
   const stops = [...Array(17).keys()].map(i => viridis(i / 16)).join(",");
   legend.append(make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
