@@ -62,7 +62,7 @@ function logTicks(min, max) {
 const charts = [];  // [chart, element], to follow the width of the page
 
 // Draws series [{label, x, y, colour?, dash, mark, line}], without a colour in that of text, into `parent`. options: title, xLabel,
-// yLabel, logY, lines, height.
+// yLabel, logY, lines, height, endsVary (curves that end at different places).
 function drawChart(parent, series, options) {
   const box = make("div", {class: "chart"}, make("h3", {}, options.title));
   parent.append(box);
@@ -74,8 +74,9 @@ function drawChart(parent, series, options) {
   // A logarithmic axis needs two different ends.
   const widen = (min, max) => min === max ? [min / 1.5, max * 1.5] : [min / 1.08, max * 1.08];
   const number = v => show(v, 3), lines = (options.lines || []).filter(l => isNumber(l.x));
-  // Until somebody points at the chart, its legend has the last value of each curve.
-  const inLegend = (u, v, s, i) => isNumber(v) ? number(v) : i == null ? number(u.data[s].findLast(isNumber)) : "\u2013";
+  // Until somebody points at the chart, its legend has the last value of each curve, if that is where
+  // all of them end.
+  const inLegend = (u, v, s, i) => isNumber(v) ? number(v) : i != null ? "\u2013" : options.endsVary ? "" : number(u.data[s].findLast(isNumber));
   const axis = (label, size, isLog) => ({...(isLog ? {splits: (u, i, min, max) => logTicks(min, max), filter: (u, splits) => splits} : {}),
     label, size, labelSize: 20, font: "12px sans-serif", labelFont: "12px sans-serif",
     stroke: () => themeColour("--soft"), grid: {stroke: () => themeColour("--faint")}, ticks: {stroke: () => themeColour("--faint")}, values: (u, splits) => splits.map(v => v == null ? "" : number(v))});

@@ -10,9 +10,9 @@ function sayRender(data) {
   const start = `${t.interrupted ? "Interrupted after" : "Rendered in"} ${showSeconds(t.seconds)}: `;
   if (/^(fixed|thresholds)/.test(data.provenance.criterion)) return `${start}${each}, without looking for noise.`;
   if (t.stoppedBlocks === all) return `${start}${all === 1 ? "its only block is" : `all ${showCount(all)} blocks are`} clean, at ${each}.`;
-  return start + [`${showCount(t.stoppedBlocks)} of ${countOfBlocks(all)} are clean`,
-    t.blocksAtCap ? `${showCount(t.blocksAtCap)} went to the cap of ${showCount(data.cap)} samples per pixel and are still noisy` : "",
-    open ? `${showCount(open)} were not done` + (t.timeUp ? " when the time was up" : "") : ""].filter(s => s).join("; ") + ".";
+  return start + [`${showCount(t.stoppedBlocks)} of ${countOfBlocks(all)} ${t.stoppedBlocks === 1 ? "is" : "are"} clean`,
+    t.blocksAtCap ? `${showCount(t.blocksAtCap)} went to the cap of ${showCount(data.cap)} samples per pixel, still noisy` : "",
+    open ? `${showCount(open)} not done` + (t.timeUp ? " when the time was up" : "") : ""].filter(s => s).join("; ") + ".";
 }
 
 function sayComparison(data) {

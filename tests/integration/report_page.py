@@ -166,6 +166,23 @@ def check_dark(browser):
     browser.call("Emulation.setEmulatedMedia", features=[])
 
 
+def check_sentences(browser):
+    """What the first sentence says of a render, whose blocks have so many samples."""
+    for totals, spp, rule, sentence in (
+            ({"stoppedBlocks": 2, "blocksAtCap": 0}, [20, 40], "lnoise:1",
+             "Rendered in 5\u00a0s: all 2 blocks are clean, at 20 to 40 samples per pixel."),
+            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "lnoise:1",
+             "Rendered in 5\u00a0s: 0 of 2 blocks are clean; 2 went to the cap of 80 samples per pixel, still noisy."),
+            ({"stoppedBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
+             "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 not done when the time was up."),
+            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
+             "Rendered in 5\u00a0s: 80 samples per pixel, without looking for noise.")):
+        data = {"cap": 80, "provenance": {"criterion": rule}, "images": [{"blocks": [{"spp": s} for s in spp]}],
+                "totals": {"blocks": 2, "seconds": 5, "interrupted": False, **totals}}
+        said = browser.evaluate(f"sayRender({json.dumps(data)})")
+        check(said == sentence, "a first sentence: " + said)
+
+
 def check_two(browser):
     """A divider that is dragged, and images that take turns."""
     upper = "document.querySelector('.canvas img:nth-child(2)')"
@@ -209,6 +226,7 @@ def main(lull, chromium):
         check(browser.evaluate("document.querySelectorAll('.stage:not([hidden]) svg text').length") == 6,
               "render: the samples are over the image")
         check_dark(browser)
+        check_sentences(browser)
         browser.open(folder / "compare.html")
         check_blocks(browser, "compare", 3)
         check_two(browser)
