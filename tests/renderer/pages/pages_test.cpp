@@ -43,8 +43,9 @@ ComparisonReport TwoImages() {
 
 TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
     const std::string page = MakePage({{"title", "x"}});
-    for (const char* name : {"page.css", "page.js", "format.js", "charts.js", "viewer.js",
-                             "tables.js", "bench.js", "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
+    for (const char* name :
+         {"page.css", "page.js", "format.js", "charts.js", "viewer.js", "tables.js", "bench.js",
+          "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }
