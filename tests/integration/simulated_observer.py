@@ -23,7 +23,7 @@ CODES = {"Enter": 13, "Tab": 9, " ": 32, "Backspace": 8, "ArrowLeft": 37, "Arrow
 
 # A person takes time to look; a program that plays one says that it did. The cross between trials is
 # not waited for.
-LOOK = """(() => { let now = 1e6; performance.now = () => now += %d; timing.fixation = 0; timing.breakAfter = 1e12; })()"""
+LOOK = """(() => { let now = lastEvent + 1e6; performance.now = () => now += %d; timing.fixation = 0; timing.breakAfter = 1e12; })()"""
 
 
 class Participant:
