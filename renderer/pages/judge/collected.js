@@ -28,7 +28,7 @@ function drawViewpointOverlay(viewpoint, svg, legend, name) {
   const overlay = overlaysOf(viewpoint)[name];
   if (!overlay) return;
   viewpoint.places.forEach((p, i) => {
-    const place = overlay.places[i], size = Math.min(p.width / 4, p.height / 3, viewpoint.width / 18);
+    const place = overlay.places[i], size = Math.min(p.width / 5, p.height / 4, viewpoint.width / 30);
     svg.append(make("rect", {...p, class: "shade", style: `fill:${viridis(place)}`}),
       make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size}, overlay.values[i]));
   });
@@ -63,8 +63,9 @@ function makeViewpoint(viewpoint) {
     make("p", {}, `${viewpoint.observers} observer${viewpoint.observers === 1 ? "" : "s"}, asked by ${viewpoint.procedure === "adjust" ? "adjustment" : "staircases"}. ` + sayAgreement(viewpoint)),
     viewpoint.fewestAnswers < viewpoint.enoughAnswers
       ? make("p", {}, `Thresholds of blocks rest on as few as ${viewpoint.fewestAnswers} answer${viewpoint.fewestAnswers === 1 ? "" : "s"}: they are rough with fewer than ${viewpoint.enoughAnswers}.`) : null,
-    viewpoint.references ? makePicture(viewpoint) : make("p", {class: "hint"}, "--study STUDY.html shows the image here."),
-    make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows)));
+    make("div", {class: "beside"},
+      viewpoint.references ? makePicture(viewpoint) : make("p", {class: "hint"}, "--study STUDY.html shows the image here."),
+      make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows))));
 }
 
 function makeObservers() {
