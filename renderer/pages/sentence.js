@@ -19,7 +19,7 @@ function sayComparison(data) {
   const [image] = data.images, f = image.figures, h = data.againstHuman;
   const than = share => `${showShare(Math.abs(share))} ${share < 0 ? "more" : "fewer"} samples than`;
   const parts = [];
-  if (f && isNumber(f.rmseLightness)) parts.push(f.rmseLightness === 0 ? `shows what ${data.reference} does` : `is ${show(f.rmseLightness, 3)} off ${data.reference} in lightness (RMSE, of 0 to 100)`);
+  if (f && isNumber(f.rmseLightness)) parts.push(f.rmseLightness === 0 ? `shows what the ${data.reference} does` : `is ${show(f.rmseLightness, 3)} off the ${data.reference} in lightness (RMSE, of 0 to 100)`);
   if (image.saved && isNumber(image.saved.samples)) parts.push(`has ${than(image.saved.samples)} at ${showCount(data.cap)} everywhere`);
   if (h && isNumber(h.savedSamples)) parts.push(h.savedSamples === 0 ? "has as many samples as people asked for" : `has ${than(h.savedSamples)} people asked for`);
   if (!parts.length) return "";
