@@ -228,8 +228,8 @@ def main(lull, chromium):
         check_dark(browser)
         check_sentences(browser)
         browser.open(folder / "compare.html")
-        check_blocks(browser, "compare", 3)
         check_two(browser)
+        check_blocks(browser, "compare", 3)
         choose(browser, "Over it", "spp:human")
         check(browser.evaluate("document.querySelector('.stage svg').textContent.includes('80')"),
               "compare: the map has the samples of each block")
