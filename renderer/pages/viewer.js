@@ -200,12 +200,18 @@ function startViewer(data) {
     view.b = data.images.filter(i => i.src).length - 1;
   }
   const second = makeChoice("and", pictures, view.b, v => { view.b = +v; update(); });
+  const over = makeChoice("Over it", overlays, view.overlay, v => { view.overlay = v; update(); });
   const showSecond = () => { second.hidden = view.mode === "one"; };
+  const setMode = mode => {
+    view.mode = mode;
+    if (mode === "flicker") over.querySelector("select").value = view.overlay = "none";  // it would hide the noise
+    showSecond();
+    update();
+  };
   byId("controls").append(
-    layers.length > 1 ? makeChoice("Show", [["one", "one image"], ["flicker", "two, flickering"], ["divide", "two, with a divider"], ["side", "two, side by side"]], view.mode,
-      v => { view.mode = v; showSecond(); update(); }) : "",
+    layers.length > 1 ? makeChoice("Show", [["one", "one image"], ["flicker", "two, flickering"], ["divide", "two, with a divider"], ["side", "two, side by side"]], view.mode, setMode) : "",
     makeChoice("Image", pictures, view.a, v => { view.a = +v; update(); }), second,
-    data.blocks.length ? makeChoice("Over it", overlays, view.overlay, v => { view.overlay = v; update(); }) : "",
+    data.blocks.length ? over : "",
     makeChoice("Zoom", [[0, "fit"], [0.5, "50 %"], [1, "100 %"], [2, "200 %"], [4, "400 %"], [8, "800 %"]], 0, v => { view.zoom = +v; update(); }));
   showSecond();
   addEventListener("resize", update);

@@ -198,7 +198,7 @@ def check_two(browser):
     choose(browser, "Show", "flicker")
     for hidden in ("true", "false"):
         browser.wait_for(f"{upper}.hidden === {hidden}")
-    check(browser.evaluate(upper + ".style.clipPath") == "", "compare: two images take turns")
+    check(browser.evaluate(upper + ".style.clipPath + view.overlay") == "none", "compare: two images take turns, with nothing over them")
     for mode in ("side", "one"):
         choose(browser, "Show", mode)
 
