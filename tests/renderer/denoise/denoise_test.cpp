@@ -116,11 +116,13 @@ TEST(Denoise, TakesWhateverItIsGiven) {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
     NoisyPicture noisy = AddNoise(Planes(60, 50, 3, 0.4f), FlatFeatures(60, 50), 0.1, 10);
     noisy.variance = Planes(60, 50, 1, 0.01f);
+    Halves features{FlatFeatures(60, 50), FlatFeatures(60, 50)};
     size_t i = 17;
     for (const float value : {nan, inf, -inf, -3.f, 1e38f, 1e-40f})
-        for (Planes* planes : {&noisy.colour.a, &noisy.colour.b, &noisy.features.a,
-                               &noisy.features.b, &noisy.variance})
+        for (Planes* planes :
+             {&noisy.colour.a, &noisy.colour.b, &features.a, &features.b, &noisy.variance})
             planes->values[(i += 131) % planes->values.size()] = value;
+    noisy.features = Filtered(features);
     ExpectSane(Denoise(noisy));
 }
 
