@@ -78,7 +78,7 @@ struct CandidateRows {
         for (const Halves& picture : pictures)
             candidates.push_back(
                 CropHalves(picture, {crop.x0, crop.y0 - first, crop.x1, crop.y1 - first}));
-        Halves fine = ChooseCandidates(candidates, noisy, variance);
+        Halves fine = ChooseCandidates(std::move(candidates), noisy, variance);
         if (level.coarse.a.count == 0) return fine;
         const ImageTile half{crop.x0 / 2, crop.y0 / 2, (crop.x1 + 1) / 2, (crop.y1 + 1) / 2};
         Halves both{WithCoarsePart(fine.a, Crop(level.coarse.a, half)),

@@ -127,7 +127,8 @@ TEST(Denoise, TakesWhateverItIsGiven) {
 }
 
 TEST(Denoise, TakesPicturesOfAnySize) {
-    for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {1, 40}, {17, 3}, {129, 2}}) {
+    for (const auto& [width, height] :
+         {std::pair(1, 1), {2, 1}, {1, 40}, {17, 3}, {129, 2}, {2, 301}}) {
         const NoisyPicture noisy =
             AddNoise(Planes(width, height, 3, 0.4f), FlatFeatures(width, height), 0.01, 11);
         const DenoisedPicture result = Denoise(noisy);
@@ -136,15 +137,32 @@ TEST(Denoise, TakesPicturesOfAnySize) {
     }
 }
 
-TEST(Denoise, IsTheSameOnAnyNumberOfThreads) {
+// Stripes and noise, of more rows than are worked on at once.
+NoisyPicture TallPicture() {
     const Planes truth =
-        MakePlanes(300, 150, 3, [](int, int x, int y) { return (x / 7 + y / 5) % 3 * 0.2 + 0.1; });
-    const NoisyPicture noisy = AddNoise(truth, FlatFeatures(300, 150), 0.1, 12);
+        MakePlanes(150, 300, 3, [](int, int x, int y) { return (x / 7 + y / 5) % 3 * 0.2 + 0.1; });
+    return AddNoise(truth, FlatFeatures(150, 300), 0.1, 12);
+}
+
+TEST(Denoise, IsTheSameOnAnyNumberOfThreads) {
+    const NoisyPicture noisy = TallPicture();
     const auto on = [&](size_t threads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         return Denoise(noisy).picture.values;
     };
     EXPECT_EQ(on(1), on(4));
+}
+
+// The upper rows by themselves are few enough to be worked on at once.
+TEST(Denoise, LeavesNoTraceOfBands) {
+    const NoisyPicture noisy = TallPicture();
+    const ImageTile upper{0, 0, 150, 240}, seen{0, 0, 150, 200};
+    const NoisyPicture part{{Crop(noisy.colour.a, upper), Crop(noisy.colour.b, upper)},
+                            Crop(noisy.features, upper),
+                            {}};
+    const Planes whole = Crop(Denoise(noisy).picture, seen);
+    const Planes alone = Crop(Denoise(part).picture, seen);
+    EXPECT_LT(Rms(whole, alone), 1e-4);
 }
 
 }  // namespace
