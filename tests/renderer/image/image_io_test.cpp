@@ -367,6 +367,24 @@ TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
     EXPECT_FALSE(Contains(ReadBytes(path), "ToneMap"));
 }
 
+// Colours come multiplied by alpha, and are stored without; alpha is no colour.
+TEST(WritePng, StoresAlpha) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.png");
+    const std::vector<float> row = {0.1f, 0.2f, 0.25f, 0.5f, 1, 1, 1, 0, 0.5f, 0, 2, 1};
+    const RowSource rows = [&](int, std::span<float> to) { std::ranges::copy(row, to.begin()); };
+    WritePng(path, rows, 3, 1, {.hasAlpha = true});
+    const Image image = ReadImage(path);
+    EXPECT_EQ(image.channels, 4);
+    const auto texels = Texels<uint8_t>(image);
+    const float expected[] = {0.2f, 0.4f, 0.5f, 0, 0, 0, 0, 0, 0.5f, 0, 1, 0};
+    for (size_t i = 0; i < 12; ++i)
+        if (i % 4 != 3) EXPECT_EQ(texels[i], Encode8Bit(expected[i])) << i;
+    EXPECT_EQ(texels[3], 128);
+    EXPECT_EQ(texels[7], 0);
+    EXPECT_EQ(texels[11], 255);
+}
+
 TEST(WritePng, KeepsTheOldFileWhereItFails) {
     const TemporaryDirectory directory;
     const std::vector<Rgb> pixels(4, Rgb::Constant(1));
