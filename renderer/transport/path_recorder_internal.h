@@ -1,6 +1,8 @@
 // Records all of a path, in place of its first hit alone.
 #pragma once
 
+#include <utility>
+
 #include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/path_log.h"
 

@@ -180,7 +180,8 @@ struct SampleStart {
     Ray ray;
 };
 
-SampleStart StartSample(const Scene& scene, Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+[[gnu::always_inline]] inline SampleStart StartSample(const Scene& scene, Sampler& sampler,
+                                                      const Vec2i& pixel, uint32_t index) {
     SampleStart start;
     sampler.StartSample(pixel, index);
     start.filter = scene.filter.Sample(sampler.Get2D());
@@ -192,7 +193,8 @@ SampleStart StartSample(const Scene& scene, Sampler& sampler, const Vec2i& pixel
 }
 
 // Refuses what is no radiance, limits it, and applies the weights.
-PathSample Weighted(const Scene& scene, const SampleStart& start, PathSample sample) {
+[[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
+                                                  PathSample sample) {
     Rgb& L = sample.radiance;
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true, sample.vertices};

@@ -127,7 +127,7 @@ def mattes(texts, channels, layer):
 
 
 def read_png(path):
-    """Returns rows of bytes R, G, B, A of a PNG without filters."""
+    """Returns rows of bytes R, G, B, A of a PNG."""
     data, at, packed = path.read_bytes(), 8, b''
     while at < len(data):
         size, = struct.unpack_from('>I', data, at)
@@ -137,9 +137,18 @@ def read_png(path):
         if kind == b'IDAT':
             packed += body
         at += 12 + size
-    raw, stride = zlib.decompress(packed), 4 * WIDTH + 1
-    assert all(raw[y * stride] == 0 for y in range(HEIGHT))
-    return [raw[y * stride + 1:(y + 1) * stride] for y in range(HEIGHT)]
+    raw, stride, rows = zlib.decompress(packed), 4 * WIDTH, []
+    above = bytearray(stride)
+    for y in range(HEIGHT):
+        start = y * (stride + 1)
+        row = bytearray(raw[start + 1:start + 1 + stride])
+        for i in range(stride):
+            left, up, corner = (row[i - 4], above[i], above[i - 4]) if i > 3 else (0, above[i], 0)
+            paeth = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            row[i] = (row[i] + (0, left, up, (left + up) // 2, paeth)[raw[start]]) & 255
+        rows.append(row)
+        above = row
+    return rows
 
 
 def write_scene(path):

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/accessors.h"
@@ -47,11 +48,13 @@ Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sa
 
 // Spherical interpolation along the shorter way (C.4 of the specification).
 Eigen::ArrayXd Slerp(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double t) {
-    using Quaternion = Eigen::Quaterniond;
-    const Quaternion p(a[3], a[0], a[1], a[2]), q(b[3], b[0], b[1], b[2]);
-    if (!(p.norm() > 0 && q.norm() > 0)) return t < 0.5 ? a : b;
-    const Quaternion turned = p.normalized().slerp(t, q.normalized());
-    return turned.coeffs().array();  // x, y, z, w
+    const double lengths[] = {a.matrix().norm(), b.matrix().norm()};
+    if (!(lengths[0] * lengths[1] > 0)) return t < 0.5 ? a : b;
+    const double cosine = (a * b).sum() / (lengths[0] * lengths[1]);
+    const Eigen::ArrayXd from = a / lengths[0], to = b / (cosine < 0 ? -lengths[1] : lengths[1]);
+    const double angle = std::acos(std::min(std::abs(cosine), 1.));
+    if (angle < 1e-6) return (1 - t) * from + t * to;
+    return (std::sin((1 - t) * angle) * from + std::sin(t * angle) * to) / std::sin(angle);
 }
 
 // Evaluates an animation sampler (appendix C of the specification).

