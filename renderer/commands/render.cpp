@@ -341,10 +341,12 @@ ExitCode RunRender(Options options, Job* job) {
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;
     NoisyPicture picture;
-    if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
-    session.TheFilm().DropHalf();  // what follows needs the memory
-    session.DropFeatures();
-    if (options.denoiseLayers) halves = MakeHalfChannels(picture);
+    if (options.denoiseLayers)
+        halves = MakeHalfChannels(session.TheFilm(), *session.Features(), region);
+    if (options.denoise) picture = FeaturesOf(session.TheFilm(), *session.Features(), region);
+    session.DropFeatures();  // what follows needs the memory
+    if (options.denoise) picture.colour = ColoursOf(session.TheFilm(), region);
+    session.TheFilm().DropHalf();
     if (options.denoise) {
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
                                  settings.quiet, talk);

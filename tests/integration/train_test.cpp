@@ -140,7 +140,7 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
                                                 "geometric --ratio 1.4142 --k 2 --units 8,4 "
                                                 "--dropout 0 --learning-rate 0.003 "
                                                 "--balance-viewpoints --no-class-weights "
-                                                "--noisy-weight 2 --preset paper");
+                                                "--noisy-weight 1 --mask 1e9 --preset paper");
     EXPECT_EQ(brief.exitCode, 0) << brief.err;
     EXPECT_EQ(brief.out, full.out);
     EXPECT_NE(brief.out, RunLull(directory, judge + "--preset paper --units 8,4").out);
