@@ -88,7 +88,8 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
     for (const InstanceEntity& entity : description.instances) {
         const Bounds3f& b = objectBounds[entity.object];
         if (b.IsEmpty()) continue;
-        Instance instance{entity.object, -1, entity.worldFromInstance, Mat4d::Identity()};
+        Instance instance{entity.object, -1, entity.worldFromInstance, Mat4d::Identity(),
+                          int(&entity - description.instances.data())};
         if (entity.motion >= 0) AddMotion(description, entity, shutter, &instance);
         instance.instanceFromWorld = instance.worldFromInstance.inverse();
         if (!instance.instanceFromWorld.allFinite())
