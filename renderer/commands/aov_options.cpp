@@ -19,8 +19,8 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                        throw CLI::ValidationError("--aov", e.what());
                    }
                },
-               "Layers of the EXR: albedo, normal, depth, position, object, material of what\n"
-               "is seen first, and the noise of each pixel")
+               "Layers of the EXR: albedo, normal, depth, position, object, material, alpha and\n"
+               "cryptomatte of what is seen first, and the noise of each pixel")
             ->type_name("LAYER,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Of what is seen in mirrors and through glass, instead of these")

@@ -96,9 +96,10 @@ ExitCode RunDenoise(Options options) {
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
+    // What follows needs the memory.
+    std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     const DenoisedImage denoised = DenoiseAndSay(std::move(picture), region, blocks, options.quiet);
 
-    std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));
     std::ranges::move(MakeDenoisedChannels(denoised, noisy), std::back_inserter(exr.channels));
     exr.attributes["denoised"] = kDenoisedNote;

@@ -15,6 +15,7 @@
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
+#include "renderer/commands/path_printer.h"
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_talk.h"
@@ -44,6 +45,7 @@ struct Options {
     AovSet aovs;
     bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
+    PathOfSample path;  // to print, instead
 };
 
 constexpr const char* kFooter =
@@ -106,6 +108,10 @@ void AddOptions(CLI::App& app, Options* o) {
     AddGuideOptions(app, &o->guide);
     AddAovOptions(app, &o->aovs);
     AddPictureOptions(app, &o->pictures);
+    app.add_flag("--transparent", o->pictures.format.isTransparent,
+                 "Leave out the background that the camera sees past everything: the PNG has\n"
+                 "alpha, and the EXR colours multiplied by it with --aov alpha");
+    AddPathOptions(app, &o->path);
     AddClockOptions(app, &o->clock);
     AddCheckpointOptions(app, &o->render.checkpoint);
     o->render.checkpoint.mayDiffer = MayDiffer::Stops;
@@ -258,8 +264,19 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
                         count, result.blocks.size(), leastDenoisedSpp));
 }
 
+// Prints the path of a sample instead.
+ExitCode RunPath(RenderSettings settings, const PathOfSample& path) {
+    SceneInput input(settings.scene, {.withHalf = false}, TalkOf(settings));
+    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
+    PrintPath(path, settings, MakeProvenance(settings, *scene, input.film).sampler,
+              input.description, *scene);
+    return kDone;
+}
+
 ExitCode RunRender(Options options, Job* job) {
+    if (options.path.pixel) return job->Rank() == 0 ? RunPath(options.render, options.path) : kDone;
     CheckSamplesSuffice(options);
+    options.aovs.alpha |= options.pictures.format.isTransparent;
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
                        : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
@@ -324,10 +341,12 @@ ExitCode RunRender(Options options, Job* job) {
     std::optional<DenoisedImage> denoised;
     std::vector<ExrChannel> halves;
     NoisyPicture picture;
-    if (session.Features()) picture = PictureOf(session.TheFilm(), *session.Features(), region);
-    session.TheFilm().DropHalf();  // what follows needs the memory
-    session.DropFeatures();
-    if (options.denoiseLayers) halves = MakeHalfChannels(picture);
+    if (options.denoiseLayers)
+        halves = MakeHalfChannels(session.TheFilm(), *session.Features(), region);
+    if (options.denoise) picture = FeaturesOf(session.TheFilm(), *session.Features(), region);
+    session.DropFeatures();  // what follows needs the memory
+    if (options.denoise) picture.colour = ColoursOf(session.TheFilm(), region);
+    session.TheFilm().DropHalf();
     if (options.denoise) {
         denoised = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
                                  settings.quiet, talk);
@@ -340,7 +359,7 @@ ExitCode RunRender(Options options, Job* job) {
                                                    result,
                                                    histories,
                                                    input.warnings,
-                                                   session.Aovs(),
+                                                   {options.aovs, session.Aovs(), session.Mattes()},
                                                    denoised ? &*denoised : nullptr,
                                                    halves,
                                                    input.description,

@@ -42,13 +42,11 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     const Provenance& provenance = origin.provenance;
     const Film& film = render.film;
     const RenderResult& result = render.result;
-    ExtraLayers extra = render.aovs
-                            ? MakeExtraLayers(*render.aovs, film, render.description, origin.scene)
-                            : ExtraLayers();
+    ExtraLayers extra = MakeExtraLayers(render.layers, film, render.description, origin.scene);
     extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
     ResultFiles results;
-    WriteImage({files.exr, files.png}, origin, film, render.denoised, result, std::move(extra),
-               render.pictures, &results);
+    WriteImage({files.exr, files.png}, origin, film, render.denoised, render.layers.mattes, result,
+               std::move(extra), render.pictures, &results);
     results.Write(files.sppMap,
                   [&](const std::string& file) { WriteSppMap(file, provenance, result); });
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.

@@ -28,7 +28,7 @@ struct FinishedRender {
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;
     const Warnings& warnings;
-    const AovFilm* aovs;                    // null: no layers
+    CollectedLayers layers;
     const DenoisedImage* denoised;          // null: the image is the means of the film
     const std::vector<ExrChannel>& halves;  // what can be denoised later
     const Description& description;

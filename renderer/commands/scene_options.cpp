@@ -36,12 +36,23 @@ bool ParseResolution(const std::string& text, std::optional<Vec2i>* resolution) 
     return true;
 }
 
-bool ParseCrop(const std::string& text, std::optional<std::array<float, 4>>* crop) {
+bool ParseCrop(const std::string& text, FilmOverrides* film) {
+    const auto isOrdered = [](const auto& c) {
+        return 0 <= c[0] && c[0] < c[1] && 0 <= c[2] && c[2] < c[3];
+    };
+    film->crop = {};
+    film->cropInPixels = {};
+    if (text.ends_with("px")) {
+        std::array<int, 4> pixels;
+        if (!ParseNumbers(text.substr(0, text.size() - 2), ',', &pixels) || !isOrdered(pixels))
+            return false;
+        film->cropInPixels = pixels;
+        return true;
+    }
     std::array<float, 4> c;
-    const bool valid = ParseNumbers(text, ',', &c) && 0 <= c[0] && c[0] < c[1] && c[1] <= 1 &&
-                       0 <= c[2] && c[2] < c[3] && c[3] <= 1;
-    if (valid) *crop = c;
-    return valid;
+    if (!ParseNumbers(text, ',', &c) || !isOrdered(c) || !(c[1] <= 1 && c[3] <= 1)) return false;
+    film->crop = c;
+    return true;
 }
 
 bool ParseOrbit(const std::string& text, std::optional<std::array<float, 2>>* orbit) {
@@ -79,10 +90,12 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--crop",
-           Checked(ParseCrop, &options->compile.film.crop,
-                   "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y"),
-           "Render only this part of the image, as fractions of its sides from the upper left")
-        ->type_name("x0,x1,y0,y1");
+           Checked(ParseCrop, &options->compile.film,
+                   "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y, or in pixels with px "
+                   "after them"),
+           "Render only this part of the image, as fractions of its sides from the upper left,\n"
+           "or as pixels: 100,300,50,250px")
+        ->type_name("x0,x1,y0,y1[px]");
     app.add_option("--max-depth", options->compile.maxDepth,
                    "Longest path in bounces, instead of the scene's")
         ->check(CLI::Range(0, 1000000))
@@ -126,6 +139,18 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
            "glTF: show the whole scene, seen from this direction [without a camera: 30,15]")
         ->excludes(camera)
         ->type_name("azimuth,elevation");
+    auto* frame = app.add_option("--frame", options->view.frame,
+                                 "glTF: pose nodes, skins, morph targets and cameras as the file's "
+                                 "animation\nhas them at this time")
+                      ->check(CLI::Range(0., 1e9))
+                      ->type_name("SECONDS");
+    app.add_option("--animation", options->view.animation,
+                   "glTF: the animation of this name or number, from 0 [the first one]")
+        ->needs(frame)
+        ->type_name("NAME|N");
+    app.add_flag("--solid-glass", options->view.solidGlass,
+                 "glTF: let all that transmits light be solid; without a volume's thickness it is\n"
+                 "a thin sheet, as the format says");
 }
 
 Warnings MakePrintedWarnings(const Talk& talk) {
@@ -134,10 +159,10 @@ Warnings MakePrintedWarnings(const Talk& talk) {
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     const bool isGltf = IsGltf(options.file);
-    if (!isGltf && (!options.view.camera.empty() || options.view.orbit))
+    if (!isGltf && options.view.IsGiven())
         throw Error(options.file +
-                    ": is no glTF file; --camera and --orbit are for these, as a "
-                    "pbrt-v3 scene has one camera");
+                    ": is no glTF file; --camera, --orbit, --frame and --solid-glass are for "
+                    "these, as a pbrt-v3 scene says all of that itself");
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings);
     if (options.exposure != 0) SetExposure(options.exposure, &description);

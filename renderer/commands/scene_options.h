@@ -20,7 +20,8 @@ struct SceneOptions {
 };
 
 // Adds SCENE, --resolution, --crop, --max-depth, --threads, --substitute, --filtering, --exposure,
-// --environment, --environment-rotation, --camera and --orbit.
+// --environment, --environment-rotation, --camera, --orbit, --frame, --animation,
+// --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.

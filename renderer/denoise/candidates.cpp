@@ -7,6 +7,7 @@ namespace lull {
 namespace {
 
 constexpr int kErrorRadius = 5, kChoiceRadius = 6;  // pixels over which both are smoothed
+static_assert(kErrorRadius + kChoiceRadius == kChoiceReach);
 constexpr float kDarkest = 1e-3f;     // squared luminance below which errors are no longer relative
 constexpr float kLeastNoise = 1e-4f;  // relative variance, squared, below which pixels count alike
 constexpr float kDoubt = 2;           // standard deviations

@@ -7,10 +7,7 @@
 
 namespace lull {
 
-// Holds two pictures of the same, each made from one half of the samples.
-struct Halves {
-    Planes a, b;
-};
+inline constexpr int kChoiceReach = 11;  // pixels, from which a choice depends on others
 
 // Returns for each half a mixture of the candidates, R, G, B; the last of them are the samples as
 // they are, `noisy`, whose pixels have this variance. The squared error of a candidate is that of

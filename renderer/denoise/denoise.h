@@ -6,18 +6,14 @@
 // samples grow, weights become so selective that the result goes to the mean of the samples.
 #pragma once
 
-#include "renderer/denoise/candidates.h"
-#include "renderer/denoise/regression.h"
+#include "renderer/denoise/feature_filter.h"
 
 namespace lull {
-
-// Returns what stands for a depth among the features: one over it, and 0 where there is nothing.
-inline float DisparityOf(float depth) { return depth > 0 ? 1 / std::max(depth, 1e-12f) : 0; }
 
 // Holds what is known of a picture. All images have one size.
 struct NoisyPicture {
     Halves colour;    // R, G, B: means of two halves of the samples, independent of each other
-    Halves features;  // means of albedo, normal and 1 / depth (see kFeatures), likewise
+    Planes features;  // albedo, normal and 1 / depth, as FilterFeatures() has made them
     // Variance of the luminance of the mean of all samples, from their squares; no channel where it
     // is not known: then the halves alone tell.
     Planes variance;
@@ -28,12 +24,11 @@ struct DenoisedPicture {
     Halves halves;    // what was made of either half; their mean is the picture without fireflies
     Halves noisy;     // the halves of the samples without fireflies, which judge them
     Planes variance;  // of a pixel of these, R, G, B
-    Planes excess;    // what fireflies had, and was spread: R, G, B
 };
 
 // Denoises a picture of at least one pixel, whose memory it uses. Values that are not finite or
-// negative count as 0. The same bits for any number of threads. Takes some 11 us a pixel of a core,
-// or 7 with 2 rows a fit (see Regress()).
+// negative count as 0. The same bits for any number of threads. Takes some 5 us a pixel of a core,
+// or 3 with 2 rows a fit (see RegressionInput).
 DenoisedPicture Denoise(NoisyPicture, int rowsPerFit = 1);
 
 }  // namespace lull

@@ -1,5 +1,7 @@
 #include "renderer/denoise/feature_filter.h"
 
+#include <cmath>
+
 #include "renderer/denoise/patch_weights.h"
 
 namespace lull {
@@ -7,42 +9,88 @@ namespace lull {
 namespace {
 
 constexpr PatchOptions kFeaturePatches{.radius = 5, .patchRadius = 3};
+constexpr int kVarianceRadius = 1;
+// From so far away pixels take part in what is made of one.
+constexpr int kReach = kFeaturePatches.radius + kFeaturePatches.patchRadius + kVarianceRadius;
 constexpr float kLeastFeatureVariance = 1e-6f;  // below it noise is of no importance
+constexpr int kBand = 64;                       // rows that are in memory at a time
+constexpr int kDisparity = kFeatures - 1;
 
-// Adds half of what the weights of `guide` make of `image`.
-void AddFiltered(const Planes& image, const PatchGuide& guide, Planes* result) {
-    ForEachTile(image.width, image.height, [&](const ImageTile& tile) {
-        const PatchWeights weights(guide, tile, 0, kFeaturePatches);
-        const Cutout values(tile.Grown(kFeaturePatches.radius), image);
-        std::vector<Lanes> sums(size_t(image.count));
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; x += kLanes) {
-                Lanes norm = Lanes::Zero();
-                std::ranges::fill(sums, norm);
-                for (int o = 0; o < int(weights.Offsets().size()); ++o) {
-                    const Lanes w = weights.Of(o, x, y, 1);
-                    const auto [dx, dy] = weights.Offsets()[size_t(o)];
-                    norm += w;
-                    for (int c = 0; c < image.count; ++c)
-                        sums[size_t(c)] += w * LanesIn(values.At(c, x + dx, y + dy));
-                }
-                for (int c = 0; c < image.count; ++c) {
-                    const Lanes value = sums[size_t(c)] / norm * 0.5f;
-                    float* to = result->Row(c, y) + x;
-                    for (int i = 0; i < std::min(kLanes, tile.x1 - x); ++i) to[i] += value[i];
-                }
+// Returns the median of one over the depth, where there is anything; 0 if there is nothing at all.
+float MedianDisparity(int height, const FeatureReader& read) {
+    std::vector<float> found;
+    for (int y = 0; y < height; y += kBand) {
+        const Halves halves = read(y, std::min(height, y + kBand));
+        for (const Planes* half : {&halves.a, &halves.b})
+            for (size_t i = 0; i < half->Area(); ++i)
+                if (const float d = Sane(half->Plane(kDisparity)[i]); d > 0) found.push_back(d);
+    }
+    if (found.empty()) return 0;
+    const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
+    std::nth_element(found.begin(), middle, found.end());
+    return *middle;
+}
+
+// Brings features to [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
+// there is nothing.
+void ScaleFeatures(float median, Planes* half) {
+    for (int f = 0; f < kDisparity; ++f)
+        for (size_t i = 0; i < half->Area(); ++i) {
+            float& v = half->Plane(f)[i];
+            v = std::isfinite(v) ? std::clamp(v, -1.f, 1.f) : 0;
+        }
+    for (size_t i = 0; i < half->Area(); ++i) {
+        float& d = half->Plane(kDisparity)[i];
+        d = median > 0 ? Sane(d) / (Sane(d) + median) : 0;
+    }
+}
+
+// Adds half of what the weights of `guide` make of a tile of an image.
+void AddFiltered(const Planes& image, const PatchGuide& guide, const ImageTile& tile,
+                 Planes* result) {
+    PatchWeights weights(guide, tile, 0, kFeaturePatches);
+    const Cutout values(tile.Grown(kFeaturePatches.radius), image);
+    std::vector<Lanes> sums(size_t(image.count));
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        weights.MoveTo(y);
+        for (int x = tile.x0; x < tile.x1; x += kLanes) {
+            Lanes norm = Lanes::Zero();
+            std::ranges::fill(sums, norm);
+            for (int o = 0; o < int(weights.Offsets().size()); ++o) {
+                const Lanes w = PatchWeights::WeightOf(weights.Distances(o, x), 1);
+                const auto [dx, dy] = weights.Offsets()[size_t(o)];
+                norm += w;
+                for (int c = 0; c < image.count; ++c)
+                    sums[size_t(c)] += w * LanesIn(values.At(c, x + dx, y + dy));
             }
-    });
+            for (int c = 0; c < image.count; ++c) {
+                const Lanes value = sums[size_t(c)] / norm * 0.5f;
+                float* to = result->Row(c, y) + x;
+                for (int i = 0; i < std::min(kLanes, tile.x1 - x); ++i) to[i] += value[i];
+            }
+        }
+    }
 }
 
 }  // namespace
 
-Planes FilterFeatures(const Planes& a, const Planes& b) {
-    Planes variance = BoxMean(VarianceOf(a, b), 1);
-    for (float& v : variance.values) v += kLeastFeatureVariance;
-    Planes result(a.width, a.height, a.count);
-    AddFiltered(a, {b, variance}, &result);
-    AddFiltered(b, {a, variance}, &result);
+Planes FilterFeatures(int width, int height, const FeatureReader& read) {
+    const float median = MedianDisparity(height, read);
+    Planes result(width, height, kFeatures);
+    for (int y0 = 0; y0 < height; y0 += kBand) {
+        const int y1 = std::min(height, y0 + kBand);
+        const int first = std::max(0, y0 - kReach), end = std::min(height, y1 + kReach);
+        Halves halves = read(first, end);
+        for (Planes* half : {&halves.a, &halves.b}) ScaleFeatures(median, half);
+        Planes variance = BoxMean(VarianceOf(halves.a, halves.b), kVarianceRadius);
+        for (float& v : variance.values) v += kLeastFeatureVariance;
+        Planes filtered(width, end - first, kFeatures);
+        ForEachTile(width, y0 - first, y1 - first, [&](const ImageTile& tile) {
+            AddFiltered(halves.a, {halves.b, variance}, tile, &filtered);
+            AddFiltered(halves.b, {halves.a, variance}, tile, &filtered);
+        });
+        Paste(filtered, {0, y0 - first, width, y1 - first}, 0, y0, &result);
+    }
     return result;
 }
 

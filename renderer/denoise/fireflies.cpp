@@ -26,55 +26,62 @@ Planes MostAround(const Planes& image) {
 }
 
 // Scales pixel i of `half` down to the luminance `limit` if it is brighter.
-void Limit(Planes* half, size_t i, float limit) {
+void Limit(size_t i, float limit, Planes* half, std::vector<Firefly>* taken) {
     const float y = LuminanceOf(*half, i);
     if (!(y > limit)) return;
-    for (int c = 0; c < kColours; ++c) half->Plane(c)[i] *= limit / y;
+    Firefly firefly{i, {}};
+    for (int c = 0; c < kColours; ++c) {
+        float& value = half->Plane(c)[i];
+        const float less = value * (limit / y);
+        firefly.excess[c] = (value - less) / 2;  // of the mean of two
+        value = less;
+    }
+    taken->push_back(firefly);
 }
 
 }  // namespace
 
-CalmedHalves TakeFireflies(const Planes& a, const Planes& b, float limit) {
-    CalmedHalves result{a, b, Planes(a.width, a.height, kColours)};
+std::vector<Firefly> TakeFireflies(float limit, Halves* halves) {
+    Planes &a = halves->a, &b = halves->b;
+    std::vector<Firefly> taken;
     Planes distance(a.width, a.height, 1);
     const Planes counts = BoxSum(Planes(a.width, a.height, 1, 1), kScaleRadius);
     for (int round = 0; round < kRounds; ++round) {
         for (size_t i = 0; i < a.Area(); ++i)
-            distance.values[i] = std::abs(LuminanceOf(result.a, i) - LuminanceOf(result.b, i));
+            distance.values[i] = std::abs(LuminanceOf(a, i) - LuminanceOf(b, i));
         const Planes around = BoxSum(distance, kScaleRadius);
-        const Planes mostA = MostAround(result.a), mostB = MostAround(result.b);
+        const Planes mostA = MostAround(a), mostB = MostAround(b);
         for (size_t i = 0; i < a.Area(); ++i) {
             // The mean of |x| is sqrt(2 / pi) standard deviations; without the pixel itself.
             const float others = std::max(0.f, around.values[i] - distance.values[i]) /
                                  std::max(1.f, counts.values[i] - 1);
             const float reach = limit * 1.2533f * others;
-            const float ya = LuminanceOf(result.a, i), yb = LuminanceOf(result.b, i);
-            Limit(&result.a, i, std::max(yb + reach, mostB.values[i]));
-            Limit(&result.b, i, std::max(ya + reach, mostA.values[i]));
+            const float ya = LuminanceOf(a, i), yb = LuminanceOf(b, i);
+            Limit(i, std::max(yb + reach, mostB.values[i]), &a, &taken);
+            Limit(i, std::max(ya + reach, mostA.values[i]), &b, &taken);
         }
     }
-    for (size_t i = 0; i < a.values.size(); ++i)
-        result.excess.values[i] =
-            (a.values[i] - result.a.values[i] + b.values[i] - result.b.values[i]) / 2;
-    return result;
+    return taken;
 }
 
-void GiveBack(const Planes& excess, Planes* picture) {
-    Planes share(excess.width, excess.height, 1);
+void GiveBack(const std::vector<Firefly>& fireflies, Planes* picture) {
+    if (fireflies.empty()) return;
+    Planes share(picture->width, picture->height, 1);
     for (size_t i = 0; i < share.Area(); ++i)
         share.values[i] = std::clamp(LuminanceOf(*picture, i), 1e-4f, 1.f);
-    const auto spread = [](const Planes& image) {
-        return BoxSum(BoxSum(image, kSpreadRadius), kSpreadRadius);
+    const auto spread = [](Planes image) {
+        return BoxSum(BoxSum(std::move(image), kSpreadRadius), kSpreadRadius);
     };
-    // Each pixel's excess is divided among its neighbours by their share of the brightness around.
+    // What a pixel had is divided among its neighbours by their share of the brightness around.
     const Planes around = spread(share);
-    Planes scaled = excess;
-    for (int c = 0; c < kColours; ++c)
-        for (size_t i = 0; i < share.Area(); ++i) scaled.Plane(c)[i] /= around.values[i];
-    scaled = spread(scaled);
-    for (int c = 0; c < kColours; ++c)
+    for (int c = 0; c < kColours; ++c) {
+        Planes given(share.width, share.height, 1);
+        for (const Firefly& f : fireflies)
+            given.values[f.pixel] += f.excess[c] / around.values[f.pixel];
+        given = spread(std::move(given));
         for (size_t i = 0; i < share.Area(); ++i)
-            picture->Plane(c)[i] += scaled.Plane(c)[i] * share.values[i];
+            picture->Plane(c)[i] += given.values[i] * share.values[i];
+    }
 }
 
 }  // namespace lull

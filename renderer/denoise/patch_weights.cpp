@@ -17,54 +17,73 @@ PatchWeights::PatchWeights(const PatchGuide& guide, const ImageTile& tile, int m
                            const PatchOptions& options)
     : offsets(WindowOffsets(options.radius)),
       halfCount(int(offsets.size()) / 2),
-      distances(tile.Grown(margin + options.radius), halfCount),
-      inside(distances.Area(), 1) {
-    const ImageTile& area = inside.Area();
-    for (int y = area.y0; y < area.y1; ++y)
-        for (int x = area.x0; x < area.x1; ++x)
-            *inside.At(0, x, y) =
-                x >= 0 && x < guide.image.width && y >= 0 && y < guide.image.height ? 1.f : 0.f;
-
-    const ImageTile around = area.Grown(options.radius + options.patchRadius);
-    const Cutout image(around, guide.image), variance(around, guide.variance);
-    for (int o = 0; o < halfCount; ++o) Measure(image, variance, options.patchRadius, o);
+      radius(options.radius),
+      patchRadius(options.patchRadius),
+      imageHeight(guide.image.height),
+      // Row y is compared with those below it; what is above has been compared with it already.
+      area{tile.x0 - margin - radius, tile.y0 - margin, tile.x1 + margin + radius,
+           tile.y1 + margin + radius},
+      image(area.Grown(radius + patchRadius), guide.image),
+      variance(area.Grown(radius + patchRadius), guide.variance),
+      stride(size_t(area.x1 - area.x0 + 2 * kLanes)),
+      beyond(stride, kBeyond),
+      distanceRows(radius + 1),
+      sumRows(2 * patchRadius + 1),
+      distances(size_t(halfCount * distanceRows) * stride),
+      sums(size_t(halfCount * sumRows) * stride),
+      differences(stride + size_t(2 * patchRadius + kLanes)),
+      nextSums(area.y0 - patchRadius),
+      nextDistances(area.y0) {
+    const int first = std::max(area.x0, 0), end = std::min(area.x1, guide.image.width);
+    std::fill(beyond.begin() + (first - area.x0), beyond.begin() + (end - area.x0), 0.f);
 }
 
-void PatchWeights::Measure(const Cutout& guide, const Cutout& variance, int patchRadius, int o) {
-    const auto [dx, dy] = offsets[size_t(o)];
-    const ImageTile& area = distances.Area();
-    const int side = 2 * patchRadius + 1;
-    const int length = area.x1 - area.x0 + kLanes;  // of the rows that are wanted
-    const int longer = length + 2 * patchRadius;
-    const size_t stride = size_t(longer + kLanes);
-    const float norm = 1.f / float(side * side * guide.Count());
-    // The last rows of differences, and their sum.
-    std::vector<float> rows(size_t(side) * stride), sums(stride);
-    for (int step = 0; step < area.y1 - area.y0 + 2 * patchRadius; ++step) {
-        const int y = area.y0 - patchRadius + step;
-        float* row = &rows[size_t(step % side) * stride];
-        for (int i = 0; i < longer; i += kLanes) {
+void PatchWeights::MoveTo(int y) {
+    row = y;
+    nextDistances = std::max(nextDistances, y);
+    nextSums = std::max(nextSums, nextDistances - patchRadius);
+    for (; nextDistances <= y + radius; ++nextDistances) {
+        for (; nextSums <= nextDistances + patchRadius; ++nextSums) AddRow(nextSums);
+        MeasureRow(nextDistances);
+    }
+}
+
+// Adds up the differences of row y along the rows of patches.
+void PatchWeights::AddRow(int y) {
+    const int length = area.x1 - area.x0 + kLanes;
+    for (int o = 0; o < halfCount; ++o) {
+        const auto [dx, dy] = offsets[size_t(o)];
+        for (int i = 0; i < length + 2 * patchRadius; i += kLanes) {
             const int x = area.x0 - patchRadius + i;
             Lanes sum = Lanes::Zero();
-            for (int c = 0; c < guide.Count(); ++c) {
-                const LanesIn u(guide.At(c, x, y)), other(guide.At(c, x + dx, y + dy));
+            for (int c = 0; c < image.Count(); ++c) {
+                const LanesIn u(image.At(c, x, y)), other(image.At(c, x + dx, y + dy));
                 const LanesIn v(variance.At(c, x, y)), also(variance.At(c, x + dx, y + dy));
                 const Lanes both = v + also;
                 sum += ((u - other).square() - both) / (both + 1e-10f);
             }
-            Store(sum, row + i);
+            Store(sum, &differences[size_t(i)]);
         }
-        if (step < 2 * patchRadius) continue;
-        for (int i = 0; i < longer; i += kLanes) {
-            Lanes sum = Lanes::Zero();
-            for (int r = 0; r < side; ++r)
-                sum += LanesIn(rows.data() + size_t(r) * stride + size_t(i));
-            Store(sum, sums.data() + i);
-        }
+        float* to = &sums[RingRow(o, y + patchRadius, sumRows)];
         for (int i = 0; i < length; i += kLanes) {
             Lanes sum = Lanes::Zero();
-            for (int r = 0; r < side; ++r) sum += LanesIn(sums.data() + i + r);
-            Store((sum * norm).max(0.f), distances.At(o, area.x0 + i, y - patchRadius));
+            for (int k = 0; k < sumRows; ++k) sum += LanesIn(&differences[size_t(i + k)]);
+            Store(sum, to + i);
+        }
+    }
+}
+
+// Makes the distances of row y of what AddRow() has made of the rows of its patches.
+void PatchWeights::MeasureRow(int y) {
+    const int length = area.x1 - area.x0 + kLanes;
+    const float norm = 1.f / float(sumRows * sumRows * image.Count());
+    for (int o = 0; o < halfCount; ++o) {
+        const float* from = &sums[size_t(o * sumRows) * stride];
+        float* to = &distances[RingRow(o, y, distanceRows)];
+        for (int i = 0; i < length; i += kLanes) {
+            Lanes sum = Lanes::Zero();
+            for (int k = 0; k < sumRows; ++k) sum += LanesIn(from + size_t(k) * stride + size_t(i));
+            Store((sum * norm).max(0.f), to + i);
         }
     }
 }

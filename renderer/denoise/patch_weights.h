@@ -19,9 +19,9 @@ struct PatchOptions {
     int patchRadius = 3;  // by the (2 patchRadius + 1)^2 pixels around them
 };
 
-// Measures, for a tile and what lies around it, how far the patches of two pixels are apart: the
-// mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average where noise is
-// all that differs.
+// Measures, row by row of a tile and what lies around it, how far the patches of two pixels are
+// apart: the mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average where
+// noise is all that differs. Only the rows are kept that the one asked for is compared with.
 class PatchWeights {
   public:
     struct Offset {
@@ -34,25 +34,51 @@ class PatchWeights {
     // The offsets of a window, row by row.
     const std::vector<Offset>& Offsets() const { return offsets; }
 
-    // Returns exp(-d / bandwidth^2), with d the distance and not below 0, of the pixels (x, y) to
-    // (x + 15, y) and those at offset number o from them; 0 where these lie beyond the image.
-    Lanes Of(int o, int x, int y, float bandwidth) const {
+    // Makes y the row that is asked for. Rows come from top to bottom; some may be left out.
+    void MoveTo(int y);
+
+    // Returns the distances, not below 0, of the pixels (x, row) to (x + 15, row) from those at
+    // offset number o; where these lie beyond the image, so large a number that nothing is left.
+    Lanes Distances(int o, int x) const {
         const auto [dx, dy] = offsets[size_t(o)];
-        const LanesIn there(inside.At(0, x + dx, y + dy));
+        if (row + dy < 0 || row + dy >= imageHeight) return Lanes::Constant(kBeyond);
+        const LanesIn there(&beyond[size_t(x + dx - area.x0)]);
         if (o == halfCount) return there;
-        const LanesIn d(o < halfCount ? distances.At(o, x, y)
-                                      : distances.At(2 * halfCount - o, x + dx, y + dy));
-        return (d * (-1 / (bandwidth * bandwidth))).exp() * there;
+        const LanesIn d(o < halfCount ? DistancesAt(o, x, row)
+                                      : DistancesAt(2 * halfCount - o, x + dx, row + dy));
+        return d + there;
+    }
+
+    static Lanes WeightOf(const Lanes& distances, float bandwidth) {
+        return (distances * (-1 / (bandwidth * bandwidth))).exp();
     }
 
   private:
-    void Measure(const Cutout& guide, const Cutout& variance, int patchRadius, int o);
+    static constexpr float kBeyond = 1e6f;
+
+    const float* DistancesAt(int o, int x, int y) const {
+        return &distances[RingRow(o, y, distanceRows) + size_t(x - area.x0)];
+    }
+    // Returns where row y of offset number o begins in a ring that keeps the last `rows` of each.
+    size_t RingRow(int o, int y, int rows) const {
+        return size_t(o * rows + (y - area.y0) % rows) * stride;
+    }
+    void AddRow(int y);
+    void MeasureRow(int y);
 
     std::vector<Offset> offsets;
-    int halfCount;     // of the offsets before the one in the middle; number i and
-                       // 2 halfCount - i are opposite, and have the same distances
-    Cutout distances;  // one channel for each offset of the first half
-    Cutout inside;     // 1 within the image, 0 outside
+    int halfCount;  // of the offsets before the one in the middle; number i and
+                    // 2 halfCount - i are opposite, and have the same distances
+    int radius, patchRadius, imageHeight;
+    ImageTile area;
+    Cutout image, variance;
+    size_t stride;                         // of a row in what follows, whose first is at area.x0
+    std::vector<float> beyond;             // 0 at columns within the image, kBeyond outside
+    int distanceRows, sumRows;             // that the rings have
+    std::vector<float> distances;          // of the first half of the offsets
+    std::vector<float> sums;               // of differences along the rows of patches
+    std::vector<float> differences;        // of the row at hand
+    int row = 0, nextSums, nextDistances;  // rows still to be made
 };
 
 }  // namespace lull

@@ -4,46 +4,46 @@ namespace lull {
 
 namespace {
 
-// Replaces each row by the sum of those up to `radius` above and below, or by their mean. Sums are
-// double, so that what a bright value adds goes again without a trace.
+// Returns how many of the places up to `radius` before and after place i there are.
+int CountAround(int i, int size, int radius) {
+    return std::min(size, i + radius + 1) - std::max(0, i - radius);
+}
+
+// Replaces each row by the sum of those up to `radius` above and below, or by their mean.
 void FilterColumns(int radius, bool asMean, Planes* image) {
     const size_t width = size_t(image->width);
     const int height = image->height;
-    std::vector<double> sums(width);
     std::vector<float> source;
     for (int c = 0; c < image->count; ++c) {
         source.assign(image->Plane(c), image->Plane(c) + image->Area());
-        std::fill(sums.begin(), sums.end(), 0.0);
-        const auto add = [&](int y, double sign) {
-            const float* row = &source[size_t(y) * width];
-            for (size_t x = 0; x < width; ++x) sums[x] += sign * double(row[x]);
-        };
-        int first = 0, end = 0;
         for (int y = 0; y < height; ++y) {
-            for (; end < std::min(height, y + radius + 1); ++end) add(end, 1);
-            for (; first < y - radius; ++first) add(first, -1);
-            const double norm = asMean ? 1.0 / (end - first) : 1.0;
             float* to = image->Row(c, y);
-            for (size_t x = 0; x < width; ++x) to[x] = float(sums[x] * norm);
+            const int first = std::max(0, y - radius), count = CountAround(y, height, radius);
+            std::fill_n(to, width, 0.f);
+            for (int v = first; v < first + count; ++v) {
+                const float* row = &source[size_t(v) * width];
+                for (size_t x = 0; x < width; ++x) to[x] += row[x];
+            }
+            const float norm = asMean ? 1 / float(count) : 1;
+            for (size_t x = 0; x < width; ++x) to[x] *= norm;
         }
     }
 }
 
 void FilterRows(int radius, bool asMean, Planes* image) {
-    const int width = image->width;
-    std::vector<float> row;
+    const size_t width = size_t(image->width), reach = size_t(radius);
+    std::vector<float> row(width + 2 * reach), norms(width, 1);
+    if (asMean)
+        for (int x = 0; x < image->width; ++x)
+            norms[size_t(x)] = 1 / float(CountAround(x, image->width, radius));
     for (int c = 0; c < image->count; ++c)
         for (int y = 0; y < image->height; ++y) {
             float* to = image->Row(c, y);
-            row.assign(to, to + width);
-            double sum = 0;
-            int first = 0, end = 0;
-            for (int x = 0; x < width; ++x) {
-                for (; end < std::min(width, x + radius + 1); ++end)
-                    sum += double(row[size_t(end)]);
-                for (; first < x - radius; ++first) sum -= double(row[size_t(first)]);
-                to[x] = float(asMean ? sum / (end - first) : sum);
-            }
+            std::copy_n(to, width, row.begin() + ptrdiff_t(reach));
+            std::fill_n(to, width, 0.f);
+            for (size_t k = 0; k <= 2 * reach; ++k)
+                for (size_t x = 0; x < width; ++x) to[x] += row[x + k];
+            for (size_t x = 0; x < width; ++x) to[x] *= norms[x];
         }
 }
 

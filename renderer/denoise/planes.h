@@ -27,10 +27,20 @@ struct Planes {
 
 inline constexpr int kColours = 3;  // R, G, B
 
+// Holds two pictures of the same, each made from one half of the samples.
+struct Halves {
+    Planes a, b;
+};
+
 // Returns the luminance of pixel i of an image with channels R, G, B.
 inline float LuminanceOf(const Planes& image, size_t i) {
     return Luminance(Rgb(image.Plane(0)[i], image.Plane(1)[i], image.Plane(2)[i]));
 }
+
+inline constexpr float kLargest = 1e18f;  // its square is finite
+
+// Returns 0 for what is negative or not a number, and at most kLargest.
+inline float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
 
 // Returns the values pixel by pixel, all channels of one beside each other.
 std::vector<float> Interleaved(const Planes&);
@@ -40,7 +50,8 @@ std::vector<float> Interleaved(const Planes&);
 Planes VarianceOf(const Planes& a, const Planes& b);
 
 // Return the mean or the sum of each channel over the (2 radius + 1)^2 pixels around, those within
-// the image.
+// the image. Each sum is made afresh, so that a part of an image has the same bits as the whole,
+// and what is bright leaves no trace farther away.
 Planes BoxMean(Planes, int radius);
 Planes BoxSum(Planes, int radius);
 

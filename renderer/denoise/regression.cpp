@@ -1,6 +1,7 @@
 #include "renderer/denoise/regression.h"
 
 #include <array>
+#include <utility>
 
 namespace lull {
 
@@ -9,161 +10,243 @@ namespace {
 // The unknowns of a fit: a constant, a slope for each feature, and for x and y.
 constexpr int kUnknowns = 1 + kFeatures + 2;
 constexpr int kSlopeX = kUnknowns - 2, kSlopeY = kUnknowns - 1;
-constexpr int kMoments = kUnknowns * (kUnknowns + 1) / 2;
+constexpr int kColumns = kUnknowns + kColours;
 // Features whose variance in a window is below this say nothing of its colours.
 constexpr float kRidge = 1e-4f;
 // Neighbours of less weight are left out where that is so of all sixteen.
 constexpr float kLeastWeight = 1e-3f;
 constexpr float kOwnWeight = 0.1f;  // of a pixel's own colour, where there is no fit around it
+constexpr int kAtOnce = 4;          // neighbours for which each sum is loaded and stored once
 
-using Moments = std::array<Lanes, kMoments>;               // w xi xj for j >= i, row by row
-using Products = std::array<Lanes, kUnknowns * kColours>;  // w xi c
+static_assert(kUnknowns % 2 == 0);
 
-// Solves the normal equations by Cholesky decomposition (L D L'): the products become the unknowns.
-void Solve(Moments* moments, Products* products) {
-    const auto at = [&](size_t i, size_t j) -> Lanes& {  // j >= i
-        return (*moments)[i * kUnknowns - i * (i + 1) / 2 + j];
+// The normal equations, one a row: sums of w xi xj, then of w xi c. What is left of the diagonal is
+// not used.
+using Equations = std::array<std::array<Lanes, kColumns>, kUnknowns>;
+
+// Adds neighbours with these weights to the rows i and i + 1, which have their values loaded once;
+// values are xj and c of each. Columns are written out, as loops of few rounds cost more than they
+// do.
+template <size_t i, size_t... j>
+void AddToRows(const Lanes* weights, const std::array<Lanes, kColumns>* values,
+               std::index_sequence<j...>, Equations* equations) {
+    Lanes first[kAtOnce], second[kAtOnce];
+    for (size_t k = 0; k < kAtOnce; ++k) {
+        first[k] = weights[k] * values[k][i];
+        second[k] = weights[k] * values[k][i + 1];
+    }
+    const auto addTo = [&](size_t column) {
+        Lanes a = (*equations)[i][column], b = (*equations)[i + 1][column];
+        for (size_t k = 0; k < kAtOnce; ++k) {
+            a += first[k] * values[k][column];
+            b += second[k] * values[k][column];
+        }
+        (*equations)[i][column] = a;
+        (*equations)[i + 1][column] = b;
     };
-    const Lanes ridge = at(0, 0) * kRidge;
-    for (size_t i = 1; i < kUnknowns; ++i) at(i, i) += ridge;
+    (addTo(i + j), ...);
+}
+
+template <size_t... pair>
+void AddNeighbours(const Lanes* weights, const std::array<Lanes, kColumns>* values,
+                   std::index_sequence<pair...>, Equations* equations) {
+    (AddToRows<2 * pair>(weights, values, std::make_index_sequence<kColumns - 2 * pair>(),
+                         equations),
+     ...);
+}
+
+// Solves them by Cholesky decomposition (L D L'): the columns of colours become the unknowns.
+void Solve(Equations* equations) {
+    Equations& e = *equations;
+    const Lanes ridge = e[0][0] * kRidge;
+    for (size_t i = 1; i < kUnknowns; ++i) e[i][i] += ridge;
     std::array<Lanes, kUnknowns> inverse;
     for (size_t i = 0; i < kUnknowns; ++i) {
-        inverse[i] = at(i, i).max(ridge * 0.1f + 1e-30f).inverse();
+        inverse[i] = e[i][i].max(ridge * 0.1f + 1e-30f).inverse();
         for (size_t j = i + 1; j < kUnknowns; ++j) {
-            const Lanes factor = at(i, j) * inverse[i];
-            for (size_t k = j; k < kUnknowns; ++k) at(j, k) -= factor * at(i, k);
-            for (size_t c = 0; c < kColours; ++c)
-                (*products)[j * kColours + c] -= factor * (*products)[i * kColours + c];
+            const Lanes factor = e[i][j] * inverse[i];
+            for (size_t k = j; k < kColumns; ++k) e[j][k] -= factor * e[i][k];
         }
     }
     for (size_t i = kUnknowns; i-- > 0;)
-        for (size_t c = 0; c < kColours; ++c) {
-            Lanes sum = (*products)[i * kColours + c];
-            for (size_t j = i + 1; j < kUnknowns; ++j)
-                sum -= at(i, j) * (*products)[j * kColours + c];
-            (*products)[i * kColours + c] = sum * inverse[i];
+        for (size_t c = kUnknowns; c < kColumns; ++c) {
+            Lanes sum = e[i][c];
+            for (size_t j = i + 1; j < kUnknowns; ++j) sum -= e[i][j] * e[j][c];
+            e[i][c] = sum * inverse[i];
         }
 }
 
-// Holds the fits of a tile, and of the pixels around it that its own pixels were used for.
+// Says where a neighbour is.
+struct Neighbour {
+    int x, y;            // relative to the pixel
+    ptrdiff_t distance;  // in memory
+};
+
+float Largest(const Lanes& values) {
+    const auto of8 = values.head<8>().max(values.tail<8>()).eval();
+    const auto of4 = of8.head<4>().max(of8.tail<4>()).eval();
+    return std::max(std::max(of4[0], of4[1]), std::max(of4[2], of4[3]));
+}
+
+// Fits sixteen pixels at a time, and adds what each fit says to the pixels that it was made from.
 class TileFits {
   public:
-    TileFits(const Cutout& colour, const Cutout& features, const PatchWeights& weights,
-             const ImageTile& tile, int radius, float bandwidth, int rowsPerFit)
-        : colour(colour),
-          features(features),
-          weights(weights),
-          bandwidth(bandwidth),
-          rowsPerFit(rowsPerFit),
+    TileFits(const RegressionInput& in, const ImageTile& tile)
+        : in(in),
+          tile(tile),
+          radius(in.patches.radius),
           scale(1 / float(radius)),
-          fits(tile.Grown(radius), kUnknowns * kColours) {
-        const ImageTile& area = fits.Area();
-        for (int y = area.y0; y < area.y1; ++y)
-            if (HasFits(y))
-                for (int x = area.x0; x < area.x1; x += kLanes) Fit(x, y);
+          colour(tile.Grown(2 * radius), in.colour),
+          features(tile.Grown(2 * radius), in.features),
+          weights(in.guide, tile, radius, in.patches),
+          distances(weights.Offsets().size()),
+          neighbours(distances.size() + kAtOnce),
+          weightsOf(neighbours.size()) {
+        const ImageTile wide{tile.x0 - 2 * radius, tile.y0, tile.x1 + 2 * radius, tile.y1};
+        sums.assign(in.bandwidths.size(), Cutout(wide, kColours + 1));
+        for (int y = tile.y0; y < tile.y1; ++y)
+            if (!HasFits(y)) AddOwnColours(y);
+        const int end = std::min(tile.y1 + radius, in.colour.height);
+        for (int y = std::max(tile.y0 - radius, 0); y < end; ++y) {
+            if (!HasFits(y)) continue;
+            weights.MoveTo(y);
+            for (int x = tile.x0 - radius; x < tile.x1 + radius; x += kLanes) FitAll(x, y);
+        }
     }
 
-    // Returns what the fits around say of the pixels (x, y) to (x + 15, y), by their weights.
-    std::array<Lanes, kColours> Gather(int x, int y) const {
-        std::array<Lanes, kColours> sums;
-        sums.fill(Lanes::Zero());
-        Lanes norm = Lanes::Constant(1e-30f);
-        if (!HasFits(y)) {
-            norm = Lanes::Constant(kOwnWeight);
-            for (int c = 0; c < kColours; ++c)
-                sums[size_t(c)] = LanesIn(colour.At(c, x, y)) * kOwnWeight;
-        }
-        for (int o = 0; o < int(weights.Offsets().size()); ++o) {
-            const PatchWeights::Offset at = weights.Offsets()[size_t(o)];
-            if (!HasFits(y + at.y)) continue;
-            const Lanes w = weights.Of(o, x, y, bandwidth);
-            if (!(w.maxCoeff() > kLeastWeight)) continue;
-            norm += w;
-            for (int c = 0; c < kColours; ++c) {
-                const auto unknown = [&](int i) {
-                    return LanesIn(fits.At(i * kColours + c, x + at.x, y + at.y));
-                };
-                Lanes value = unknown(0);
-                for (int f = 0; f < kFeatures; ++f)
-                    value += unknown(1 + f) * LanesIn(features.At(f, x, y));
-                value -= unknown(kSlopeX) * (float(at.x) * scale);
-                value -= unknown(kSlopeY) * (float(at.y) * scale);
-                sums[size_t(c)] += w * value;
+    Planes Result(size_t bandwidth) const {
+        Planes result(tile.x1 - tile.x0, tile.y1 - tile.y0, kColours);
+        const Cutout& from = sums[bandwidth];
+        for (int c = 0; c < kColours; ++c)
+            for (int y = tile.y0; y < tile.y1; ++y) {
+                const float *sum = from.At(c, tile.x0, y), *norm = from.At(kColours, tile.x0, y);
+                float* to = result.Row(c, y - tile.y0);
+                for (int x = 0; x < result.width; ++x) to[x] = sum[x] / (norm[x] + 1e-30f);
             }
-        }
-        for (Lanes& sum : sums) sum /= norm;
-        return sums;
+        return result;
     }
 
   private:
-    // A pixel without a fit, which may be like none around, has its own colour instead.
-    bool HasFits(int y) const { return y % rowsPerFit == 0; }
+    bool HasFits(int y) const { return y % in.rowsPerFit == 0; }
 
-    void Fit(int x, int y) {
-        Moments moments;
-        Products products;
-        moments.fill(Lanes::Zero());
-        products.fill(Lanes::Zero());
-        for (int o = 0; o < int(weights.Offsets().size()); ++o) {
-            const Lanes w = weights.Of(o, x, y, bandwidth);
-            if (!(w.maxCoeff() > kLeastWeight)) continue;
-            const auto [dx, dy] = weights.Offsets()[size_t(o)];
-            std::array<Lanes, kUnknowns> at;
-            at[0] = Lanes::Ones();
-            for (int f = 0; f < kFeatures; ++f)
-                at[size_t(1 + f)] =
-                    LanesIn(features.At(f, x + dx, y + dy)) - LanesIn(features.At(f, x, y));
-            at[kSlopeX] = Lanes::Constant(float(dx) * scale);
-            at[kSlopeY] = Lanes::Constant(float(dy) * scale);
-            size_t m = 0;
-            for (size_t i = 0; i < kUnknowns; ++i) {
-                const Lanes wx = w * at[i];
-                for (size_t j = i; j < kUnknowns; ++j) moments[m++] += wx * at[j];
-                for (size_t c = 0; c < kColours; ++c)
-                    products[i * kColours + c] += wx * LanesIn(colour.At(int(c), x + dx, y + dy));
+    // A pixel without a fit, which may be like none around, has its own colour too.
+    void AddOwnColours(int y) {
+        for (Cutout& to : sums)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                for (int c = 0; c < kColours; ++c)
+                    *to.At(c, x, y) = *colour.At(c, x, y) * kOwnWeight;
+                *to.At(kColours, x, y) = kOwnWeight;
             }
-        }
-        Solve(&moments, &products);
-        // Features were taken relative to the centre; the constant becomes that where they are 0.
-        for (size_t c = 0; c < kColours; ++c)
-            for (size_t f = 0; f < kFeatures; ++f)
-                products[c] -=
-                    products[(1 + f) * kColours + c] * LanesIn(features.At(int(f), x, y));
-        for (size_t i = 0; i < products.size(); ++i) Store(products[i], fits.At(int(i), x, y));
     }
 
-    const Cutout& colour;
-    const Cutout& features;
-    const PatchWeights& weights;
-    float bandwidth;
-    int rowsPerFit;
+    void FitAll(int x, int y) {
+        for (size_t o = 0; o < distances.size(); ++o) distances[o] = weights.Distances(int(o), x);
+        for (size_t b = 0; b < in.bandwidths.size(); ++b) Fit(x, y, b);
+    }
+
+    void Fit(int x, int y, size_t bandwidth) {
+        FindNeighbours(in.bandwidths[bandwidth]);
+        const float *featuresHere = features.At(0, x, y), *coloursHere = colour.At(0, x, y);
+        for (size_t f = 0; f < kFeatures; ++f)
+            centre[f] = LanesIn(featuresHere + f * features.PlaneSize());
+        for (auto& equation : equations) equation.fill(Lanes::Zero());
+        std::array<Lanes, kColumns> values[kAtOnce];
+        for (size_t n = 0; n < count; n += kAtOnce) {
+            for (size_t k = 0; k < kAtOnce; ++k)
+                Look(neighbours[n + k], featuresHere, coloursHere, &values[k]);
+            AddNeighbours(&weightsOf[n], values, std::make_index_sequence<kUnknowns / 2>(),
+                          &equations);
+        }
+        Solve(&equations);
+        Spread(x, y, &sums[bandwidth]);
+    }
+
+    // Finds those whose weights matter, column by column: so Spread() does not load what it has
+    // just stored at another place, for which processors have to wait.
+    void FindNeighbours(float bandwidth) {
+        count = 0;
+        const int side = 2 * radius + 1;
+        for (int dx = -radius; dx <= radius; ++dx)
+            for (int dy = -radius; dy <= radius; ++dy) {
+                const Lanes w = PatchWeights::WeightOf(
+                    distances[size_t((dy + radius) * side + dx + radius)], bandwidth);
+                if (!(Largest(w) > kLeastWeight)) continue;
+                neighbours[count] = {dx, dy, dy * features.Stride() + dx};
+                weightsOf[count++] = w;
+            }
+        for (size_t k = count; k < count + kAtOnce; ++k) {
+            neighbours[k] = {0, 0, 0};
+            weightsOf[k] = Lanes::Zero();
+        }
+    }
+
+    // Sets what the equations have of a neighbour. Features are relative to the pixel's.
+    void Look(const Neighbour& at, const float* featuresHere, const float* coloursHere,
+              std::array<Lanes, kColumns>* values) const {
+        (*values)[0] = Lanes::Ones();
+        for (size_t f = 0; f < kFeatures; ++f)
+            (*values)[1 + f] =
+                LanesIn(featuresHere + f * features.PlaneSize() + at.distance) - centre[f];
+        (*values)[kSlopeX] = Lanes::Constant(float(at.x) * scale);
+        (*values)[kSlopeY] = Lanes::Constant(float(at.y) * scale);
+        for (size_t c = 0; c < kColours; ++c)
+            (*values)[kUnknowns + c] = LanesIn(coloursHere + c * colour.PlaneSize() + at.distance);
+    }
+
+    // Adds what the fit at (x, y) says of its neighbours within the tile, by their weights, which
+    // are the same both ways.
+    void Spread(int x, int y, Cutout* to) {
+        const auto unknown = [&](size_t i, size_t c) -> Lanes& {
+            return equations[i][kUnknowns + c];
+        };
+        for (size_t c = 0; c < kColours; ++c)  // the constant becomes that where features are 0
+            for (size_t f = 0; f < kFeatures; ++f) unknown(0, c) -= unknown(1 + f, c) * centre[f];
+        Lanes isInside;
+        for (int i = 0; i < kLanes; ++i) isInside[i] = x + i >= 0 && x + i < in.colour.width;
+        const size_t featurePlane = features.PlaneSize(), sumPlane = to->PlaneSize();
+        for (size_t n = 0; n < count; ++n) {
+            const Neighbour& at = neighbours[n];
+            if (y + at.y < tile.y0 || y + at.y >= tile.y1) continue;
+            const Lanes w = weightsOf[n] * isInside;
+            const float* feature = features.At(0, x, y) + at.distance;
+            float* sum = to->At(0, x + at.x, y + at.y);
+            std::array<Lanes, kColours> value;
+            for (size_t c = 0; c < kColours; ++c)
+                value[c] = unknown(0, c) + unknown(kSlopeX, c) * (float(at.x) * scale) +
+                           unknown(kSlopeY, c) * (float(at.y) * scale);
+            for (size_t f = 0; f < kFeatures; ++f) {
+                const LanesIn v(feature + f * featurePlane);
+                for (size_t c = 0; c < kColours; ++c) value[c] += unknown(1 + f, c) * v;
+            }
+            for (size_t c = 0; c < kColours; ++c, sum += sumPlane)
+                Store(LanesIn(sum) + w * value[c], sum);
+            Store(LanesIn(sum) + w, sum);
+        }
+    }
+
+    const RegressionInput& in;
+    ImageTile tile;
+    int radius;
     float scale;  // pixels to what the slopes along x and y are of
-    Cutout fits;
+    Cutout colour, features;
+    PatchWeights weights;
+    std::vector<Cutout> sums;      // for each bandwidth: R, G, B and 1, times weights
+    std::vector<Lanes> distances;  // of the pixels at hand, by offset
+    // Of the fit at hand:
+    size_t count = 0;
+    std::vector<Neighbour> neighbours;
+    std::vector<Lanes> weightsOf;  // these
+    std::array<Lanes, kFeatures> centre;
+    Equations equations;
 };
 
 }  // namespace
 
-std::vector<Planes> Regress(const Planes& colour, const Planes& features, const PatchGuide& guide,
-                            const PatchOptions& options, std::span<const float> bandwidths,
-                            int rowsPerFit) {
-    std::vector<Planes> pictures(bandwidths.size(), Planes(colour.width, colour.height, kColours));
-    ForEachTile(colour.width, colour.height, [&](const ImageTile& tile) {
-        const ImageTile around = tile.Grown(2 * options.radius);
-        const Cutout colours(around, colour), values(around, features);
-        const PatchWeights weights(guide, tile, options.radius, options);
-        for (size_t b = 0; b < bandwidths.size(); ++b) {
-            const TileFits fits(colours, values, weights, tile, options.radius, bandwidths[b],
-                                rowsPerFit);
-            for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; x += kLanes) {
-                    const std::array<Lanes, kColours> result = fits.Gather(x, y);
-                    for (int c = 0; c < kColours; ++c)
-                        std::copy_n(result[size_t(c)].data(), std::min(kLanes, tile.x1 - x),
-                                    pictures[b].Row(c, y) + x);
-                }
-        }
-    });
-    return pictures;
+std::vector<Planes> RegressTile(const RegressionInput& in, const ImageTile& tile) {
+    const TileFits fits(in, tile);
+    std::vector<Planes> results;
+    for (size_t b = 0; b < in.bandwidths.size(); ++b) results.push_back(fits.Result(b));
+    return results;
 }
 
 }  // namespace lull

@@ -6,19 +6,27 @@
 #include <span>
 #include <vector>
 
+#include "renderer/denoise/feature_filter.h"
 #include "renderer/denoise/patch_weights.h"
 
 namespace lull {
 
-inline constexpr int kFeatures = 7;  // albedo R, G, B, normal X, Y, Z, 1 / depth
+// Holds what is fitted, and how. All images are of one size, and finite.
+struct RegressionInput {
+    const Planes& colour;
+    const Planes& features;
+    // Weights are those of the guide (PatchWeights::Of), which is the other half of the samples, so
+    // that they do not depend on the noise of what is fitted.
+    PatchGuide guide;
+    PatchOptions patches;
+    std::span<const float> bandwidths;
+    // A row of fits speaks for the rows around it too: with fits in each second row pictures are a
+    // few per cent worse, in half of the time.
+    int rowsPerFit = 1;
+};
 
-// Returns for each bandwidth what the features make of `colour`. Weights are those of the guide
-// (PatchWeights::Of), which is the other half of the samples, so that they do not depend on the
-// noise of what is fitted. A row of fits speaks for the rows around it too: with fits in each
-// second row pictures are a few per cent worse, in half of the time. All images are of one size,
-// and finite. The same bits for any number of threads.
-std::vector<Planes> Regress(const Planes& colour, const Planes& features, const PatchGuide&,
-                            const PatchOptions&, std::span<const float> bandwidths,
-                            int rowsPerFit = 1);
+// Returns for each bandwidth what the features make of the colours of a tile, which lies within the
+// image.
+std::vector<Planes> RegressTile(const RegressionInput&, const ImageTile&);
 
 }  // namespace lull

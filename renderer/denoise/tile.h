@@ -22,21 +22,46 @@ struct ImageTile {
     ImageTile Grown(int margin) const {
         return {x0 - margin, y0 - margin, x1 + margin, y1 + margin};
     }
+    // Returns the part within an image.
+    ImageTile Within(int width, int height) const {
+        return {std::max(x0, 0), std::max(y0, 0), std::min(x1, width), std::min(y1, height)};
+    }
 };
 
-// Calls use(tile) for the tiles of an image, in any order, on all threads. How an image is cut
-// depends on nothing but its size.
+inline constexpr int kTileWidth = 128;
+
+// Calls use(tile) for the tiles next to each other that these rows of an image are cut into, in any
+// order, on all threads. How they are cut depends on nothing but the width.
 template <typename Use>
-void ForEachTile(int width, int height, const Use& use) {
-    constexpr int side = 128;
-    const int columns = (width + side - 1) / side, rows = (height + side - 1) / side;
+void ForEachTile(int width, int y0, int y1, const Use& use) {
     // Isolated, so that a thread that waits here takes up no other task of a render.
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(0, columns * rows, [&](int i) {
-            const int x = i % columns * side, y = i / columns * side;
-            use(ImageTile{x, y, std::min(x + side, width), std::min(y + side, height)});
+        tbb::parallel_for(0, (width + kTileWidth - 1) / kTileWidth, [&](int i) {
+            const int x = i * kTileWidth;
+            use(ImageTile{x, y0, std::min(x + kTileWidth, width), y1});
         });
     });
+}
+
+// Returns how many rows of an image are worked on at once: all of them if they are few, as in a
+// block; the first of each is an even one.
+inline int BandRows(int height) { return height <= 256 ? std::max(height, 1) : 128; }
+
+// Returns the part of an image that a tile within it covers.
+inline Planes Crop(const Planes& image, const ImageTile& tile) {
+    Planes part(tile.x1 - tile.x0, tile.y1 - tile.y0, image.count);
+    for (int c = 0; c < part.count; ++c)
+        for (int y = 0; y < part.height; ++y)
+            std::copy_n(image.Row(c, tile.y0 + y) + tile.x0, part.width, part.Row(c, y));
+    return part;
+}
+
+// Copies a tile of an image to where (x, y) is its first pixel.
+inline void Paste(const Planes& image, const ImageTile& tile, int x, int y, Planes* to) {
+    for (int c = 0; c < image.count; ++c)
+        for (int v = tile.y0; v < tile.y1; ++v)
+            std::copy_n(image.Row(c, v) + tile.x0, tile.x1 - tile.x0,
+                        to->Row(c, y + v - tile.y0) + x);
 }
 
 // Holds the part of an image that a tile covers, copied so that rows can be read up to 4 kLanes
@@ -62,6 +87,8 @@ class Cutout {
     }
     const ImageTile& Area() const { return tile; }
     int Count() const { return planes.count; }
+    int Stride() const { return planes.width; }         // from a row to the next
+    size_t PlaneSize() const { return planes.Area(); }  // from a channel to the next
 
   private:
     ImageTile tile;

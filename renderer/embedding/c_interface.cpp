@@ -29,8 +29,10 @@ void Require(bool condition, const std::string& message) {
     if (!condition) throw std::invalid_argument(message);
 }
 
-// Copies an image to planes from number `first` on. Values need not be aligned.
-void Copy(const float* from, const lull_halves& layout, int channels, int first, Planes* to) {
+// Copies the rows of an image from y0 on to planes from number `first` on. Values need not be
+// aligned.
+void Copy(const float* from, const lull_halves& layout, int y0, int channels, int first,
+          Planes* to) {
     const ptrdiff_t channel = layout.channel_stride ? layout.channel_stride : sizeof(float);
     const ptrdiff_t pixel = layout.pixel_stride ? layout.pixel_stride : channels * channel;
     const ptrdiff_t row = layout.row_stride ? layout.row_stride : to->width * pixel;
@@ -38,17 +40,33 @@ void Copy(const float* from, const lull_halves& layout, int channels, int first,
     for (int c = 0; c < channels; ++c)
         for (int y = 0; y < to->height; ++y)
             for (int x = 0; x < to->width; ++x)
-                std::memcpy(to->Row(first + c, y) + x, bytes + y * row + x * pixel + c * channel,
-                            sizeof(float));
+                std::memcpy(to->Row(first + c, y) + x,
+                            bytes + (y0 + y) * row + x * pixel + c * channel, sizeof(float));
 }
 
-// Copies both halves, where they are known.
-void CopyFeature(const char* name, const lull_halves& feature, int channels, int first,
-                 Halves* to) {
+void CheckFeature(const char* name, const lull_halves& feature) {
     Require(feature.a || !feature.b, std::string(name) + " has a second half, but no first");
+}
+
+// Copies rows of both halves, where they are known.
+void CopyFeature(const lull_halves& feature, int y0, int channels, int first, Halves* to) {
     if (!feature.a) return;
-    Copy(feature.a, feature, channels, first, &to->a);
-    Copy(feature.b ? feature.b : feature.a, feature, channels, first, &to->b);
+    Copy(feature.a, feature, y0, channels, first, &to->a);
+    Copy(feature.b ? feature.b : feature.a, feature, y0, channels, first, &to->b);
+}
+
+Halves ReadFeatures(const lull_noisy_picture& noisy, int y0, int y1) {
+    const Planes none(noisy.width, y1 - y0, kFeatures);
+    Halves rows{none, none};
+    CopyFeature(noisy.albedo, y0, 3, 0, &rows);
+    CopyFeature(noisy.normal, y0, 3, 3, &rows);
+    CopyFeature(noisy.depth, y0, 1, kFeatures - 1, &rows);
+    for (Planes* half : {&rows.a, &rows.b})
+        for (size_t i = 0; i < half->Area(); ++i) {
+            float& depth = half->Plane(kFeatures - 1)[i];
+            depth = DisparityOf(depth);
+        }
+    return rows;
 }
 
 NoisyPicture Read(const lull_noisy_picture& noisy) {
@@ -60,19 +78,14 @@ NoisyPicture Read(const lull_noisy_picture& noisy) {
             "the colours of both halves of the samples are needed");
     Require(noisy.colour.a != noisy.colour.b,
             "both halves have the same colours; their difference shows what is noise");
-    const Planes colour(noisy.width, noisy.height, kColours);
-    const Planes features(noisy.width, noisy.height, kFeatures);
-    NoisyPicture picture{{colour, colour}, {features, features}, {}};
-    Copy(noisy.colour.a, noisy.colour, kColours, 0, &picture.colour.a);
-    Copy(noisy.colour.b, noisy.colour, kColours, 0, &picture.colour.b);
-    CopyFeature("albedo", noisy.albedo, 3, 0, &picture.features);
-    CopyFeature("normal", noisy.normal, 3, 3, &picture.features);
-    CopyFeature("depth", noisy.depth, 1, kFeatures - 1, &picture.features);
-    for (Planes* half : {&picture.features.a, &picture.features.b})
-        for (size_t i = 0; i < half->Area(); ++i) {
-            float& depth = half->Plane(kFeatures - 1)[i];
-            depth = DisparityOf(depth);
-        }
+    CheckFeature("albedo", noisy.albedo);
+    CheckFeature("normal", noisy.normal);
+    CheckFeature("depth", noisy.depth);
+    const auto read = [&](int y0, int y1) { return ReadFeatures(noisy, y0, y1); };
+    NoisyPicture picture{{}, FilterFeatures(noisy.width, noisy.height, read), {}};
+    picture.colour.a = picture.colour.b = Planes(noisy.width, noisy.height, kColours);
+    Copy(noisy.colour.a, noisy.colour, 0, kColours, 0, &picture.colour.a);
+    Copy(noisy.colour.b, noisy.colour, 0, kColours, 0, &picture.colour.b);
     return picture;
 }
 
@@ -90,8 +103,9 @@ void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& c
     }
 }
 
-void Write(const DenoisedPicture& denoised, lull_denoised_picture* clean) {
+void Write(DenoisedPicture denoised, lull_denoised_picture* clean) {
     const EstimatedError error = MeasureError(denoised);
+    denoised.halves = denoised.noisy = {};  // a large picture needs the memory
     const Planes standard = clean->error ? StandardError(error) : Planes();
     const std::vector<float> colours = Interleaved(denoised.picture);
     for (int i = 0; i < clean->block_count; ++i) {

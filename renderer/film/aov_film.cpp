@@ -12,13 +12,15 @@ struct NamedLayer {
     const char* name;
     bool AovSet::*wanted;
 };
-constexpr std::array<NamedLayer, 7> kLayers = {{{"albedo", &AovSet::albedo},
+constexpr std::array<NamedLayer, 9> kLayers = {{{"albedo", &AovSet::albedo},
                                                 {"normal", &AovSet::normal},
                                                 {"depth", &AovSet::depth},
                                                 {"position", &AovSet::position},
                                                 {"object", &AovSet::object},
                                                 {"material", &AovSet::material},
-                                                {"noise", &AovSet::noise}}};
+                                                {"noise", &AovSet::noise},
+                                                {"alpha", &AovSet::alpha},
+                                                {"cryptomatte", &AovSet::cryptomatte}}};
 
 }  // namespace
 
@@ -46,7 +48,8 @@ AovSet ParseAovs(const std::string& names) {
         if (layer == kLayers.end())
             throw Error(
                 fmt::format("there is no layer \"{}\", but albedo, normal, depth, position, "
-                            "object, material and noise, with commas between them",
+                            "object, material, noise, alpha and cryptomatte, with commas between "
+                            "them",
                             name));
         set.*layer->wanted = true;
         begin = end + 1;

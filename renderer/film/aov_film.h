@@ -13,13 +13,20 @@ namespace lull {
 // Says which layers are wanted, and how.
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
-         material = false, noise = false;
+         material = false, noise = false, alpha = false, cryptomatte = false;
     // Look through surfaces that have only perfectly specular lobes, to what is seen in them.
     bool throughSpecular = false;
 
     bool Any() const { return FirstHits() || noise; }
     // Says whether any layer needs first hits; noise does not.
-    bool FirstHits() const { return albedo || normal || depth || position || object || material; }
+    bool FirstHits() const {
+        return albedo || normal || depth || position || object || material || Mattes();
+    }
+    // Say whether any layer comes from an AovFilm, and from a MatteFilm.
+    bool Sums() const {
+        return albedo || normal || depth || position || object || material || noise;
+    }
+    bool Mattes() const { return alpha || cryptomatte; }
     bool operator==(const AovSet&) const = default;
 };
 

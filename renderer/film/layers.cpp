@@ -8,9 +8,13 @@ namespace lull {
 
 namespace {
 
-constexpr int kAovSums = 11;  // of a pixel
+constexpr int kAovSums = 11, kAlphaSums = 5;  // of a pixel
 constexpr size_t kFeatureSums = sizeof(FeaturePixel) / sizeof(float);
 static_assert(kFeatureSums * sizeof(float) == sizeof(FeaturePixel));
+
+std::array<int64_t, 3> CryptoShape(const PixelRect& rect) {
+    return {rect.Height(), rect.Width(), int64_t(2 * kMatteShares)};
+}
 
 // Calls visit(place) for the pixels of a rectangle, row by row.
 template <typename Visit>
@@ -96,6 +100,63 @@ void ReadFeatures(const Hdf5Group& group, const PixelRect& rect, FeatureFilm* fe
     SetPixels(pixels, rect, features);
 }
 
+void WriteMattes(Hdf5Group& group, const PixelRect& rect, const MatteFilm& mattes) {
+    std::vector<double> sums;
+    for (const AlphaPixel& pixel : mattes.alpha.Copy(rect)) {
+        sums.insert(sums.end(), pixel.background.begin(), pixel.background.end());
+        sums.insert(sums.end(), {pixel.weight, pixel.covered});
+    }
+    group.AddArray<double>("alpha_sums",
+                           std::array<int64_t, 3>{rect.Height(), rect.Width(), kAlphaSums}, sums);
+    if (!mattes.crypto) return;
+    std::vector<int32_t> numbers;
+    std::vector<float> weights;
+    for (const CryptoPixel& pixel : mattes.crypto->Copy(rect))
+        for (const auto* shares : {&pixel.objects, &pixel.materials})
+            for (const MatteShare& share : *shares) {
+                numbers.push_back(int32_t(share.number));
+                weights.push_back(share.weight);
+            }
+    const std::array<int64_t, 3> shape = CryptoShape(rect);
+    group.AddArray<int32_t>("crypto_numbers", shape, numbers);
+    group.AddArray<float>("crypto_weights", shape, weights);
+}
+
+void ReadMattes(const Hdf5Group& group, const PixelRect& rect, MatteFilm* mattes) {
+    const auto sums = group.Array<double>(
+        "alpha_sums", std::array<int64_t, 3>{rect.Height(), rect.Width(), kAlphaSums});
+    std::vector<AlphaPixel> alpha;
+    for (size_t i = 0; i < sums.size(); i += kAlphaSums)
+        alpha.push_back({{sums[i], sums[i + 1], sums[i + 2]}, sums[i + 3], sums[i + 4]});
+    mattes->alpha.Set(alpha, rect);
+    if (!mattes->crypto) return;
+    const auto numbers = group.Array<int32_t>("crypto_numbers", CryptoShape(rect));
+    const auto weights = group.Array<float>("crypto_weights", CryptoShape(rect));
+    std::vector<CryptoPixel> crypto(size_t(rect.Area()));
+    size_t i = 0;
+    for (CryptoPixel& pixel : crypto)
+        for (auto* shares : {&pixel.objects, &pixel.materials})
+            for (MatteShare& share : *shares) {
+                if (numbers[i] < 0) throw Error("it has impossible numbers in its layers");
+                share = {uint32_t(numbers[i]), weights[i]};
+                ++i;
+            }
+    mattes->crypto->Set(crypto, rect);
+}
+
+template <typename Pixel>
+void PutPlane(const PixelPlane<Pixel>& plane, const PixelRect& rect, StateWriter* writer) {
+    const std::vector<Pixel> pixels = plane.Copy(rect);
+    writer->PutAll(std::span<const Pixel>(pixels));
+}
+
+template <typename Pixel>
+void GetPlane(StateReader* reader, const PixelRect& rect, PixelPlane<Pixel>* plane) {
+    std::vector<Pixel> pixels(size_t(rect.Area()));
+    reader->GetAll(std::span(pixels));
+    plane->Set(pixels, rect);
+}
+
 }  // namespace
 
 PathSample Layers::Take(Sampler& sampler, const Vec2i& pixel, uint32_t index) const {
@@ -103,6 +164,7 @@ PathSample Layers::Take(Sampler& sampler, const Vec2i& pixel, uint32_t index) co
     const PathSample sample = source(sampler, pixel, index, &firstHit);
     if (aovs) aovs->At(pixel).Add(firstHit, sample.radiance);
     if (features) features->At(pixel).Add(firstHit, sample.radiance, InHalf(index));
+    if (mattes) mattes->Add(pixel, firstHit, sample.radiance);
     return sample;
 }
 
@@ -114,6 +176,9 @@ void PutLayers(const Layers& layers, const PixelRect& rect, StateWriter* writer)
     }
     if (layers.features)
         writer->PutAll(std::span<const FeaturePixel>(CopyOf(*layers.features, rect)));
+    if (!layers.mattes) return;
+    PutPlane(layers.mattes->alpha, rect, writer);
+    if (layers.mattes->crypto) PutPlane(*layers.mattes->crypto, rect, writer);
 }
 
 void GetLayers(StateReader* reader, const PixelRect& rect, const Layers& layers) {
@@ -127,16 +192,21 @@ void GetLayers(StateReader* reader, const PixelRect& rect, const Layers& layers)
         reader->GetAll(std::span(pixels));
         SetPixels(pixels, rect, layers.features);
     }
+    if (!layers.mattes) return;
+    GetPlane(reader, rect, &layers.mattes->alpha);
+    if (layers.mattes->crypto) GetPlane(reader, rect, &*layers.mattes->crypto);
 }
 
 void WriteLayers(const Layers& layers, const PixelRect& rect, Hdf5Group* group) {
     if (layers.aovs) WriteAovs(*group, rect, *layers.aovs);
     if (layers.features) WriteFeatures(*group, rect, *layers.features);
+    if (layers.mattes) WriteMattes(*group, rect, *layers.mattes);
 }
 
 void ReadLayers(const Hdf5Group& group, const PixelRect& rect, const Layers& layers) {
     if (layers.aovs) ReadAovs(group, rect, layers.aovs);
     if (layers.features) ReadFeatures(group, rect, layers.features);
+    if (layers.mattes) ReadMattes(group, rect, layers.mattes);
 }
 
 }  // namespace lull

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "renderer/film/feature_film.h"
+#include "renderer/film/matte_film.h"
 #include "renderer/transport/path_tracer.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
@@ -23,12 +24,14 @@ struct Layers {
     // Of the film's region; null: not collected.
     AovFilm* aovs = nullptr;
     FeatureFilm* features = nullptr;  // what a denoiser is shown
-    AovSource source = {};            // where the samples of film and layers come from then
+    MatteFilm* mattes = nullptr;
+    AovSource source = {};  // where the samples of film and layers come from then
 
-    explicit operator bool() const { return aovs || features; }
+    explicit operator bool() const { return aovs || features || mattes; }
     // Says whether they are of this region.
     bool AreOf(const PixelRect& region) const {
-        return (!aovs || aovs->Region() == region) && (!features || features->Region() == region);
+        return (!aovs || aovs->Region() == region) && (!features || features->Region() == region) &&
+               (!mattes || mattes->alpha.Region() == region);
     }
     // Takes the next sample of a pixel and adds it to the layers, of which there are some.
     PathSample Take(Sampler&, const Vec2i& pixel, uint32_t index) const;

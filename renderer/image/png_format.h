@@ -10,6 +10,9 @@ namespace lull {
 struct PngFormat {
     int bits = 8;  // a component, or 16
     ToneMap toneMap = ToneMap::None;
+    // Rows have alpha as a fourth value, by which the colours are multiplied; in the file, as PNG
+    // has it, they are not.
+    bool hasAlpha = false;
     std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 

@@ -133,7 +133,8 @@ struct InstanceEntity {
     int object = -1;                              // into Description::objects
     Mat4d worldFromInstance = Mat4d::Identity();  // of one that moves: at the start
     FileLoc loc;
-    int motion = -1;  // into Description::motions; -1: it stands still
+    int motion = -1;         // into Description::motions; -1: it stands still
+    std::string label = {};  // as of shapes; empty: its object's name
 };
 
 // Holds a transform at both of Description::transformTimes, start and end.

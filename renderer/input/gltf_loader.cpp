@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <tuple>
 
+#include "renderer/input/gltf/animations.h"
 #include "renderer/input/gltf/cameras.h"
 #include "renderer/input/gltf/document.h"
 #include "renderer/input/gltf/lights.h"
@@ -11,6 +14,7 @@
 #include "renderer/input/gltf/nodes.h"
 #include "renderer/input/gltf/parameters.h"
 #include "renderer/input/gltf/primitives.h"
+#include "renderer/input/gltf/skins.h"
 
 namespace lull {
 namespace {
@@ -18,39 +22,50 @@ namespace {
 // Blender's: enough for glass behind glass; roulette ends dim paths long before.
 constexpr int kMaxDepth = 12;
 
-// Holds what a mesh becomes: shapes in its own space, and where they end.
+// Holds a mesh in one of its poses; those that are equal have the same shapes.
+struct PosedMesh {
+    int mesh, skin = -1;          // -1: none
+    std::vector<double> weights;  // of its morph targets; empty: none
+
+    bool operator<(const PosedMesh& o) const {
+        return std::tie(mesh, skin, weights) < std::tie(o.mesh, o.skin, o.weights);
+    }
+};
+
+// Holds what a mesh becomes: shapes in its own space, or in the world if it has a skin, and, where
+// that is wanted, points on their outline.
 struct MeshShapes {
     std::vector<ShapeEntity> shapes;
-    Bounds3f bounds;
+    std::vector<Vec3f> outline;
 };
 
 // Holds one place where a mesh stands.
 struct Placement {
-    int mesh, node;
+    int node;
     Mat4d worldFromMesh;
 };
 
-Bounds3f BoundsOf(const std::vector<float>& positions) {
-    Bounds3f bounds;
-    for (size_t i = 0; i < positions.size(); i += 3)
-        bounds.Extend(Vec3f(positions[i], positions[i + 1], positions[i + 2]));
-    return bounds;
-}
-
-MeshShapes ReadMesh(const GltfDocument& document, int mesh, GltfMaterials* materials,
+MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& nodes,
+                    const PosedMesh& posed, bool withOutline, GltfMaterials* materials,
                     Warnings& warnings) {
     MeshShapes result;
+    const int mesh = posed.mesh;
     const auto& primitives = document.model.meshes[size_t(mesh)].primitives;
+    std::vector<Mat4d> joints;
+    if (posed.skin >= 0) joints = JointMatrices(document, nodes, posed.skin);
     for (size_t i = 0; i < primitives.size(); ++i) {
         const FileLoc loc = document.At(fmt::format("/meshes/{}/primitives/{}", mesh, i));
-        GltfTriangles triangles = ReadPrimitive(document, mesh, int(i), warnings);
+        GltfTriangles triangles = ReadPrimitive(document, mesh, int(i), posed.weights, warnings);
         if (triangles.indices.empty()) continue;
+        if (!joints.empty()) Skin(document, mesh, int(i), joints, &triangles);
         const GltfMaterial& material =
             materials->Get(primitives[i].material, !triangles.colors.empty(), warnings);
         if (material.tangentUvSet >= 0 && triangles.tangents.empty())
             MakeTangents(material.tangentUvSet, &triangles);
         if (material.tangentUvSet < 0) triangles.tangents.clear();
-        result.bounds.Extend(BoundsOf(triangles.positions));
+        if (withOutline)
+            for (const Vec3f& point : OutlineOf(triangles.positions))
+                result.outline.push_back(point);
         ShapeEntity shape = MakeShapeEntity(std::move(triangles), loc);
         shape.material = material.index;
         shape.areaLight = material.emission;
@@ -60,20 +75,36 @@ MeshShapes ReadMesh(const GltfDocument& document, int mesh, GltfMaterials* mater
     return result;
 }
 
+// Returns the mesh of a node as the node has it.
+PosedMesh MeshOf(const GltfDocument& document, const tinygltf::Node& node) {
+    const std::vector<double>& usual = document.model.meshes[size_t(node.mesh)].weights;
+    PosedMesh mesh{node.mesh, node.skin, node.weights.empty() ? usual : node.weights};
+    if (std::all_of(mesh.weights.begin(), mesh.weights.end(), [](double w) { return w == 0; }))
+        mesh.weights.clear();
+    return mesh;
+}
+
 // Lists where meshes stand, without those that have been flattened to nothing.
-std::vector<Placement> ListPlacements(const GltfDocument& document,
-                                      const std::vector<GltfNode>& nodes, Warnings& warnings) {
-    std::vector<Placement> placements;
+std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& document,
+                                                           const std::vector<GltfNode>& nodes,
+                                                           Warnings& warnings) {
+    std::map<PosedMesh, std::vector<Placement>> placements;
     for (const GltfNode& node : nodes) {
         const tinygltf::Node& n = document.model.nodes[size_t(node.index)];
         if (n.mesh < 0) continue;
         const FileLoc loc = document.At(fmt::format("/nodes/{}", node.index));
-        if (n.skin >= 0)
-            warnings.Add(loc, "a skin is left out: its mesh stands as it was modelled");
+        const PosedMesh mesh = MeshOf(document, n);
+        if (n.skin >= 0) {
+            // Its joints alone say where it stands (3.7.3.3).
+            placements[mesh].push_back({node.index, Mat4d::Identity()});
+            if (n.extensions.count("EXT_mesh_gpu_instancing") > 0)
+                warnings.Add(loc, "copies of a mesh with a skin are left out");
+            continue;
+        }
         for (const Mat4d& copy : ReadCopies(document, node.index)) {
             const Mat4d m = node.worldFromNode * copy;
             if (m.inverse().allFinite() && m.topLeftCorner<3, 3>().determinant() != 0)
-                placements.push_back({n.mesh, node.index, m});
+                placements[mesh].push_back({node.index, m});
             else
                 warnings.Add(loc, "a mesh scaled to nothing is left out");
         }
@@ -81,19 +112,10 @@ std::vector<Placement> ListPlacements(const GltfDocument& document,
     return placements;
 }
 
-Bounds3f Transformed(const Mat4d& m, const Bounds3f& b) {
-    Bounds3f bounds;
-    for (int corner = 0; corner < 8 && !b.IsEmpty(); ++corner)
-        bounds.Extend(TransformPoint(
-            m, Vec3f(corner & 1 ? b.lower.x() : b.upper.x(), corner & 2 ? b.lower.y() : b.upper.y(),
-                     corner & 4 ? b.lower.z() : b.upper.z())));
-    return bounds;
-}
-
 // Returns the name of the node or, if it has none, of the mesh; can be empty.
 std::string NameOf(const GltfDocument& document, const Placement& placement) {
-    const std::string& name = document.model.nodes[size_t(placement.node)].name;
-    return name.empty() ? document.model.meshes[size_t(placement.mesh)].name : name;
+    const tinygltf::Node& node = document.model.nodes[size_t(placement.node)];
+    return node.name.empty() ? document.model.meshes[size_t(node.mesh)].name : node.name;
 }
 
 // Puts a mesh into the world: once as it is, more often as instances of an object. What emits is
@@ -115,42 +137,47 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
         }
     }
     if (object.shapes.empty()) return;
-    const std::string path = fmt::format("/meshes/{}", placements[0].mesh);
+    const int index = document.model.nodes[size_t(placements[0].node)].mesh;
+    const std::string path = fmt::format("/meshes/{}", index);
     object.loc = document.At(path);
-    const std::string& name = document.model.meshes[size_t(placements[0].mesh)].name;
+    const std::string& name = document.model.meshes[size_t(index)].name;
     object.name = name.empty() ? path : name;
     for (const Placement& p : placements)
         description->instances.push_back({int(description->objects.size()), p.worldFromMesh,
-                                          document.At(fmt::format("/nodes/{}", p.node))});
+                                          document.At(fmt::format("/nodes/{}", p.node)), -1,
+                                          NameOf(document, p)});
     description->objects.push_back(std::move(object));
 }
 
 }  // namespace
 
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings) {
-    const GltfDocument document = ReadGltf(file, warnings);
+    GltfDocument document = ReadGltf(file, warnings);
+    if (options.frame)
+        PoseAt(*options.frame, options.animation, &document, warnings);
+    else if (!document.model.animations.empty())
+        warnings.Add(document.At("/animations"),
+                     "the scene is shown as the file stands; --frame SECONDS poses its animation");
     Description description;
     description.directory = std::filesystem::path(file).parent_path().string();
     const std::vector<GltfNode> nodes = ListNodes(document);
 
-    std::vector<std::vector<Placement>> byMesh(document.model.meshes.size());
-    for (const Placement& p : ListPlacements(document, nodes, warnings))
-        byMesh[size_t(p.mesh)].push_back(p);
-    GltfMaterials materials(document, &description);
-    Bounds3f bounds;
-    for (size_t i = 0; i < byMesh.size(); ++i) {
-        if (byMesh[i].empty()) continue;
-        MeshShapes mesh = ReadMesh(document, int(i), &materials, warnings);
-        for (const Placement& p : byMesh[i])
-            bounds.Extend(Transformed(p.worldFromMesh, mesh.bounds));
-        AddShapes(document, std::move(mesh), byMesh[i], &description);
+    GltfMaterials materials(document, options.solidGlass, &description);
+    std::optional<Framing> framing = FramingFor(document, nodes, options);
+    for (const auto& [posed, placements] : ListPlacements(document, nodes, warnings)) {
+        MeshShapes mesh =
+            ReadMesh(document, nodes, posed, framing.has_value(), &materials, warnings);
+        for (const Placement& p : placements)
+            for (const Vec3f& point : mesh.outline)
+                framing->Extend(TransformPoint(p.worldFromMesh, point));
+        AddShapes(document, std::move(mesh), placements, &description);
     }
     description.sources = {file};
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
             description.sources.push_back(ResolvePath(description, buffer.uri));
     for (const GltfNode& node : nodes) AddLight(document, node, &description, warnings);
-    SetView(document, nodes, bounds, options, &description);
+    SetView(document, nodes, framing, options, &description);
 
     const FileLoc loc = document.At("/");
     ParameterWriter(&description.film.parameters, loc)

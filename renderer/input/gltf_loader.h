@@ -17,6 +17,13 @@ struct GltfOptions {
     // Look at the whole scene instead, from this azimuth (degrees around the vertical, 0 from +z,
     // 90 from +x) and elevation (degrees above the horizon, -90 to 90).
     std::optional<std::array<float, 2>> orbit = {};
+    // Pose the scene as an animation has it at this time, in seconds; nothing: as the file stands.
+    std::optional<double> frame = {};
+    std::string animation = {};  // which one: its name or number, from 0; empty: the first one
+    // Let all that transmits light be solid, as if the file gave it a volume.
+    bool solidGlass = false;
+
+    bool IsGiven() const { return !camera.empty() || orbit || frame || solidGlass; }
 };
 
 // Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, for

@@ -8,13 +8,35 @@
 namespace lull {
 namespace {
 
+// Returns the axis of the world that is nearest to the camera's up.
+Eigen::Vector3d UpOf(const Eigen::Matrix3d& cameraFromWorld) {
+    int axis;
+    cameraFromWorld.row(1).cwiseAbs().maxCoeff(&axis);
+    return (cameraFromWorld(1, axis) < 0 ? -1. : 1.) * Eigen::Vector3d::Unit(axis);
+}
+
+// Returns the transform of a studio's light space to the world: +z is up, +x where the camera is,
+// +y to its right.
+Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
+    const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
+    const Eigen::Vector3d up = UpOf(m);
+    Eigen::Vector3d right = m.row(0).transpose();
+    right = (right - right.dot(up) * up).normalized();
+    Eigen::Vector3d back = up.cross(right);
+    if (back.dot(m.row(2).transpose()) > 0) back = -back;
+    Mat4d result = Mat4d::Identity();
+    result.col(0).head<3>() = back;
+    result.col(1).head<3>() = right;
+    result.col(2).head<3>() = up;
+    return result;
+}
+
 // Returns the transform of light space, whose +z is the top of an environment map, to the world.
 Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, double degrees) {
     const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
+    const Eigen::Vector3d up = UpOf(m);
     int axis;
-    m.row(1).cwiseAbs().maxCoeff(&axis);
-    const double side = m(1, axis) < 0 ? -1 : 1;
-    const Eigen::Vector3d up = side * Eigen::Vector3d::Unit(axis);
+    up.cwiseAbs().maxCoeff(&axis);
     // Camera space is left-handed, as pbrt's light space is. A world of the other hand sees the
     // image mirrored unless light space is mirrored as well; it is turned to where Blender has it.
     const bool isRightHanded = m.determinant() < 0;
@@ -55,9 +77,11 @@ void LightIfDark(Description* description, Warnings& warnings) {
     if (!description->lights.empty() ||
         std::any_of(description->shapes.begin(), description->shapes.end(), emits))
         return;
-    warnings.Add({}, "the scene has no lights: a white sky lights it, --environment gives another");
+    warnings.Add({}, "the scene has no lights: a studio's light it, --environment gives others");
     LightEntity light;
     light.name = "infinite";
+    light.parameters.Add({ParameterType::Bool, "studio", light.loc, std::vector<int>{1}});
+    light.worldFromLight = WorldFromStudio(description->cameraFromWorld);
     description->lights.push_back(std::move(light));
 }
 

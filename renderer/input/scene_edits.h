@@ -16,7 +16,7 @@ void SetExposure(double stops, Description* description);
 // from the top. `file` is relative to the current directory.
 void SetEnvironment(const std::string& file, double rotation, Description* description);
 
-// Lights a scene that has no light at all by a white sky of radiance 1, with a warning.
+// Lights a scene that has no light at all as a photographer's studio does, with a warning.
 void LightIfDark(Description* description, Warnings& warnings);
 
 }  // namespace lull

@@ -14,8 +14,9 @@ DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
     DenoisedPicture denoised = Denoise(std::move(picture));
     const EstimatedError error = MeasureError(denoised);
+    denoised.halves = denoised.noisy = {};  // a large picture needs the memory
     DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)}, {}, {}};
-    denoised = {};  // a large picture needs the memory
+    denoised = {};
     result.error = StandardError(error).values;
     for (const Block& block : blocks) {
         const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;

@@ -1,45 +1,16 @@
 #include "renderer/measure/extra_layers.h"
 
-#include <filesystem>
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "renderer/measure/cryptomatte.h"
+#include "renderer/measure/scene_names.h"
 
 namespace lull {
 
 namespace {
-
-// Says where an entity is, for those without a name.
-std::string Place(const FileLoc& loc) {
-    std::string prefix = loc.Prefix();
-    if (prefix.ends_with(": ")) prefix.resize(prefix.size() - 2);
-    return prefix;
-}
-
-std::string Joined(const std::string& what, const std::string& place) {
-    return place.empty() ? what : what + ", " + place;
-}
-
-std::string NameOfShape(const ShapeEntity& shape) {
-    if (!shape.label.empty()) return shape.label;
-    const std::string file = shape.parameters.GetString("filename", "");
-    return file.empty() ? Joined(shape.name, Place(shape.loc))
-                        : std::filesystem::path(file).stem().string();
-}
-
-// The numbers are those of FirstHit. A checkpoint that somebody has changed can have others.
-std::string NameOfObject(uint32_t number, const Description& description, const Scene& scene) {
-    const size_t i = number - 1, shapes = description.shapes.size();
-    if (i < shapes) return NameOfShape(description.shapes[i]);
-    if (i - shapes >= scene.shapes.instances.size()) return "";
-    return description.objects[size_t(scene.shapes.instances[i - shapes].object)].name;
-}
-
-std::string NameOfMaterial(uint32_t number, const Description& description) {
-    if (number > description.materials.size()) return "";
-    const MaterialEntity& material = description.materials[number - 1];
-    if (!material.materialName.empty()) return material.materialName;
-    return Joined(material.name.empty() ? "none" : material.name, Place(material.loc));
-}
 
 template <typename Name>
 std::string NamesOf(const AovFilm& aovs, uint32_t AovPixel::*number, const Name& name) {
@@ -53,17 +24,36 @@ std::string NamesOf(const AovFilm& aovs, uint32_t AovPixel::*number, const Name&
 
 }  // namespace
 
-ExtraLayers MakeExtraLayers(const AovFilm& aovs, const Film& film, const Description& description,
-                            const Scene& scene) {
-    const AovSet& wanted = aovs.Wanted();
-    ExtraLayers extra{MakeAovChannels(aovs, film), {{"aov", TextOf(wanted)}}};
-    if (wanted.object)
-        extra.attributes["objectNames"] = NamesOf(aovs, &AovPixel::object, [&](uint32_t n) {
-            return NameOfObject(n, description, scene);
-        });
-    if (wanted.material)
-        extra.attributes["materialNames"] = NamesOf(
-            aovs, &AovPixel::material, [&](uint32_t n) { return NameOfMaterial(n, description); });
+ExtraLayers MakeExtraLayers(const CollectedLayers& layers, const Film& film,
+                            const Description& description, const Scene& scene) {
+    const AovSet& wanted = layers.wanted;
+    const auto objectName = [&](uint32_t n) { return NameOfObject(n, description, scene); };
+    const auto materialName = [&](uint32_t n) { return NameOfMaterial(n, description); };
+    ExtraLayers extra;
+    if (wanted.Any()) extra.attributes["aov"] = TextOf(wanted);
+    if (layers.aovs) {
+        extra.channels = MakeAovChannels(*layers.aovs, film);
+        if (wanted.object)
+            extra.attributes["objectNames"] = NamesOf(*layers.aovs, &AovPixel::object, objectName);
+        if (wanted.material)
+            extra.attributes["materialNames"] =
+                NamesOf(*layers.aovs, &AovPixel::material, materialName);
+    }
+    if (wanted.alpha) {
+        ExrChannel alpha{.name = "A", .values = {}};
+        for (const AlphaPixel& pixel : layers.mattes->alpha.Pixels())
+            alpha.values.push_back(pixel.Alpha());
+        extra.channels.push_back(std::move(alpha));
+    }
+    if (wanted.cryptomatte) {
+        const auto add = [&](ExtraLayers more) {
+            std::ranges::move(more.channels, std::back_inserter(extra.channels));
+            extra.attributes.merge(more.attributes);
+        };
+        add(MakeCryptomatte("CryptoObject", *layers.mattes, &CryptoPixel::objects, objectName));
+        add(MakeCryptomatte("CryptoMaterial", *layers.mattes, &CryptoPixel::materials,
+                            materialName));
+    }
     return extra;
 }
 

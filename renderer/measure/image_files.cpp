@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "renderer/film/matte_film.h"
 #include "renderer/measure/report.h"
 
 namespace lull {
@@ -87,6 +88,7 @@ void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
 PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
     PngFormat format{.bits = wanted.pngBits, .toneMap = wanted.toneMap, .text = {}};
     if (wanted.toneMap == ToneMap::Filmic) format.text["ToneMap"] = kFilmic;
+    format.hasAlpha = wanted.isTransparent;
     if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
     return format;
 }
@@ -119,6 +121,34 @@ RowSource MeansOf(const Film& film) {
     };
 }
 
+// Returns the rows without what samples that met nothing brought, multiplied by alpha therefore.
+// Where they were denoised it can be a little more than they are.
+RowSource WithoutBackground(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
+    return [&, rows](int y, std::span<float> row) {
+        rows(y, row);
+        for (size_t x = 0; x < row.size() / 3; ++x) {
+            const Vec2i p = film.Region().min + Vec2i(int(x), y);
+            const AlphaPixel& pixel = mattes.alpha.At(p);
+            const double count = film.At(p).count;
+            for (size_t c = 0; c < 3 && count > 0; ++c)
+                row[3 * x + c] =
+                    pixel.covered == 0 ? 0 : row[3 * x + c] - float(pixel.background[c] / count);
+        }
+    };
+}
+
+// Adds alpha to rows of R, G, B.
+RowSource WithAlpha(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
+    return [&, rows](int y, std::span<float> row) {
+        std::vector<float> rgb(row.size() / 4 * 3);
+        rows(y, rgb);
+        for (size_t x = 0; x < row.size() / 4; ++x) {
+            std::copy_n(&rgb[3 * x], 3, &row[4 * x]);
+            row[4 * x + 3] = mattes.alpha.At(film.Region().min + Vec2i(int(x), y)).Alpha();
+        }
+    };
+}
+
 RowSource SppOf(const Film& film) {
     return [&film](int y, std::span<float> row) {
         for (size_t x = 0; x < row.size(); ++x)
@@ -148,8 +178,8 @@ RowSource MeansOf(const RgbImage& image) {
 }
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
-                const DenoisedImage* denoised, const RenderResult& result, ExtraLayers extra,
-                const PictureFormat& format, ResultFiles* results) {
+                const DenoisedImage* denoised, const MatteFilm* mattes, const RenderResult& result,
+                ExtraLayers extra, const PictureFormat& format, ResultFiles* results) {
     ExrImage exr = MakeExr(origin, film, result);
     if (denoised) {
         std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
@@ -159,11 +189,16 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Fi
     std::ranges::move(extra.channels, std::back_inserter(exr.channels));
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, format);
-    const RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
+    RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
+    if (format.isTransparent) {
+        colours = WithoutBackground(colours, film, *mattes);
+        exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
+    }
     results->Write(files.exr,
                    [&](const std::string& file) { WriteExr(file, exr, colours, SppOf(film)); });
     results->Write(files.png, [&](const std::string& file) {
-        WritePng(file, colours, film.Region().Width(), film.Region().Height(),
+        WritePng(file, format.isTransparent ? WithAlpha(colours, film, *mattes) : colours,
+                 film.Region().Width(), film.Region().Height(),
                  MakePngFormat(format, origin.scene.film.exposure));
     });
 }

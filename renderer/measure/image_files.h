@@ -17,6 +17,8 @@ struct PictureFormat {
     int pngBits = 8;
     // Colours and normals of the EXR take 16 bits; depths, positions, numbers and counts 32.
     bool exrHalf = false;
+    // Both lack the background that the camera sees past everything, and the PNG has alpha.
+    bool isTransparent = false;
 };
 
 // Names the files of a picture.
@@ -32,8 +34,10 @@ struct PictureOrigin {
 
 // Writes the image of a render, each file whole or not at all: the means of the film or, where
 // there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
+// `mattes` are asked for where the format is transparent.
 void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
-                const RenderResult&, ExtraLayers extra, const PictureFormat&, ResultFiles*);
+                const MatteFilm* mattes, const RenderResult&, ExtraLayers extra,
+                const PictureFormat&, ResultFiles*);
 
 // Returns the rows of an image, which must outlive that.
 RowSource MeansOf(const RgbImage&);

@@ -17,10 +17,15 @@ inline constexpr uint32_t leastDenoisedSpp = 4;
 // the denoiser leaves alone.
 NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
 
-// Returns the channels of an EXR from which ReadPicture() makes the same picture again:
-// halfA.R .G .B, halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), the
-// same with halfB, and variance.Y.
-std::vector<ExrChannel> MakeHalfChannels(const NoisyPicture&);
+// Return its parts, so that a film that one of them is made of can be freed before the other is
+// made: all but the colours, and these.
+NoisyPicture FeaturesOf(const Film&, const FeatureFilm&, const PixelRect&);
+Halves ColoursOf(const Film&, const PixelRect&);
+
+// Returns the channels of an EXR from which ReadPicture() makes the same picture: halfA.R .G .B,
+// halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), the same with halfB,
+// and variance.Y.
+std::vector<ExrChannel> MakeHalfChannels(const Film&, const FeatureFilm&, const PixelRect&);
 
 // Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is
 // missing.

@@ -40,7 +40,9 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
 
 void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
     // With what is made of them in the end.
-    const int64_t bytes = (wanted.Any() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) +
+    const size_t mattes =
+        wanted.Mattes() ? MatteFilm::BytesOfPixel(wanted.cryptomatte) + 25 * sizeof(float) : 0;
+    const int64_t bytes = (wanted.Sums() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) + mattes +
                           (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0);
     CheckMemory(region.Area() * bytes,
                 fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
@@ -49,10 +51,14 @@ void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
     : scene(scene), region(region), options(std::move(given)), film(region, options.film) {
-    if (options.aovs.Any()) {
+    if (options.aovs.Any()) options.identity["aov"] = TextOf(options.aovs);
+    if (options.aovs.Sums()) {
         aovs.emplace(region, options.aovs);
         options.render.layers.aovs = &*aovs;
-        options.identity["aov"] = TextOf(options.aovs);
+    }
+    if (options.aovs.Mattes()) {
+        mattes.emplace(region, options.aovs.cryptomatte);
+        options.render.layers.mattes = &*mattes;
     }
     if (options.features) {
         features.emplace(region);

@@ -78,6 +78,7 @@ class Session {
     Film& TheFilm() { return film; }
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
     const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
+    const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
     // Frees them, once the render is done and nobody asks for them.
     void DropFeatures();
     const GuideFigures& Guidance() const { return learning.figures; }
@@ -99,6 +100,7 @@ class Session {
     Film film;
     std::optional<AovFilm> aovs;
     std::optional<FeatureFilm> features;
+    std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     Learning learning;
     std::vector<std::byte> guide;  // what was learned, for checkpoints

@@ -34,6 +34,10 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
         const float upper = std::clamp(std::max(crop[2 * i], crop[2 * i + 1]), 0.f, 1.f);
         film.cropMin[i] = int(std::ceil(film.resolution[i] * lower));
         film.cropMax[i] = int(std::ceil(film.resolution[i] * upper));
+        if (overrides.cropInPixels) {
+            film.cropMin[i] = std::min((*overrides.cropInPixels)[2 * i], film.resolution[i]);
+            film.cropMax[i] = std::min((*overrides.cropInPixels)[2 * i + 1], film.resolution[i]);
+        }
     }
     if (film.Size().minCoeff() < 1) throw Error(entity.loc, "the crop window holds no pixel");
 

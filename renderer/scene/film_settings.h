@@ -24,7 +24,8 @@ struct FilmSettings {
 // Overrides what the scene's Film directive says; from the command line.
 struct FilmOverrides {
     std::optional<Vec2i> resolution;
-    std::optional<std::array<float, 4>> crop;  // x0, x1, y0, y1 in [0, 1]
+    std::optional<std::array<float, 4>> crop;        // x0, x1, y0, y1 in [0, 1]
+    std::optional<std::array<int, 4>> cropInPixels;  // instead: the pixels [x0, x1) x [y0, y1)
 };
 
 // Reads Film "image". Throws Error for sizes that are not positive or beyond 2^28 pixels.

@@ -7,8 +7,22 @@
 
 namespace lull {
 
+// Returns the number of what was hit, as FirstHit has it.
+inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
+    return 1 + uint32_t(found.instance < 0 ? found.shape
+                                           : scene.shapes.worldShapeCount + found.instance);
+}
+
+// Is not told what happens between first hits.
+struct FirstHitAlone {
+    static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
+    static void Emit(const Rgb&) {}
+    static void Light(const Rgb&) {}
+    static void Scatter(const Path&, bool) {}
+};
+
 // Stands where nobody asks.
-struct NoFirstHit {
+struct NoFirstHit : FirstHitAlone {
     static constexpr bool Wanted() { return false; }
     static void Advance(float) {}
     static void LeaveScene(const Path&) {}
@@ -16,7 +30,7 @@ struct NoFirstHit {
     static void MeetMedium(const Path&, const Vec3f&) {}
 };
 
-class FirstHitRecorder {
+class FirstHitRecorder : public FirstHitAlone {
   public:
     // `direction` is that of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
@@ -51,9 +65,7 @@ class FirstHitRecorder {
                 color.max(Emission(scene, options.estimator, path, &at, found) * scene.film.scale);
         Store(color, at.p, path);
         if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
-        hit->object =
-            1 + uint32_t(found.instance < 0 ? found.shape
-                                            : scene.shapes.worldShapeCount + found.instance);
+        hit->object = NumberOfObject(scene, found);
         hit->material = 1 + uint32_t(at.material);
     }
 

@@ -4,6 +4,7 @@
 #include "renderer/scene/footprint.h"
 #include "renderer/transport/direct_light.h"
 #include "renderer/transport/first_hit_internal.h"
+#include "renderer/transport/path_recorder_internal.h"
 #include "renderer/transport/subsurface.h"
 
 namespace lull {
@@ -78,7 +79,9 @@ template <typename Media, typename Guiding, typename Recorder>
                 guiding.EnterMedium();
                 if (scene.lights.Count() > 0)
                     L += path.beta * SampleDirectLight(context, v, Unguided(), &path);
+                firstHit.Light(L);
                 ScatterInMedium(v, sampler, &path);
+                firstHit.Scatter(path, true);
                 if (bounces > 3 && !guiding.SurvivesRoulette(scene.rrThreshold, sampler, &path))
                     break;
                 continue;
@@ -89,6 +92,7 @@ template <typename Media, typename Guiding, typename Recorder>
         if (!isHit) {
             firstHit.LeaveScene(path);
             L += path.beta * Emission(scene, estimator, path, nullptr, found);
+            firstHit.Emit(L);
             break;
         }
         firstHit.Advance(found.t);
@@ -101,10 +105,13 @@ template <typename Media, typename Guiding, typename Recorder>
         scene.shapes.Interact(path.ray, found, needs, &hit, time);
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, context.camera, &hit);
+        firstHit.ReachSurface(path, found, hit);
         if (hit.areaLight >= 0) L += path.beta * Emission(scene, estimator, path, &hit, found);
+        firstHit.Emit(L);
         if (endsHere) break;
         if (needs & kIsInterface) {
             if (!context.media.GoThrough(hit, found.shape, isLast, &path)) break;
+            firstHit.Scatter(path, true);
             --bounces;
             continue;
         }
@@ -118,6 +125,7 @@ template <typename Media, typename Guiding, typename Recorder>
         const SurfaceVertex v{hit, bsdf, found.shape};
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
             L += path.beta * SampleDirectLight(context, v, guiding, &path);
+        firstHit.Light(L);
 
         bool isTransmission;
         if (!guiding.Scatter(bsdf, hit, L, sampler, &path, &isTransmission)) break;
@@ -135,6 +143,8 @@ template <typename Media, typename Guiding, typename Recorder>
         } else {
             context.media.Leave(v, path.ray.d);
         }
+        firstHit.Light(L);  // that which has been below the surface
+        firstHit.Scatter(path, isTransmission);
         if (bounces > 3 && !guiding.SurvivesRoulette(scene.rrThreshold, sampler, &path)) break;
     }
     guiding.End(L);
@@ -162,30 +172,71 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
     return {L, false, guided.Vertices()};
 }
 
-}  // namespace
-
-PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
-    sampler.StartSample(pixel, index);
-    const FilterSample filter = scene.filter.Sample(sampler.Get2D());
-    if (firstHit) *firstHit = {.weight = filter.weight, .offset2 = filter.offset.squaredNorm()};
-    CameraSample camera{.film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + filter.offset};
-    if (scene.camera.HasLens()) camera.lens = sampler.Get2D();
-    if (scene.isMoving) camera.time = sampler.Get1D();
+// Holds how a sample starts: dimensions that come before those of its path.
+struct SampleStart {
+    FilterSample filter;
+    CameraSample camera;
     float cameraWeight;
-    const Ray ray = scene.camera.GenerateRay(camera, &cameraWeight);
-    if (cameraWeight == 0) return {Rgb::Zero(), false};
-    const auto trace = [&]<typename Media>(const Media& media) {
-        return TracePath<Media>({scene, options.estimator, sampler, camera, media}, options, ray,
-                                firstHit);
-    };
-    PathSample sample = scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
+    Ray ray;
+};
+
+[[gnu::always_inline]] inline SampleStart StartSample(const Scene& scene, Sampler& sampler,
+                                                      const Vec2i& pixel, uint32_t index) {
+    SampleStart start;
+    sampler.StartSample(pixel, index);
+    start.filter = scene.filter.Sample(sampler.Get2D());
+    start.camera.film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + start.filter.offset;
+    if (scene.camera.HasLens()) start.camera.lens = sampler.Get2D();
+    if (scene.isMoving) start.camera.time = sampler.Get1D();
+    start.ray = scene.camera.GenerateRay(start.camera, &start.cameraWeight);
+    return start;
+}
+
+// Refuses what is no radiance, limits it, and applies the weights.
+[[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
+                                                  PathSample sample) {
     Rgb& L = sample.radiance;
     const float luminance = Luminance(L);
     if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true, sample.vertices};
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
-    L *= cameraWeight * filter.weight * scene.film.scale;
+    L *= start.cameraWeight * start.filter.weight * scene.film.scale;
     return sample;
+}
+
+}  // namespace
+
+PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
+                        const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
+    const SampleStart start = StartSample(scene, sampler, pixel, index);
+    if (firstHit)
+        *firstHit = {.weight = start.filter.weight, .offset2 = start.filter.offset.squaredNorm()};
+    if (start.cameraWeight == 0) return {Rgb::Zero(), false};
+    const auto trace = [&]<typename Media>(const Media& media) {
+        return TracePath<Media>({scene, options.estimator, sampler, start.camera, media}, options,
+                                start.ray, firstHit);
+    };
+    return Weighted(scene, start, scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene)));
+}
+
+PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2i& pixel,
+                  uint32_t index) {
+    const SampleStart start = StartSample(scene, sampler, pixel, index);
+    PathLog log{.ray = start.ray,
+                .filterWeight = start.filter.weight,
+                .cameraWeight = start.cameraWeight,
+                .filmScale = scene.film.scale,
+                .steps = {},
+                .sample = {Rgb::Zero(), false}};
+    if (start.cameraWeight == 0) return log;
+    const auto trace = [&]<typename Media>(const Media& media) {
+        Unguided unguided;
+        PathRecorder recorder(scene, &log.steps);
+        return Trace(PathContext<Media>{scene, estimator, sampler, start.camera, media}, start.ray,
+                     unguided, recorder);
+    };
+    const Rgb L = scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
+    log.sample = Weighted(scene, start, {L, false});
+    return log;
 }
 
 }  // namespace lull

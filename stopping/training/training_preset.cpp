@@ -8,14 +8,15 @@ std::span<const TrainingPreset> TrainingPresets() {
                                                            .features = {Feature::VisibleDrop},
                                                            .pools = {{Pool::PowerMean, 1}},
                                                            .spacing = Spacing::Geometric,
-                                                           .ratio = 1.4142},
+                                                           .ratio = 1.4142,
+                                                           .visibility = {.mask = 1e9}},
                                               .training = {.units = {8, 4},
                                                            .dropout = 0,
                                                            .learningRate = 0.003,
                                                            .epochs = 60,
                                                            .balanceViewpoints = true,
                                                            .balanceClasses = false,
-                                                           .noisyWeight = 2}},
+                                                           .noisyWeight = 1}},
                                              {.name = "paper"}};
     return presets;
 }

@@ -127,7 +127,8 @@ std::string WritePictures(const TemporaryDirectory& directory, int count, int st
         for (size_t i = 0; i < sum.size(); ++i) {
             const float truth = 0.2f + 0.4f * float(i % 100) / 100;
             for (int c = 0; c < 3; ++c)
-                sum[i][c] += truth * float(step) + 0.1f * std::sqrt(float(step)) * gauss(generator);
+                sum[i][c] +=
+                    truth * float(step) + 0.15f * std::sqrt(float(step)) * gauss(generator);
             mean[i] = sum[i] / float(k * step);
         }
         const std::string name = fmt::format("p{:02}.png", k);

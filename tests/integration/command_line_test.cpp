@@ -26,6 +26,11 @@ TEST(CommandLine, RefusesWrongUsage) {
                                   "render scene.pbrt --crop 0.5,0.2,0,1",
                                   "render scene.pbrt --crop 0,1",
                                   "render scene.pbrt --crop 0,nan,0,1",
+                                  "render scene.pbrt --crop 3,2,0,1px",
+                                  "render scene.pbrt --crop 0,0.5,0,1px",
+                                  "render scene.pbrt --pixel 24,0",
+                                  "render scene.pbrt --pixel 1",
+                                  "render scene.pbrt --sample 1",
                                   "render scene.pbrt --threads -1",
                                   "render scene.pbrt --threads many",
                                   "render scene.pbrt --seed -1",
@@ -107,6 +112,31 @@ TEST(CommandLine, TakesTheFileNameOfTheScene) {
     EXPECT_EQ(RunLull(directory, "render a.pbrt --spp 1 --quiet").out,
               "picture.exr\npicture.png\npicture.spp.png\npicture.thresholds.csv\n");
     EXPECT_TRUE(ReadBytes(directory.File("picture.thresholds.csv")).starts_with("a;"));
+}
+
+TEST(CommandLine, CropsByPixels) {
+    const SceneDirectory directory;
+    const Outcome outcome =
+        RunLull(directory, "render scene.pbrt --spp 1 --quiet --crop 6,18,1,900px -o image.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const ExrImage exr = ReadExr(directory.File("image.exr"));
+    EXPECT_EQ(exr.origin, Vec2i(6, 1));
+    EXPECT_EQ(exr.width, 12);
+    EXPECT_EQ(exr.height, 15);  // of 16 rows; what is beyond is not there
+    ExpectFailure(directory, "render scene.pbrt --crop 24,30,0,9px -o out.exr", {"no pixel"});
+}
+
+TEST(CommandLine, PrintsThePathOfASample) {
+    const SceneDirectory directory;
+    const std::string command = "render scene.pbrt --pixel 12,8 --sample 3 --seed 5";
+    const Outcome outcome = RunLull(directory, command);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    for (const char* part : {"Sample 3 of pixel 12,8", "camera at 0 0 -3", "on \"sphere, ",
+                             "\nRadiance ", "leaves the scene"})
+        EXPECT_TRUE(Contains(outcome.out, part)) << part << " is not in\n" << outcome.out;
+    EXPECT_EQ(RunLull(directory, command).out, outcome.out);
+    EXPECT_NE(RunLull(directory, command + "0").out, outcome.out);
+    EXPECT_EQ(directory.CountFiles(), 1);
 }
 
 TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
@@ -267,6 +297,14 @@ TEST(CommandLine, PrintsNothingButJson) {
     EXPECT_TRUE(std::ranges::is_sorted(percents));
     EXPECT_EQ(percents.back(), 100);
     EXPECT_EQ(std::ranges::adjacent_find(events), events.end()) << outcome.err;
+
+    for (const char* command : {"compare scene.pbrt --snapshots -o c", "bench scene.pbrt -o b.csv"})
+        EXPECT_GE(Count(EventsOf(RunLull(directory,
+                                         command + std::string(" --resolution 20x20 --block 20 "
+                                                               "--cap 60 --json-progress"))),
+                        "progress"),
+                  1)
+            << command;
 
     directory.Write("old.pbrt", SceneText("Shape \"sphere\" \"float radios\" [1]"));
     const std::vector<nlohmann::json> warned =

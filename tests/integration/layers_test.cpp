@@ -17,6 +17,9 @@ namespace {
 
 constexpr const char* kAll = "--aov albedo,normal,depth,position,object,material,noise ";
 
+constexpr const char* kAllAndMattes =
+    "--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ";
+
 // Holds a file as OpenEXR reads it.
 struct OpenExr {
     Imf::InputFile file;
@@ -114,7 +117,7 @@ TEST_F(LayersTest, LeaveTheImageAsItIs) {
 }
 
 TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
-    const std::string options = std::string(kAll) +
+    const std::string options = std::string(kAllAndMattes) +
                                 "--resolution 60x50 --block 20 --stop "
                                 "dammertz:0.004 --cap 1500 --pass 20 ";
     Render(options + "--threads 1 -o whole.exr");
@@ -133,6 +136,23 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     const Outcome resumed = RunShell(directory, render + "--resume");
     ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
+}
+
+TEST_F(LayersTest, LetTheBackgroundOut) {
+    Render("--spp 16 -o with.exr");
+    Render("--spp 16 --transparent -o without.exr");
+    OpenExr with(directory.File("with.exr")), without(directory.File("without.exr"));
+    EXPECT_EQ(without.Channels(), "A:float B:float G:float R:float spp:float ");
+    const std::vector<float> alpha = without.Channel("A"), all = with.Channel("R"),
+                             left = without.Channel("R");
+    bool isPartial = false;
+    for (size_t i = 0; i < alpha.size(); ++i) {
+        // The sky is white.
+        EXPECT_NEAR(left[i], all[i] - (1 - alpha[i]), 1e-5f);
+        isPartial |= alpha[i] > 0 && alpha[i] < 1;
+    }
+    EXPECT_TRUE(isPartial);
+    EXPECT_EQ(ReadImage(directory.File("without.png")).channels, 4);
 }
 
 // What is seen first does not depend on where paths are sent afterwards.

@@ -50,7 +50,7 @@ class PngWriter {
     ~PngWriter() { png_destroy_write_struct(&png, &info); }
 
     // Throw Error.
-    void WriteHeader(int width, int height, int bits,
+    void WriteHeader(int width, int height, int bits, int color,
                      const std::map<std::string, std::string>& text, bool isSmallest) {
         if (width < 1 || height < 1)
             FailToWritePng(path, fmt::format("its size of {}x{} is absurd", width, height));
@@ -65,9 +65,8 @@ class PngWriter {
             png_set_compression_level(png, isSmallest ? 9 : 6);
             png_set_compression_strategy(png, 0);  // zlib's Z_DEFAULT_STRATEGY
             png_set_filter(png, 0, isSmallest ? PNG_ALL_FILTERS : PNG_NO_FILTERS);
-            png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), bits,
-                         PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                         PNG_FILTER_TYPE_DEFAULT);
+            png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), bits, color,
+                         PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
             png_set_oFFs(png, info, 0, 0, PNG_OFFSET_PIXEL);
             png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_ABSOLUTE);
             if (count) png_set_text(png, info, data, count);
@@ -118,18 +117,38 @@ T EncodeSrgb(float linear) {
     return T(std::min(v, most));
 }
 
-// Writes linear RGB.
+// Encodes what is no colour.
+template <typename T>
+T EncodeAlpha(float alpha) {
+    constexpr float most = std::numeric_limits<T>::max();
+    return T(most * std::clamp(alpha, 0.f, 1.f) + 0.5f);
+}
+
+// Divides the colours of a row R, G, B, A by alpha; what is not there is black.
+void DivideByAlpha(std::span<float> row) {
+    for (size_t i = 0; i + 3 < row.size(); i += 4)
+        for (size_t c = i; c < i + 3; ++c) row[c] = row[i + 3] > 0 ? row[c] / row[i + 3] : 0;
+}
+
+// Writes linear RGB, or RGBA.
 template <typename T>
 void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
                const PngFormat& format) {
-    writer->WriteHeader(width, height, 8 * int(sizeof(T)), format.text, false);
-    std::vector<float> linear(size_t(width) * 3);
+    writer->WriteHeader(width, height, 8 * int(sizeof(T)),
+                        format.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                        format.text, false);
+    const size_t components = format.hasAlpha ? 4 : 3;
+    std::vector<float> linear(size_t(width) * components);
     std::vector<T> row(linear.size());
     for (int y = 0; y < height; ++y) {
         rows(y, linear);
-        if (format.toneMap == ToneMap::Filmic)
-            std::ranges::transform(linear, linear.begin(), FilmicToneMap);
-        std::ranges::transform(linear, row.begin(), EncodeSrgb<T>);
+        if (format.hasAlpha) DivideByAlpha(linear);
+        for (size_t i = 0; i < row.size(); ++i) {
+            const bool isMapped = format.toneMap == ToneMap::Filmic;
+            row[i] = i % components == 3
+                         ? EncodeAlpha<T>(linear[i])
+                         : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
+        }
         writer->WriteRow(row.data());
     }
     writer->End();
@@ -138,7 +157,7 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
 // Writes what is encoded already.
 void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int height,
                bool isSmallest) {
-    writer->WriteHeader(width, height, 8, {}, isSmallest);
+    writer->WriteHeader(width, height, 8, PNG_COLOR_TYPE_RGB, {}, isSmallest);
     for (int y = 0; y < height; ++y) writer->WriteRow(&srgb[size_t(y) * size_t(width) * 3]);
     writer->End();
 }

@@ -100,40 +100,30 @@ void LookThrough(const GltfDocument& document, const View& view, Description* de
     SetFilm(x / y, loc, description);
 }
 
-// Looks at all of the bounds' sphere.
-void ShowAll(const Bounds3f& bounds, const std::array<double, 2>& orbit, const FileLoc& loc,
-             Description* description) {
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    double radius = 1;
-    if (!bounds.IsEmpty()) {
-        center = 0.5 * (bounds.lower.cast<double>() + bounds.upper.cast<double>());
-        radius = std::max(0.5 * bounds.Diagonal().cast<double>().norm(), 1e-6);
-    }
-    constexpr double kDegree = std::numbers::pi / 180;
-    const double a = orbit[0] * kDegree, e = orbit[1] * kDegree, fov = kDefaultFov * kDegree;
-    // The directions back, right and up: the camera's axes in glTF's convention.
-    const Eigen::Vector3d back(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));
-    const Eigen::Vector3d right(std::cos(a), 0, -std::sin(a));
-    Mat4d m = Mat4d::Identity();
-    m.col(0).head<3>() = right;
-    m.col(1).head<3>() = back.cross(right);
-    m.col(2).head<3>() = back;
-    m.col(3).head<3>() = center + back * (radius / std::sin(fov / 2));
-    description->cameraFromWorld = CameraFromNode() * m.inverse();
-    SetPerspective(fov, kDefaultAspect, loc, description);
-}
-
 }  // namespace
 
+std::optional<Framing> FramingFor(const GltfDocument& document, const std::vector<GltfNode>& nodes,
+                                  const GltfOptions& options) {
+    if (!options.camera.empty() || (!options.orbit && !ListViews(document, nodes).empty()))
+        return {};
+    const double tangent = std::tan(kDefaultFov * std::numbers::pi / 360);
+    const std::array<double, 2> tangents = {kDefaultAspect * tangent, tangent};
+    if (!options.orbit) return Framing(kDefaultAzimuth, kDefaultElevation, tangents);
+    return Framing((*options.orbit)[0], (*options.orbit)[1], tangents);
+}
+
 void SetView(const GltfDocument& document, const std::vector<GltfNode>& nodes,
-             const Bounds3f& bounds, const GltfOptions& options, Description* description) {
+             const std::optional<Framing>& framing, const GltfOptions& options,
+             Description* description) {
+    if (framing) {
+        description->cameraFromWorld = CameraFromNode() * framing->WorldFromCamera().inverse();
+        return SetPerspective(kDefaultFov * std::numbers::pi / 180, kDefaultAspect,
+                              document.At("/cameras"), description);
+    }
     const std::vector<View> views = ListViews(document, nodes);
-    if (!options.camera.empty())
-        return LookThrough(document, Choose(document, views, options.camera), description);
-    if (!views.empty() && !options.orbit) return LookThrough(document, views[0], description);
-    std::array<double, 2> orbit = {kDefaultAzimuth, kDefaultElevation};
-    if (options.orbit) orbit = {(*options.orbit)[0], (*options.orbit)[1]};
-    ShowAll(bounds, orbit, document.At("/cameras"), description);
+    LookThrough(document,
+                options.camera.empty() ? views[0] : Choose(document, views, options.camera),
+                description);
 }
 
 }  // namespace lull

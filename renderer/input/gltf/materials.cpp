@@ -86,7 +86,12 @@ void GltfMaterials::AddExtensions(const tinygltf::Material& material, const std:
         warnings.Add(document.At(path), "a clear coat's own normal map is left out");
 
     const tinygltf::Value& volume = Extension(material, "KHR_materials_volume");
-    write.Bool("solid", Number(volume, "thicknessFactor", 0) > 0);
+    const bool isSolid = solidGlass || Number(volume, "thicknessFactor", 0) > 0;
+    write.Bool("solid", isSolid);
+    if (!isSolid && Number(transmission, "transmissionFactor", 0) > 0)
+        warnings.Add(document.At(path),
+                     "transmission without a volume's thickness is that of a thin sheet, which "
+                     "bends no light; --solid-glass makes all such materials solid");
     if (volume.Has("attenuationDistance")) {
         const FileLoc loc = document.At(path + "/extensions/KHR_materials_volume");
         if (document.Requires("KHR_materials_volume"))

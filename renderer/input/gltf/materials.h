@@ -20,8 +20,12 @@ struct GltfMaterial {
 // Adds materials to a description, each once.
 class GltfMaterials {
   public:
-    GltfMaterials(const GltfDocument& document, Description* description)
-        : document(document), description(description), textures(document, description) {}
+    // `solidGlass`: see GltfOptions.
+    GltfMaterials(const GltfDocument& document, bool solidGlass, Description* description)
+        : document(document),
+          solidGlass(solidGlass),
+          description(description),
+          textures(document, description) {}
 
     // Returns the material of that index of the file, -1 for the default one, for primitives with
     // or without vertex colours. Throws Error.
@@ -35,6 +39,7 @@ class GltfMaterials {
                     const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
 
     const GltfDocument& document;
+    bool solidGlass;
     Description* description;
     GltfTextures textures;
     std::map<std::pair<int, bool>, GltfMaterial> made;

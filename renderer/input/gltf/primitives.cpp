@@ -2,22 +2,52 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "renderer/input/gltf/accessors.h"
 #include "renderer/input/gltf/parameters.h"
 
 namespace lull {
 namespace {
 
-// Reads an attribute of `least` to `most` components, one a vertex; nothing where it is absent.
+// Adds the morph targets of an attribute, each by its weight (3.7.2.2). A tangent's sign, or an
+// alpha, that a target lacks stays.
+void AddTargets(const GltfDocument& document, const FileLoc& loc,
+                const tinygltf::Primitive& primitive, const std::string& name,
+                const std::vector<double>& weights, GltfArray* array) {
+    if (!weights.empty() && weights.size() != primitive.targets.size())
+        throw Error(loc, fmt::format("has {} morph targets for {} weights",
+                                     primitive.targets.size(), weights.size()));
+    for (size_t i = 0; i < weights.size(); ++i) {
+        const auto found = primitive.targets[i].find(name);
+        if (weights[i] == 0 || found == primitive.targets[i].end()) continue;
+        const GltfArray target =
+            ReadFloats(document, found->second, std::min(array->components, 3), array->components);
+        if (target.Count() != array->Count())
+            throw Error(loc, fmt::format("has {} {} in morph target {} for {} vertices",
+                                         target.Count(), name, i, array->Count()));
+        for (size_t k = 0; k < target.values.size(); ++k) {
+            const auto components = size_t(target.components);
+            float& value =
+                array->values[k / components * size_t(array->components) + k % components];
+            value += float(weights[i]) * target.values[k];
+            if (!std::isfinite(value)) throw Error(loc, "its morph weights are too large");
+        }
+    }
+}
+
+// Reads an attribute of `least` to `most` components, one a vertex, and morphs it; nothing where it
+// is absent.
 GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
                         const tinygltf::Primitive& primitive, const std::string& name, int least,
-                        int most, size_t vertexCount) {
+                        int most, const std::vector<double>& weights, size_t vertexCount) {
     const auto found = primitive.attributes.find(name);
     if (found == primitive.attributes.end()) return {};
     GltfArray array = ReadFloats(document, found->second, least, most);
     if (array.Count() != vertexCount)
         throw Error(loc,
                     fmt::format("has {} {} for {} vertices", array.Count(), name, vertexCount));
+    AddTargets(document, loc, primitive, name, weights, &array);
     return array;
 }
 
@@ -52,7 +82,8 @@ std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
 
 }  // namespace
 
-GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index, Warnings& warnings) {
+GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
+                            const std::vector<double>& weights, Warnings& warnings) {
     const tinygltf::Primitive& primitive =
         document.model.meshes[size_t(mesh)].primitives[size_t(index)];
     const FileLoc loc = document.At(fmt::format("/meshes/{}/primitives/{}", mesh, index));
@@ -61,7 +92,6 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index, W
         warnings.Add(loc, "points and lines are left out");
         return {};
     }
-    if (!primitive.targets.empty()) warnings.Add(loc, "morph targets are left out");
     const auto positions = primitive.attributes.find("POSITION");
     if (positions == primitive.attributes.end()) {
         warnings.Add(loc, "primitive without POSITION is left out");
@@ -69,11 +99,11 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index, W
     }
 
     GltfTriangles t;
-    t.positions = ReadFloats(document, positions->second, 3, 3).values;
-    const size_t count = t.VertexCount();
+    const auto count = size_t(document.model.accessors[size_t(positions->second)].count);
     const auto read = [&](const char* name, int least, int most) {
-        return ReadAttribute(document, loc, primitive, name, least, most, count);
+        return ReadAttribute(document, loc, primitive, name, least, most, weights, count);
     };
+    t.positions = read("POSITION", 3, 3).values;
     t.normals = read("NORMAL", 3, 3).values;
     if (!t.normals.empty()) t.tangents = read("TANGENT", 4, 4).values;
     t.uvs[0] = read("TEXCOORD_0", 2, 2).values;

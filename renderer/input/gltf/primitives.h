@@ -19,9 +19,10 @@ struct GltfTriangles {
     size_t VertexCount() const { return positions.size() / 3; }
 };
 
-// Reads a primitive. Points and lines have no triangles: they are skipped with a counted warning.
-// Throws Error.
-GltfTriangles ReadPrimitive(const GltfDocument&, int mesh, int primitive, Warnings&);
+// Reads a primitive, with its morph targets added by their weights; no weights: as it stands.
+// Points and lines have no triangles: they are skipped with a counted warning. Throws Error.
+GltfTriangles ReadPrimitive(const GltfDocument&, int mesh, int primitive,
+                            const std::vector<double>& weights, Warnings&);
 
 // Makes tangents for normals and texture coordinates, as MikkTSpace does by default: those of the
 // triangles around a vertex, weighted by their angles there. A vertex shared by triangles with

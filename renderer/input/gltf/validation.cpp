@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-#include <set>
-
-#include "renderer/base/error.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/input/gltf/json_at.h"
 
 namespace lull {
 namespace {
@@ -15,126 +11,7 @@ using nlohmann::json;
 
 constexpr int kDeepest = 100;
 constexpr double kLargest = 3e38;
-// Beyond this no file of ours or anybody's goes, and all sums of two are still exact.
-constexpr uint64_t kLargestSize = uint64_t(1) << 48;
-
-// Holds a value and where it stands.
-struct JsonAt {
-    const json& root;
-    const std::string& file;
-    const json& value;
-    std::string path;
-
-    [[noreturn]] void Fail(const std::string& problem) const {
-        throw Error(fmt::format("{}: {}: {}", file, path.empty() ? "/" : path, problem));
-    }
-    JsonAt Member(const std::string& name) const {
-        return {root, file, value.at(name), path + "/" + name};
-    }
-    bool Has(const std::string& name) const { return value.contains(name); }
-
-    void Object() const {
-        if (!value.is_object()) Fail("has to be an object");
-    }
-    void String(const std::string& name) const {
-        if (Has(name) && !value.at(name).is_string()) Member(name).Fail("has to be a string");
-    }
-    void Bool(const std::string& name) const {
-        if (Has(name) && !value.at(name).is_boolean()) Member(name).Fail("has to be true or false");
-    }
-    // Returns a whole number from `least` to `most`, `otherwise` where it is absent.
-    uint64_t Whole(const std::string& name, uint64_t least, uint64_t most,
-                   uint64_t otherwise) const {
-        if (!Has(name)) return otherwise;
-        const JsonAt member = Member(name);
-        if (!member.value.is_number_unsigned())
-            member.Fail("has to be a whole number, not negative");
-        const auto n = member.value.get<uint64_t>();
-        if (n < least || n > most)
-            member.Fail(fmt::format("is {}, but has to lie between {} and {}", n, least, most));
-        return n;
-    }
-    void Required(const std::string& name) const {
-        if (!Has(name)) Fail("lacks \"" + name + "\"");
-    }
-    void Number(const std::string& name) const {
-        if (Has(name) && !value.at(name).is_number()) Member(name).Fail("has to be a number");
-    }
-    void Numbers(const std::string& name, size_t count) const {
-        if (!Has(name)) return;
-        const JsonAt member = Member(name);
-        if (!member.value.is_array() || member.value.size() != count)
-            member.Fail(fmt::format("has to be an array of {} numbers", count));
-        for (const json& n : member.value)
-            if (!n.is_number()) member.Fail(fmt::format("has to be an array of {} numbers", count));
-    }
-    void OneOf(const std::string& name, std::initializer_list<const char*> names) const {
-        String(name);
-        if (!Has(name)) return;
-        for (const char* n : names)
-            if (value.at(name) == n) return;
-        Member(name).Fail("is \"" + Printable(value.at(name).get<std::string>()) +
-                          "\", which is not defined");
-    }
-    void OneOfNumbers(const std::string& name, std::initializer_list<uint64_t> numbers) const {
-        if (!Has(name)) return;
-        const uint64_t n = Whole(name, 0, kLargestSize, 0);
-        for (const uint64_t one : numbers)
-            if (n == one) return;
-        Member(name).Fail(fmt::format("is {}, which is not defined", n));
-    }
-
-    // Checks an index into one of the top-level arrays.
-    void IndexItself(const std::string& array) const {
-        const size_t size = root.contains(array) ? root.at(array).size() : 0;
-        if (!value.is_number_unsigned()) Fail("has to be an index, a whole number");
-        if (value.get<uint64_t>() >= size)
-            Fail(
-                fmt::format("is {}, but there are only {} {}", value.get<uint64_t>(), size, array));
-    }
-    void Index(const std::string& name, const std::string& array) const {
-        if (Has(name)) Member(name).IndexItself(array);
-    }
-    void Indices(const std::string& name, const std::string& array) const {
-        ForEachAny(name, [&](const JsonAt& index) { index.IndexItself(array); });
-    }
-
-    template <typename F>
-    void ForEachAny(const std::string& name, const F& f) const {
-        if (!Has(name)) return;
-        const JsonAt member = Member(name);
-        if (!member.value.is_array()) member.Fail("has to be an array");
-        for (size_t i = 0; i < member.value.size(); ++i)
-            f(JsonAt{root, file, member.value[i], fmt::format("{}/{}", member.path, i)});
-    }
-    template <typename F>
-    void ForEach(const std::string& name, const F& f) const {
-        ForEachAny(name, [&](const JsonAt& one) {
-            one.Object();
-            f(one);
-        });
-    }
-    // Calls f with the values of an object.
-    template <typename F>
-    void ForEachValue(const std::string& name, const F& f) const {
-        if (!Has(name)) return;
-        const JsonAt member = Member(name);
-        member.Object();
-        for (const auto& [key, v] : member.value.items())
-            f(JsonAt{root, file, v, member.path + "/" + Printable(key)});
-    }
-    // Calls f with an extension that the object has.
-    template <typename F>
-    void Extension(const std::string& name, const F& f) const {
-        if (!Has("extensions")) return;
-        const JsonAt extensions = Member("extensions");
-        extensions.Object();
-        if (!extensions.Has(name)) return;
-        const JsonAt extension = extensions.Member(name);
-        extension.Object();
-        f(extension);
-    }
-};
+constexpr uint64_t kLargestSize = kLargestJsonSize;
 
 void CheckUri(const JsonAt& owner) {
     owner.String("uri");
@@ -213,6 +90,11 @@ void CheckPrimitive(const JsonAt& o) {
     o.Required("attributes");
     o.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
     o.Index("indices", "accessors");
+    o.ForEach("targets", [](const JsonAt& target) {
+        for (const auto& [name, accessor] : target.value.items())
+            JsonAt{target.root, target.file, accessor, target.path + "/" + Printable(name)}
+                .IndexItself("accessors");
+    });
     o.Index("material", "materials");
     o.Whole("mode", 0, 6, 4);
     o.Extension("KHR_draco_mesh_compression", [](const JsonAt& draco) {
@@ -226,6 +108,42 @@ void CheckPrimitive(const JsonAt& o) {
     });
 }
 
+void CheckWeights(const JsonAt& o) {
+    o.ForEachAny("weights", [](const JsonAt& weight) {
+        if (!weight.value.is_number()) weight.Fail("has to be a number");
+    });
+}
+
+void CheckSkin(const JsonAt& o) {
+    o.Required("joints");
+    o.Indices("joints", "nodes");
+    if (o.value.at("joints").empty()) o.Member("joints").Fail("needs at least one joint");
+    o.Index("inverseBindMatrices", "accessors");
+}
+
+void CheckAnimation(const JsonAt& o) {
+    o.String("name");
+    for (const char* name : {"channels", "samplers"}) o.Required(name);
+    o.ForEach("samplers", [](const JsonAt& sampler) {
+        for (const char* name : {"input", "output"}) {
+            sampler.Required(name);
+            sampler.Index(name, "accessors");
+        }
+        sampler.OneOf("interpolation", {"LINEAR", "STEP", "CUBICSPLINE"});
+    });
+    const uint64_t samplers = o.value.at("samplers").size();
+    o.ForEach("channels", [&](const JsonAt& channel) {
+        for (const char* name : {"sampler", "target"}) channel.Required(name);
+        if (channel.Whole("sampler", 0, kLargestSize, 0) >= samplers)
+            channel.Member("sampler").Fail(fmt::format("there are only {} samplers", samplers));
+        const JsonAt target = channel.Member("target");
+        target.Object();
+        target.Required("path");
+        target.String("path");
+        target.Index("node", "nodes");
+    });
+}
+
 void CheckNode(const JsonAt& o) {
     o.String("name");
     o.Index("camera", "cameras");
@@ -236,6 +154,7 @@ void CheckNode(const JsonAt& o) {
     o.Numbers("rotation", 4);
     o.Numbers("scale", 3);
     o.Numbers("translation", 3);
+    CheckWeights(o);
     if (o.Has("matrix") && (o.Has("rotation") || o.Has("scale") || o.Has("translation")))
         o.Member("matrix").Fail("stands beside a rotation, scale or translation");
     o.Extension("EXT_mesh_gpu_instancing", [](const JsonAt& e) {
@@ -383,8 +302,11 @@ void CheckGltfJson(const std::string& file, const json& json) {
     root.ForEach("meshes", [](const JsonAt& o) {
         o.Required("primitives");
         o.ForEach("primitives", CheckPrimitive);
+        CheckWeights(o);
     });
     root.ForEach("nodes", CheckNode);
+    root.ForEach("skins", CheckSkin);
+    root.ForEach("animations", CheckAnimation);
     root.ForEach("scenes", [](const JsonAt& o) { o.Indices("nodes", "nodes"); });
     root.Index("scene", "scenes");
     root.ForEach("materials", CheckMaterial);

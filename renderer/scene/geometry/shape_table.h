@@ -45,6 +45,7 @@ struct Instance {
     int object = -1;
     int motion = -1;                             // into ShapeTable::motions; -1: does not move
     Mat4d worldFromInstance, instanceFromWorld;  // of one that moves: when the shutter opens
+    int entity = -1;                             // into Description::instances
 };
 
 struct Hit {

@@ -3,6 +3,7 @@
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_color.h"
+#include "renderer/scene/lights/studio.h"
 
 namespace lull {
 namespace {
@@ -48,6 +49,10 @@ InfiniteLight InfiniteLight::Make(const Description& description, const LightEnt
     const Rgb L = LightColor(entity, "L", warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
+    if (params.GetBool("studio", false)) {
+        light.map = std::make_shared<const EnvironmentMap>(MakeStudio(), L, isCompensated);
+        return light;
+    }
     if (file.empty()) return light;
     try {
         // As in pbrt-v3, 8-bit environment maps are taken as linear.

@@ -129,10 +129,13 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     }
 
     if (coat > 0) {
-        const float coatAlpha =
-            AlphaOf(clearcoatRoughnessFactor *
-                    (clearcoatRoughnessFactor > 0 ? Look(clearcoatRoughness, in) : 0));
-        if (coatAlpha < kSmoothAlpha)
+        const float roughness = clearcoatRoughnessFactor > 0
+                                    ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in)
+                                    : 0;
+        // A mirror shows no lamp that has no size. What is not meant as one, such as Blender's
+        // usual coat of roughness 0.03, keeps such highlights.
+        const float coatAlpha = AlphaOf(roughness);  // the distribution has its own least
+        if (!(roughness > 0))
             bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),
                                    InterfaceAbove{}, 0});
         else

@@ -116,16 +116,19 @@ TEST(Denoise, TakesWhateverItIsGiven) {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
     NoisyPicture noisy = AddNoise(Planes(60, 50, 3, 0.4f), FlatFeatures(60, 50), 0.1, 10);
     noisy.variance = Planes(60, 50, 1, 0.01f);
+    Halves features{FlatFeatures(60, 50), FlatFeatures(60, 50)};
     size_t i = 17;
     for (const float value : {nan, inf, -inf, -3.f, 1e38f, 1e-40f})
-        for (Planes* planes : {&noisy.colour.a, &noisy.colour.b, &noisy.features.a,
-                               &noisy.features.b, &noisy.variance})
+        for (Planes* planes :
+             {&noisy.colour.a, &noisy.colour.b, &features.a, &features.b, &noisy.variance})
             planes->values[(i += 131) % planes->values.size()] = value;
+    noisy.features = Filtered(features);
     ExpectSane(Denoise(noisy));
 }
 
 TEST(Denoise, TakesPicturesOfAnySize) {
-    for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {1, 40}, {17, 3}, {129, 2}}) {
+    for (const auto& [width, height] :
+         {std::pair(1, 1), {2, 1}, {1, 40}, {17, 3}, {129, 2}, {2, 301}}) {
         const NoisyPicture noisy =
             AddNoise(Planes(width, height, 3, 0.4f), FlatFeatures(width, height), 0.01, 11);
         const DenoisedPicture result = Denoise(noisy);
@@ -134,15 +137,32 @@ TEST(Denoise, TakesPicturesOfAnySize) {
     }
 }
 
-TEST(Denoise, IsTheSameOnAnyNumberOfThreads) {
+// Stripes and noise, of more rows than are worked on at once.
+NoisyPicture TallPicture() {
     const Planes truth =
-        MakePlanes(300, 150, 3, [](int, int x, int y) { return (x / 7 + y / 5) % 3 * 0.2 + 0.1; });
-    const NoisyPicture noisy = AddNoise(truth, FlatFeatures(300, 150), 0.1, 12);
+        MakePlanes(150, 300, 3, [](int, int x, int y) { return (x / 7 + y / 5) % 3 * 0.2 + 0.1; });
+    return AddNoise(truth, FlatFeatures(150, 300), 0.1, 12);
+}
+
+TEST(Denoise, IsTheSameOnAnyNumberOfThreads) {
+    const NoisyPicture noisy = TallPicture();
     const auto on = [&](size_t threads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         return Denoise(noisy).picture.values;
     };
     EXPECT_EQ(on(1), on(4));
+}
+
+// The upper rows by themselves are few enough to be worked on at once.
+TEST(Denoise, LeavesNoTraceOfBands) {
+    const NoisyPicture noisy = TallPicture();
+    const ImageTile upper{0, 0, 150, 256}, seen{0, 0, 150, 160};
+    const NoisyPicture part{{Crop(noisy.colour.a, upper), Crop(noisy.colour.b, upper)},
+                            Crop(noisy.features, upper),
+                            {}};
+    const Planes whole = Crop(Denoise(noisy).picture, seen);
+    const Planes alone = Crop(Denoise(part).picture, seen);
+    EXPECT_LT(Rms(whole, alone), 1e-6);
 }
 
 }  // namespace

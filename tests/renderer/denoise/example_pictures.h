@@ -6,6 +6,7 @@
 #include <random>
 
 #include "renderer/denoise/denoise.h"
+#include "renderer/denoise/tile.h"
 
 namespace lull {
 
@@ -26,12 +27,21 @@ inline Planes FlatFeatures(int width, int height) {
     });
 }
 
+// Returns both halves of the features as the denoiser takes them.
+inline Planes Filtered(const Halves& features) {
+    const Planes& a = features.a;
+    return FilterFeatures(a.width, a.height, [&](int y0, int y1) {
+        const ImageTile rows{0, y0, a.width, y1};
+        return Halves{Crop(a, rows), Crop(features.b, rows)};
+    });
+}
+
 // Returns `truth` with Gaussian noise of this deviation in each half.
 inline NoisyPicture AddNoise(const Planes& truth, const Planes& features, double deviation,
                              unsigned seed) {
     std::mt19937 generator(seed);
     std::normal_distribution<double> gauss(0, deviation);
-    NoisyPicture noisy{{truth, truth}, {features, features}, {}};
+    NoisyPicture noisy{{truth, truth}, Filtered({features, features}), {}};
     for (Planes* half : {&noisy.colour.a, &noisy.colour.b})
         for (float& v : half->values) v = std::max(0.f, v + float(gauss(generator)));
     return noisy;

@@ -33,6 +33,16 @@ TEST(Planes, AreNotSpoiledByBrightValues) {
     EXPECT_FLOAT_EQ(mean.Row(0, 10)[50], 1e-3f);
 }
 
+// Pictures are filtered part by part.
+TEST(Planes, AreFilteredAlikeInParts) {
+    std::mt19937 generator(1);
+    std::normal_distribution<double> gauss(0, 1);
+    const Planes image = MakePlanes(50, 40, 1, [&](int, int, int) { return gauss(generator); });
+    const Planes part = Crop(image, {9, 7, 45, 40});
+    EXPECT_EQ(Crop(BoxMean(image, 4), {13, 11, 41, 40}).values,
+              Crop(BoxMean(part, 4), {4, 4, 32, 33}).values);
+}
+
 TEST(Planes, VaryByHalfTheirSquaredDifference) {
     Planes a(3, 2, 2, 1), b(3, 2, 2, 1);
     b.Row(1, 1)[2] = -3;

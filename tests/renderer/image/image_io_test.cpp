@@ -367,6 +367,31 @@ TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
     EXPECT_FALSE(Contains(ReadBytes(path), "ToneMap"));
 }
 
+// Colours come multiplied by alpha, and are stored without; alpha is no colour.
+TEST(WritePng, StoresAlpha) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.png");
+    const std::vector<float> row = {0.1f, 0.2f, 0.25f, 0.5f, 1, 1, 1, 0, 0.5f, 0, 2, 1};
+    const RowSource rows = [&](int, std::span<float> to) { std::ranges::copy(row, to.begin()); };
+    WritePng(path, rows, 3, 1, {.hasAlpha = true});
+    const Image image = ReadImage(path);
+    EXPECT_EQ(image.channels, 4);
+    const auto texels = Texels<uint8_t>(image);
+    const std::vector<uint8_t> expected = {Encode8Bit(0.2f),
+                                           Encode8Bit(0.4f),
+                                           Encode8Bit(0.5f),
+                                           128,
+                                           0,
+                                           0,
+                                           0,
+                                           0,
+                                           Encode8Bit(0.5f),
+                                           0,
+                                           255,
+                                           255};
+    EXPECT_EQ(texels, expected);
+}
+
 TEST(WritePng, KeepsTheOldFileWhereItFails) {
     const TemporaryDirectory directory;
     const std::vector<Rgb> pixels(4, Rgb::Constant(1));

@@ -130,17 +130,44 @@ TEST(GltfCameras, AreChosenByNameOrNumber) {
 
 TEST(GltfCameras, FrameTheWholeScene) {
     GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    for (const float azimuth : {0.f, 90.f}) {
+    file.Node({{"mesh", file.Triangle()}, {"scale", {1, 3, 1}}});
+    for (const float azimuth : {0.f, 180.f}) {
         const Description d = kFolder.Parse(file, {.orbit = std::array{azimuth, 0.f}});
-        // Seen from +z, or from +x; the middle of the bounds lies straight ahead.
-        const Vec3f center = Transformed(d.cameraFromWorld, {0.5f, 0.5f, 0});
-        EXPECT_NEAR(center.x(), 0, 1e-5);
-        EXPECT_NEAR(center.y(), 0, 1e-5);
-        EXPECT_NEAR(center.z(), std::sqrt(0.5) / std::sin(20 * kPi / 180), 1e-4);
-        const Vec3f right = TransformVector(d.cameraFromWorld, Vec3f::UnitX());
-        EXPECT_NEAR(azimuth == 0 ? right.x() : -right.z(), 1, 1e-5);
+        // Seen from the front and the back; upright, it fills the height but for 6 % at each end.
+        const double edge = 0.88 * std::tan(20 * kPi / 180);
+        const Vec3f top = Transformed(d.cameraFromWorld, {0, 3, 0});
+        const Vec3f bottom = Transformed(d.cameraFromWorld, {0, 0, 0});
+        EXPECT_NEAR(top.y() / top.z(), edge, 1e-5);
+        EXPECT_NEAR(bottom.y() / bottom.z(), -edge, 1e-5);
+        // It stands in the middle.
+        const Vec3f right = Transformed(d.cameraFromWorld, {1, 0, 0});
+        EXPECT_NEAR(right.x() + bottom.x(), 0, 1e-5);
+        EXPECT_NEAR(right.x() - bottom.x(), azimuth == 0 ? 1 : -1, 1e-5);
     }
+}
+
+// Whatever the direction, everything is in the picture, and something is near its edge.
+TEST(GltfCameras, FillThePictureFromAnywhere) {
+    std::vector<float> points;
+    for (int i = 0; i < 500; ++i)
+        for (const double c : {std::cos(i), std::sin(3 * i) + 5, 0.2 * std::cos(7 * i)})
+            points.push_back(float(c));
+    GltfFile file;
+    file.Node({{"mesh", file.Mesh({{"POSITION", file.Floats(points, "VEC3")}})}});
+    for (const float azimuth : {0.f, 50.f, 200.f})
+        for (const float elevation : {-90.f, 0.f, 33.f, 90.f}) {
+            const Description d = kFolder.Parse(file, {.orbit = std::array{azimuth, elevation}});
+            double most = 0;
+            for (size_t i = 0; i < points.size(); i += 3) {
+                const Vec3f p =
+                    Transformed(d.cameraFromWorld, {points[i], points[i + 1], points[i + 2]});
+                ASSERT_GT(p.z(), 0);
+                const double half = std::tan(20 * kPi / 180) * double(p.z());
+                most = std::max({most, std::abs(p.x()) / (1.5 * half), std::abs(p.y()) / half});
+            }
+            EXPECT_LT(most, 0.95) << azimuth << " " << elevation;
+            EXPECT_GT(most, 0.85) << azimuth << " " << elevation;
+        }
 }
 
 TEST(GltfLights, AreTakenFromPhotometricUnits) {
@@ -186,7 +213,8 @@ TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     file.Node({{"mesh", file.Triangle({{"material", 0}})}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
-    EXPECT_EQ(warnings.Total(), 3);  // of sheen, and of how both textures are filtered
+    // Of sheen, of a sheet that transmits, and of how both textures are filtered.
+    EXPECT_EQ(warnings.Total(), 4);
     ASSERT_EQ(d.materials.size(), 1u);
     const Parameters& m = d.materials[0].parameters;
     EXPECT_EQ(d.materials[0].name, "metallicroughness");
@@ -206,6 +234,23 @@ TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     EXPECT_NEAR(d.shapes[0].parameters.GetFloat("coveragefactor", 0), 0.4, 1e-6);
     EXPECT_NEAR(d.shapes[0].parameters.GetFloat("alphacutoff", 0), 0.25, 1e-6);
     EXPECT_EQ(d.textures[1].parameters.GetString("channel", ""), "alpha");
+}
+
+TEST(GltfMaterials, AreSolidByVolumeOrByWish) {
+    for (const double thickness : {0., 0.5})
+        for (const bool wish : {false, true}) {
+            GltfFile file;
+            file.root["materials"] = {
+                {{"extensions",
+                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                   {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}}};
+            file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+            Warnings warnings;
+            const Description d = kFolder.Parse(file, {.solidGlass = wish}, &warnings);
+            const bool isSolid = thickness > 0 || wish;
+            EXPECT_EQ(d.materials.at(0).parameters.GetBool("solid", false), isSolid);
+            EXPECT_EQ(warnings.Total(), isSolid ? 0 : 1);
+        }
 }
 
 TEST(GltfMaterials, KeepEmbeddedImagesEncoded) {
@@ -235,6 +280,15 @@ TEST(SceneEdits, LightOnlyWhatIsDark) {
     LightIfDark(&d, warnings);
     ASSERT_EQ(d.lights.size(), 1u);
     EXPECT_EQ(d.lights[0].name, "infinite");
+    EXPECT_TRUE(d.lights[0].parameters.GetBool("studio", false));
+    // Its x axis points to the camera, its y axis to the right in the picture, its z axis up.
+    const Mat4d& m = d.lights[0].worldFromLight;
+    const auto seen = [&](const Vec3f& axis) {
+        return TransformVector(d.cameraFromWorld, TransformVector(m, axis));
+    };
+    EXPECT_LT(seen(Vec3f::UnitX()).z(), -0.9f);
+    EXPECT_GT(seen(Vec3f::UnitY()).x(), 0.99f);
+    EXPECT_TRUE(TransformVector(m, Vec3f::UnitZ()).isApprox(Vec3f::UnitY()));
     LightIfDark(&d, warnings);
     EXPECT_EQ(d.lights.size(), 1u);
     EXPECT_EQ(warnings.Total(), 1);

@@ -56,6 +56,15 @@ TEST(MetallicRoughness, ReflectsAsMirrorWhereSmooth) {
     EXPECT_FLOAT_EQ(LobeAt<ThinSpecular>(coated, 1).f90, 1);
 }
 
+// As narrow as lamps without size allow, instead of a mirror that does not show them.
+TEST(MetallicRoughness, KeepsHighlightsOnCoatsThatAreNearlySmooth) {
+    const Bsdf coated =
+        SceneWith({{"clearcoatfactor", 1}, {"clearcoatroughnessfactor", 0.03f}}).MakeBsdf(0);
+    ASSERT_EQ(coated.LobeCount(LobeSet::All), 2);
+    EXPECT_FLOAT_EQ(LobeAt<MicrofacetReflection<SchlickInterface>>(coated, 1).distribution.AlphaX(),
+                    1e-3f);
+}
+
 TEST(MetallicRoughness, WithoutHighlightsIsLambertian) {
     const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"specularfactor", 0}}).MakeBsdf(0);
     ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);

@@ -1,0 +1,119 @@
+// Sums up what covers each pixel, for compositing: how much of it the scene does, and which objects
+// and materials how much.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "renderer/film/film.h"
+#include "renderer/transport/first_hit.h"
+
+namespace lull {
+
+// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+struct AlphaPixel {
+    std::array<double, 3> background = {};  // the radiance of samples that met nothing
+    double weight = 0, covered = 0;         // filter weights of all samples, of those that did
+
+    void Add(const FirstHit& hit, const Rgb& radiance) {
+        weight += double(hit.weight);
+        if (hit.found)
+            covered += double(hit.weight);
+        else
+            for (int c = 0; c < 3; ++c) background[size_t(c)] += double(radiance[c]);
+    }
+    // Returns the share of the pixel that is covered, from 0 to 1.
+    float Alpha() const { return weight != 0 ? float(std::clamp(covered / weight, 0., 1.)) : 0; }
+    bool operator==(const AlphaPixel&) const = default;
+};
+
+// Holds which share of a pixel one object or material has: its number (FirstHit), 0 for none, and
+// the weights of its samples.
+struct MatteShare {
+    uint32_t number = 0;
+    float weight = 0;
+    bool operator==(const MatteShare&) const = default;
+};
+
+// Holds the shares of the first few objects and materials that a pixel's samples met. Where there
+// are more, those that came late are left out.
+inline constexpr size_t kMatteShares = 8;
+struct CryptoPixel {
+    std::array<MatteShare, kMatteShares> objects = {}, materials = {};
+
+    void Add(const FirstHit& hit) {
+        AddTo(&objects, hit.object, hit.weight);
+        AddTo(&materials, hit.material, hit.weight);
+    }
+    bool operator==(const CryptoPixel&) const = default;
+
+  private:
+    static void AddTo(std::array<MatteShare, kMatteShares>* shares, uint32_t number, float weight) {
+        if (number == 0) return;
+        for (MatteShare& share : *shares) {
+            if (share.number != 0 && share.number != number) continue;
+            share.number = number;
+            share.weight += weight;
+            return;
+        }
+    }
+};
+
+// Holds one such pixel for each of a region. Different ones can be changed by different threads at
+// the same time.
+template <typename Pixel>
+class PixelPlane {
+  public:
+    explicit PixelPlane(const PixelRect& region)
+        : region(region), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+
+    const PixelRect& Region() const { return region; }
+    Pixel& At(const Vec2i& p) { return pixels[Index(p)]; }
+    const Pixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
+    const std::vector<Pixel>& Pixels() const { return pixels; }
+
+    // Returns the pixels of a rectangle, row by row, and sets them.
+    std::vector<Pixel> Copy(const PixelRect& rect) const {
+        std::vector<Pixel> copy;
+        for (int y = rect.min.y(); y < rect.max.y(); ++y) {
+            const Pixel* row = &At({rect.min.x(), y});
+            copy.insert(copy.end(), row, row + rect.Width());
+        }
+        return copy;
+    }
+    void Set(const std::vector<Pixel>& from, const PixelRect& rect) {
+        for (int y = rect.min.y(); y < rect.max.y(); ++y)
+            std::copy_n(&from[size_t(y - rect.min.y()) * size_t(rect.Width())], rect.Width(),
+                        &At({rect.min.x(), y}));
+    }
+
+  private:
+    size_t Index(const Vec2i& p) const {
+        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
+               size_t(p.x() - region.min.x());
+    }
+
+    PixelRect region;
+    std::vector<Pixel> pixels;
+};
+
+struct MatteFilm {
+    PixelPlane<AlphaPixel> alpha;
+    std::optional<PixelPlane<CryptoPixel>> crypto;  // where it is wanted
+
+    MatteFilm(const PixelRect& region, bool withCrypto) : alpha(region) {
+        if (withCrypto) crypto.emplace(region);
+    }
+    // Returns the memory that a pixel takes.
+    static size_t BytesOfPixel(bool withCrypto) {
+        return sizeof(AlphaPixel) + (withCrypto ? sizeof(CryptoPixel) : 0);
+    }
+    void Add(const Vec2i& pixel, const FirstHit& hit, const Rgb& radiance) {
+        alpha.At(pixel).Add(hit, radiance);
+        if (crypto) crypto->At(pixel).Add(hit);
+    }
+};
+
+}  // namespace lull

@@ -1,0 +1,134 @@
+#include "renderer/input/gltf/animations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "renderer/files/file_contents.h"
+#include "renderer/input/gltf/accessors.h"
+
+namespace lull {
+namespace {
+
+// Holds the keys of a sampler: `width` values for each time, or, of a cubic spline, the tangent
+// before each key, its value, and the tangent after it.
+struct Keys {
+    std::vector<float> times, values;
+    size_t width;
+    std::string interpolation;
+
+    Eigen::ArrayXd Value(size_t key, size_t part = 0) const {
+        const bool isCubic = interpolation == "CUBICSPLINE";
+        const size_t at = (isCubic ? 3 * key + part : key) * width;
+        return Eigen::Map<const Eigen::ArrayXf>(&values[at], long(width)).cast<double>();
+    }
+};
+
+// Reads keys of `components` numbers each; 0: any number of scalars.
+Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sampler,
+              int components) {
+    Keys keys{ReadFloats(document, sampler.input, 1, 1).values, {}, 0, sampler.interpolation};
+    for (size_t i = 1; i < keys.times.size(); ++i)
+        if (!(keys.times[i] > keys.times[i - 1]))
+            throw Error(document.At(fmt::format("/accessors/{}", sampler.input)),
+                        fmt::format("key {} is not later than the one before", i));
+    const int least = std::max(components, 1);
+    keys.values = ReadFloats(document, sampler.output, least, least).values;
+    const size_t parts = keys.times.size() * (sampler.interpolation == "CUBICSPLINE" ? 3 : 1);
+    keys.width = keys.values.size() / parts;
+    if (keys.width == 0 || keys.values.size() % parts != 0 ||
+        (components > 0 && keys.width != size_t(components)))
+        throw Error(document.At(fmt::format("/accessors/{}", sampler.output)),
+                    fmt::format("its {} numbers do not fit {} keys", keys.values.size(),
+                                keys.times.size()));
+    return keys;
+}
+
+// Spherical interpolation along the shorter way (C.4 of the specification).
+Eigen::ArrayXd Slerp(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double t) {
+    const double lengths[] = {a.matrix().norm(), b.matrix().norm()};
+    if (!(lengths[0] * lengths[1] > 0)) return t < 0.5 ? a : b;
+    const double cosine = (a * b).sum() / (lengths[0] * lengths[1]);
+    const Eigen::ArrayXd from = a / lengths[0], to = b / (cosine < 0 ? -lengths[1] : lengths[1]);
+    const double angle = std::acos(std::min(std::abs(cosine), 1.));
+    if (angle < 1e-6) return (1 - t) * from + t * to;
+    return (std::sin((1 - t) * angle) * from + std::sin(t * angle) * to) / std::sin(angle);
+}
+
+// Evaluates an animation sampler (appendix C of the specification).
+Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
+    const bool isCubic = keys.interpolation == "CUBICSPLINE";
+    const size_t value = isCubic ? 1 : 0;
+    const auto next = std::upper_bound(keys.times.begin(), keys.times.end(), seconds,
+                                       [](double s, float time) { return s < double(time); });
+    if (next == keys.times.begin()) return keys.Value(0, value);
+    const auto k = size_t(next - keys.times.begin()) - 1;
+    if (next == keys.times.end() || keys.interpolation == "STEP") return keys.Value(k, value);
+    const double length = double(keys.times[k + 1]) - double(keys.times[k]);
+    const double t = (seconds - double(keys.times[k])) / length;
+    if (!isCubic) {
+        const Eigen::ArrayXd a = keys.Value(k), b = keys.Value(k + 1);
+        return isRotation ? Slerp(a, b, t) : Eigen::ArrayXd((1 - t) * a + t * b);
+    }
+    const double t2 = t * t, t3 = t2 * t;
+    return (2 * t3 - 3 * t2 + 1) * keys.Value(k, 1) +
+           length * (t3 - 2 * t2 + t) * keys.Value(k, 2) +
+           (3 * t2 - 2 * t3) * keys.Value(k + 1, 1) + length * (t3 - t2) * keys.Value(k + 1, 0);
+}
+
+size_t Choose(const GltfDocument& document, const std::string& wanted, Warnings& warnings) {
+    const auto& animations = document.model.animations;
+    if (wanted.empty()) {
+        if (animations.empty()) throw Error(document.file + ": has no animation to pose");
+        if (animations.size() > 1)
+            warnings.Add(document.At("/animations"),
+                         fmt::format("only the first of {} animations poses the scene; "
+                                     "--animation NAME|N chooses another",
+                                     animations.size()));
+        return 0;
+    }
+    for (size_t i = 0; i < animations.size(); ++i)
+        if (animations[i].name == wanted) return i;
+    size_t number = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto [at, error] = std::from_chars(wanted.data(), end, number);
+    if (error == std::errc() && at == end && number < animations.size()) return number;
+    std::string names;
+    for (size_t i = 0; i < animations.size(); ++i)
+        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, Printable(animations[i].name));
+    throw Error(fmt::format("{}: has no animation \"{}\"; it has {}", document.file, wanted,
+                            names.empty() ? "none" : names));
+}
+
+}  // namespace
+
+void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, Warnings& warnings) {
+    const size_t index = Choose(*document, wanted, warnings);
+    const tinygltf::Animation& animation = document->model.animations[index];
+    for (size_t i = 0; i < animation.channels.size(); ++i) {
+        const tinygltf::AnimationChannel& channel = animation.channels[i];
+        const FileLoc loc = document->At(fmt::format("/animations/{}/channels/{}", index, i));
+        tinygltf::Node& node = document->model.nodes[size_t(channel.target_node)];
+        const std::string& path = channel.target_path;
+        const bool isRotation = path == "rotation";
+        std::vector<double>* target = nullptr;
+        if (path == "translation") target = &node.translation;
+        if (isRotation) target = &node.rotation;
+        if (path == "scale") target = &node.scale;
+        if (path == "weights") target = &node.weights;
+        if (!target) {
+            warnings.Add(loc, "animation of \"" + Printable(path) + "\" is left out");
+            continue;
+        }
+        if (path != "weights" && !node.matrix.empty())
+            throw Error(loc, "moves a node that has a matrix, which the specification forbids");
+        const tinygltf::AnimationSampler& sampler = animation.samplers[size_t(channel.sampler)];
+        const Keys keys = ReadKeys(*document, sampler, path == "weights" ? 0 : isRotation ? 4 : 3);
+        const Eigen::ArrayXd value = Evaluate(keys, seconds, isRotation);
+        target->assign(value.begin(), value.end());
+    }
+}
+
+}  // namespace lull

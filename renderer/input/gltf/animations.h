@@ -1,0 +1,16 @@
+// Poses the nodes of a glTF file by its animations.
+#pragma once
+
+#include <string>
+
+#include "renderer/input/gltf/document.h"
+
+namespace lull {
+
+// Gives all nodes that an animation moves the transforms and weights that it has at a time in
+// seconds, as if the file held these; before its first key and after its last one it stands still.
+// `wanted` is the name or the number, from 0, of an animation; empty: the first one, with a warning
+// if there are others. Throws Error if there is none of that name, or for keys that are wrong.
+void PoseAt(double seconds, const std::string& wanted, GltfDocument*, Warnings&);
+
+}  // namespace lull

@@ -1,0 +1,16 @@
+// Names what paths meet, for people.
+#pragma once
+
+#include <string>
+
+#include "renderer/scene/compile.h"
+
+namespace lull {
+
+// Return the name of an object or a material by its number (FirstHit), not 0: as the scene has it,
+// else kind, file and line. Numbers that the scene does not have, as of a checkpoint that somebody
+// has changed, give "".
+std::string NameOfObject(uint32_t number, const Description&, const Scene&);
+std::string NameOfMaterial(uint32_t number, const Description&);
+
+}  // namespace lull

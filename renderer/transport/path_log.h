@@ -1,0 +1,40 @@
+// Records what happens to one path, for people who want to know where a bright pixel comes from.
+#pragma once
+
+#include <vector>
+
+#include "renderer/transport/path_tracer.h"
+
+namespace lull {
+
+// Holds what happens where a path's ray ends.
+struct PathStep {
+    enum class Kind { Surface, Medium, Sky };
+
+    Kind kind = Kind::Surface;
+    float distance = 0;                 // from the step before, or from the camera
+    Vec3f position = Vec3f::Zero();     // world; for the sky, the ray's direction
+    Vec3f normal = Vec3f::Zero();       // surfaces: geometric, unit
+    uint32_t object = 0, material = 0;  // numbers as in FirstHit
+    Rgb throughput = Rgb::Ones();       // of the path that arrives: what light from here counts
+    Rgb emitted = Rgb::Zero();          // counted here of what shines at the camera
+    Rgb direct = Rgb::Zero();           // of light that arrives here directly, counted
+    bool goesOn = false;                // the path was scattered; then:
+    Vec3f direction = Vec3f::Zero();    // unit, world
+    float pdf = 0;                      // of the direction, 1/sr; of a specular lobe, no density
+    bool isSpecular = false, isTransmission = false;
+};
+
+struct PathLog {
+    Ray ray;                 // the camera's
+    float filterWeight = 1;  // these factors are in the sample's radiance, but not in the steps
+    float cameraWeight = 1;
+    float filmScale = 1;
+    std::vector<PathStep> steps;
+    PathSample sample;
+};
+
+// Takes the same sample as RenderSample(), without a guide, and tells what happens to its path.
+PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
+
+}  // namespace lull

@@ -1,0 +1,70 @@
+"""Chooses a model's options inside the folds: each viewpoint is judged by a network whose options were chosen, and which was
+trained, on the others.
+
+    python3 nested.py LULL HUMAN.csv DATASET.h5... [--grid "mask 24 40 1e9; noisy-weight 1 1.4 2"] [--keep FOLDER]
+
+Options are chosen by the critical error at 2 % with recordings extended, each of the other viewpoints left out in turn. Results
+are kept in FOLDER, and what is there is not trained again.
+"""
+
+import argparse
+import csv
+import itertools
+import os
+import subprocess
+
+
+def train(o, name, *options):
+    """Returns the figures of a training by viewpoint, with recordings extended."""
+    path = os.path.join(o.keep, name + '.csv')
+    if not os.path.exists(path):
+        command = [o.lull, 'train', *o.data, '--human', o.human, '--quiet', '--threads', '1', '--csv', path + '.new', *options]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit(' '.join(command) + '\n' + done.stderr)
+        os.replace(path + '.new', path)
+    with open(path) as f:
+        rows = [r for r in csv.DictReader(f) if 'trained on' not in r['rule'] and 'at least' not in r['rule']]
+    return {r['viewpoint']: r for r in rows}
+
+
+def grid(text):
+    """Returns the combinations as lists of options."""
+    axes = [line.split() for line in text.split(';')]
+    for values in itertools.product(*(axis[1:] for axis in axes)):
+        yield [x for axis, v in zip(axes, values) for x in ('--' + axis[0], v)]
+
+
+def error(rows):
+    return float(rows['all']['critical_error_2'])
+
+
+def nested(o):
+    combinations = list(grid(o.grid))
+    name = lambda options: '_'.join(options).replace('--', '')
+    every = {name(c): train(o, 'all_' + name(c), '--cross-validate', *c) for c in combinations}
+    views = [v for v in next(iter(every.values())) if v != 'all']
+    total = []
+    for v in views:
+        best = min(combinations, key=lambda c: error(train(o, f'not_{v}_{name(c)}', '--without', v, '--cross-validate', *c)))
+        row = train(o, f'left_{v}_{name(best)}', '--leave-out', v, '-o', os.path.join(o.keep, 'model.h5'), *best)[v]
+        total.append(row)
+        print(f"{v}: {' '.join(best)}: {100 * float(row['critical_error_2']):.1f} %, early {100 * float(row['early']):.0f} %, "
+              f"late {100 * float(row['late']):.0f} %", flush=True)
+    mean = lambda key: 100 * sum(float(r[key]) for r in total) / len(total)
+    print(f"chosen inside the folds: {mean('critical_error_2'):.1f} %, early {mean('early'):.0f} %, late {mean('late'):.0f} %, "
+          f"AUC {mean('auc'):.1f}")
+    for c in sorted(combinations, key=lambda c: error(every[name(c)]))[:5]:
+        r = every[name(c)]['all']
+        print(f"chosen by all: {' '.join(c)}: {100 * float(r['critical_error_2']):.1f} %, early {100 * float(r['early']):.0f} %, "
+              f"late {100 * float(r['late']):.0f} %")
+
+
+if __name__ == '__main__':
+    p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    p.add_argument('lull'), p.add_argument('human'), p.add_argument('data', nargs='+')
+    p.add_argument('--grid', default='mask 24 40 1e9; noisy-weight 1 1.4 2; nearness 0.25 0.35 0.5')
+    p.add_argument('--keep', default='nested')
+    o = p.parse_args()
+    os.makedirs(o.keep, exist_ok=True)
+    nested(o)
