@@ -75,8 +75,9 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
     app.add_option("--external", o->external, "Images of other renderers: name,seconds,file.exr")
         ->type_name("E.csv");
-    app.add_option("-o,--output", o->output, "Beginning of the names of the files [the scene's]")
-        ->type_name("OUT");
+    app.add_option("-o,--output", o->output,
+                   "Beginning of the names of the files, or their folder\n[the scene's]")
+        ->type_name("OUT|DIR/");
     app.add_option("--report", o->report, "Write a page to look at")
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
@@ -296,7 +297,7 @@ ExitCode RunBench(Options options, Job* job) {
     RenderSettings& settings = options.render;
     SetWording(settings, job);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
-    if (options.output.empty()) options.output = SceneName(settings.scene.file) + ".bench";
+    options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
     PreparedScene prepared = Prepare(options, *job);
     CheckGuide(options.guide, *prepared.scene, settings.estimator);
     CatchInterrupts();

@@ -58,13 +58,13 @@ void CheckFiles(const CompareOptions& options, const std::vector<std::string>& r
 
 // Compares images from files.
 ExitCode CompareFiles(CompareOptions options) {
-    if (options.output.empty()) options.output = "lull";
     if (options.reference.empty() || (options.automatic.empty() && options.human.empty()))
         throw Error(
             "compare: a scene is missing, or images: --reference and --automatic or --human");
     if (!options.human.empty() && !IsImageFile(options.human))
         throw Error("--human " + options.human +
                     ": thresholds need a scene; without one, an image");
+    options.output = BeginningOfNames(options.output, "lull");
     CheckFiles(options, {}, {});
 
     std::vector<ComparedFile> files;
@@ -74,7 +74,7 @@ ExitCode CompareFiles(CompareOptions options) {
     files.push_back(ReadComparedFile(options.reference, "reference"));
 
     ComparisonReport report;
-    report.title = options.reference;
+    report.title = std::filesystem::path(options.reference).filename().string();
     report.comparison = ComparisonOf(std::move(files), options.reference, options.render.schedule);
     Measure(&report.comparison);
     WriteReport(options, report, {});
@@ -227,11 +227,11 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
     RenderSettings& settings = options.render;
     SetWording(settings, job);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
-    if (options.output.empty()) options.output = SceneName(settings.scene.file);
     if (!options.snapshots && options.reference.empty())
         throw Error(
             "compare: a reference is missing: --snapshots renders one, to the cap; "
             "--reference R.exr takes one rendered before");
+    options.output = BeginningOfNames(options.output, SceneName(settings.scene.file));
     const PreparedScene prepared = Prepare(options, *job);
     const PixelRect& region = prepared.provenance.crop;
     ComparisonReport report;

@@ -20,8 +20,9 @@ counted as the rule's.
 Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
 lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
 8-bit image that a display shows; "seams", how much more the noise jumps across the borders of
-blocks than inside (1: not at all). Images from files are .exr, or .png and .jpeg for displays, of
-which there are no linear figures. Seconds are of processors; "~" marks those that are estimated.
+blocks than inside (1: not at all). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for
+displays, of which there are no linear figures. Seconds are of processors; "~" marks those that are
+estimated.
 
 Files, beside each other:
   OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
@@ -69,8 +70,9 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->check(CLI::Range(0, 4096))
         ->needs(scene)
         ->type_name("N,N,...");
-    app.add_option("-o,--output", o->output, "Beginning of the names of the files to write")
-        ->type_name("OUT");
+    app.add_option("-o,--output", o->output,
+                   "Beginning of the names of the files to write, or their folder")
+        ->type_name("OUT|DIR/");
     app.add_option("--report", o->report, "Write a page to look at")
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";

@@ -110,7 +110,8 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     return kDone;
 }
 
-ExitCode RunJudge(const JudgeSettings& settings) {
+ExitCode RunJudge(JudgeSettings settings) {
+    if (!settings.textFile.empty()) settings.study.text = ReadStudyText(settings.textFile);
     if (settings.collect.empty())
         return settings.images.empty() ? MakeStudyOfScene(settings) : MakeStudyOfImages(settings);
     CollectAnswers(settings);

@@ -30,7 +30,10 @@ both sides, to find out who does not look.
   HUMAN.csv             mean thresholds over observers, in the format of the published ones
   HUMAN.details.csv     of each block: spread, 95 % confidence interval of the mean; of each
                         viewpoint: how far observers agree
-  HUMAN.observers.csv   of each observer: consistency, checks failed, who was left out and why
+  HUMAN.observers.csv   of each observer: consistency, checks failed, who was left out or is in
+                        doubt, and why
+  HUMAN.answers.csv     what was said one by one, for `lull evaluate --answers`; not of staircases,
+                        whose answers are half right by chance
 Files that are damaged, foreign or contradict each other are named and left out.
 
 Examples:
@@ -92,6 +95,11 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     AddStudyOptions(app, &s->study);
+    app.add_option(
+           "--text", s->textFile,
+           "Your own text, which observers read and agree to first (consent, whom to write\n"
+           "to, the task in their language): # headings, - lists, **bold**, *italics*")
+        ->type_name("TEXT.md");
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
         ->type_name("STUDY.html");
     app.add_option("--report", s->report, "With --collect: write a page that shows the answers")
@@ -107,6 +115,7 @@ void CheckJudgeOptions(const JudgeSettings& s) {
         Refuse("-o " + s.output + ": a study is a page, STUDY.html");
     if (!s.collect.empty() && !s.output.ends_with(".csv"))
         Refuse("-o " + s.output + ": collected thresholds are a table, HUMAN.csv");
+    if (!s.textFile.empty() && !s.collect.empty()) Refuse("--text is for a study that is made");
     if (!s.record.empty() && !hasScene) Refuse("--record needs a SCENE, which is rendered");
     if (s.collect.empty() && !(s.report.empty() && s.studyPage.empty()))
         Refuse("--report and --study need --collect");

@@ -9,6 +9,7 @@ namespace lull {
 struct JudgeSettings {
     RenderSettings render;
     StudySettings study;
+    std::string textFile;              // that observers read first; empty: none
     std::string images;                // the folder of another renderer's pictures; empty: none
     std::vector<std::string> collect;  // files of answers; empty: a study is made
     std::string output, name;

@@ -56,4 +56,12 @@ void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile>
     }
 }
 
+std::string BeginningOfNames(const std::string& output, const std::string& name) {
+    if (!output.ends_with('/')) return output.empty() ? name : output;
+    std::error_code error;
+    fs::create_directories(output, error);
+    if (error) throw Error(fmt::format("-o {}: {}", output, error.message()));
+    return output + name;
+}
+
 }  // namespace lull

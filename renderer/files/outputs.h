@@ -16,4 +16,9 @@ struct NamedFile {
 // Empty paths stand for none, and devices are no files.
 void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs);
 
+// Returns how the names of all results begin: `output`, or `name` if that is empty. "DIR/" stands
+// for files in the folder DIR, which is made if it is not there, whose names begin with `name`.
+// Throws Error if it cannot be made.
+std::string BeginningOfNames(const std::string& output, const std::string& name);
+
 }  // namespace lull

@@ -19,13 +19,29 @@ std::string ExtensionOf(const std::string& path) {
     return extension;
 }
 
+bool IsTiff(const std::string& path) {
+    const std::string extension = ExtensionOf(path);
+    return extension == ".tif" || extension == ".tiff";
+}
+
 bool IsDisplayFile(const std::string& path) {
     const std::string extension = ExtensionOf(path);
-    return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || IsTiff(path);
+}
+
+std::string SizeOf(const PixelRect& region) {
+    return fmt::format("{}x{} pixels", region.Width(), region.Height());
+}
+
+bool HaveOneSize(const PixelRect& a, const PixelRect& b) {
+    return a.Width() == b.Width() && a.Height() == b.Height();
 }
 
 ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
     const Image picture = ReadImage(path);
+    // Whether larger numbers in a TIFF are linear is not known.
+    if (IsTiff(path) && !std::holds_alternative<std::vector<uint8_t>>(picture.texels))
+        throw Error(path + ": of TIFF files, only those of 8 bits are compared; make it an EXR");
     ComparedFile file;
     file.region = {{0, 0}, {picture.width, picture.height}};
     file.image.name = name;
@@ -81,12 +97,16 @@ PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string
     const auto isPlaced = [](const ComparedFile& file) { return !file.image.isDisplay; };
     const auto first = std::ranges::find_if(files, isPlaced);
     const PixelRect region = first == files.end() ? files.back().region : first->region;
-    for (const ComparedFile& file : files)
-        if (isPlaced(file)
-                ? !(file.region == region)
-                : file.region.Width() != region.Width() || file.region.Height() != region.Height())
+    for (const ComparedFile& file : files) {
+        if (!HaveOneSize(file.region, region))
+            throw Error(fmt::format("{}: images of different sizes: {} has {}, {} has {}",
+                                    reference, files.front().image.name,
+                                    SizeOf(files.front().region), files.back().image.name,
+                                    SizeOf(files.back().region)));
+        if (isPlaced(file) && !(file.region == region))
             throw Error(fmt::format("{}: shows another part of the image than the {} one",
                                     reference, files.front().image.name));
+    }
     return region;
 }
 
@@ -95,9 +115,9 @@ std::string DisplayNote(const Comparison& comparison) {
     for (const ComparedImage& image : comparison.images)
         if (image.isDisplay) names += (names.empty() ? "" : ", ") + image.name;
     return names.empty() ? ""
-                         : "Pictures for displays, of 8 bits a channel: " + names +
+                         : "Pictures for displays: " + names +
                                ". They hold no radiance, so that RMSE and relMSE are left out; "
-                               "their other figures are those of the display image.";
+                               "other figures are those of the 8-bit display image.";
 }
 
 void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
@@ -120,9 +140,8 @@ void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
 
 RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region) {
     RgbImage image = ReadComparedFile(path, path).image.image;
-    if (image.width != region.Width() || image.height != region.Height())
-        throw Error(fmt::format("{}: has {}x{} pixels, not {}x{}", path, image.width, image.height,
-                                region.Width(), region.Height()));
+    if (const PixelRect own = {{0, 0}, {image.width, image.height}}; !HaveOneSize(own, region))
+        throw Error(fmt::format("{}: has {}, not {}", path, SizeOf(own), SizeOf(region)));
     return image;
 }
 
@@ -130,9 +149,10 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
                               const Comparison& comparison) {
     ComparedFile file = ReadComparedFile(path, name);
     const PixelRect& region = comparison.region;
-    if (file.image.isDisplay && file.region.Width() == region.Width() &&
-        file.region.Height() == region.Height())
-        file.region = region;
+    if (!HaveOneSize(file.region, region))
+        throw Error(fmt::format("{}: has {}, the scene's image {}", path, SizeOf(file.region),
+                                SizeOf(region)));
+    if (file.image.isDisplay) file.region = region;
     if (!(file.region == region))
         throw Error(path + ": shows another part of the image than the scene would");
     SetCosts(comparison.blocks, &file);

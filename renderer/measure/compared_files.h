@@ -11,12 +11,12 @@ struct ComparedFile {
     std::vector<float> spp;  // of each pixel; empty: not known
 };
 
-// Says whether a name is that of an image: .exr, or .png, .jpg and .jpeg, in any case.
+// Says whether a name is that of an image: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in any case.
 bool IsImageFile(const std::string& path);
 
 // Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds; or a picture
 // for displays, taken as sRGB whatever profile it has, without its alpha, whose region begins at
-// (0, 0). Throws Error.
+// (0, 0). Throws Error, also for a TIFF of more than 8 bits, which may be linear or not.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 
 // Reads an image as ReadComparedFile() does. Throws Error if it does not have the size of the

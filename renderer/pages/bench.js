@@ -37,7 +37,7 @@ function startBench(data) {
     parent.replaceChildren();
     const label = benchErrors.find(e => e[0] === error)[1];
     for (const [effort, name] of benchEfforts)
-      drawChart(parent, benchSeries(data, error, effort), {title: `${label} against ${name}`, xLabel: name, yLabel: label, logY: true, height: 420});
+      drawChart(parent, benchSeries(data, error, effort), {title: `${label} against ${name}`, xLabel: name, yLabel: label, logY: true, height: 420, endsVary: true});
     fitCharts();
   };
   byId("bench-controls").append(makeChoice("Error", benchErrors, error, v => { error = v; draw(); }));

@@ -24,21 +24,23 @@ function joinSeries(series) {
   })];
 }
 
-// Marks places on the x axis: [{x, label, colour}], labels below each other.
+const lineRow = 15;  // px that the label of a line takes
+
+// Marks places on the x axis: [{x, label, colour}], with their labels above the plot, below each other.
 function drawLines(u, lines) {
   const c = u.ctx, ratio = devicePixelRatio;
   c.save();
   c.font = `${12 * ratio}px sans-serif`;
-  lines.filter(l => isNumber(l.x)).forEach((l, i) => {
-    const x = u.valToPos(l.x, "x", true);
+  lines.forEach((l, i) => {
+    const x = u.valToPos(l.x, "x", true), top = u.bbox.top - (lines.length - i) * lineRow * ratio;
     if (x < u.bbox.left - 1 || x > u.bbox.left + u.bbox.width + 1) return;
     c.strokeStyle = c.fillStyle = l.colour;
     c.lineWidth = 1.5 * ratio;
     c.setLineDash([6 * ratio, 4 * ratio]);
-    c.beginPath(); c.moveTo(x, u.bbox.top); c.lineTo(x, u.bbox.top + u.bbox.height); c.stroke();
+    c.beginPath(); c.moveTo(x, top); c.lineTo(x, u.bbox.top + u.bbox.height); c.stroke();
     const right = x > u.bbox.left + 0.6 * u.bbox.width;
     c.textAlign = right ? "right" : "left";
-    c.fillText(l.label, x + (right ? -4 : 4) * ratio, u.bbox.top + (14 + 15 * i) * ratio);
+    c.fillText(l.label, x + (right ? -4 : 4) * ratio, top + 11 * ratio);
   });
   c.restore();
 }
@@ -52,15 +54,15 @@ function logTicks(min, max) {
       for (const d of digits) { const v = +(d + "e" + e); if (v >= min * 0.9999 && v <= max * 1.0001) found.push(v); }
     return found;
   };
-  for (const digits of [[1, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5, 7], [1, 2, 5], [1, 3]])
+  for (const digits of [[1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9], [1, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5, 7], [1, 2, 5], [1, 3]])
     if (ticks(digits).length <= 7) return ticks(digits);
   return ticks([1]);
 }
 
 const charts = [];  // [chart, element], to follow the width of the page
 
-// Draws series [{label, x, y, colour, dash, mark, line}] into `parent`. options: title, xLabel,
-// yLabel, logY, lines, height.
+// Draws series [{label, x, y, colour?, dash, mark, line}], without a colour in that of text, into `parent`. options: title, xLabel,
+// yLabel, logY, lines, height, endsVary (curves that end at different places).
 function drawChart(parent, series, options) {
   const box = make("div", {class: "chart"}, make("h3", {}, options.title));
   parent.append(box);
@@ -71,13 +73,16 @@ function drawChart(parent, series, options) {
   const isLogY = options.logY && values.length > 0;
   // A logarithmic axis needs two different ends.
   const widen = (min, max) => min === max ? [min / 1.5, max * 1.5] : [min / 1.08, max * 1.08];
-  const number = v => show(v, 3);
+  const number = v => show(v, 3), lines = (options.lines || []).filter(l => isNumber(l.x));
+  // Until somebody points at the chart, its legend has the last value of each curve, if that is where
+  // all of them end.
+  const inLegend = (u, v, s, i) => isNumber(v) ? number(v) : i != null ? "\u2013" : options.endsVary ? "" : number(u.data[s].findLast(isNumber));
   const axis = (label, size, isLog) => ({...(isLog ? {splits: (u, i, min, max) => logTicks(min, max), filter: (u, splits) => splits} : {}),
     label, size, labelSize: 20, font: "12px sans-serif", labelFont: "12px sans-serif",
-    stroke: "#333", grid: {stroke: "#e3e3e3"}, values: (u, splits) => splits.map(v => v == null ? "" : number(v))});
+    stroke: () => themeColour("--soft"), grid: {stroke: () => themeColour("--faint")}, ticks: {stroke: () => themeColour("--faint")}, values: (u, splits) => splits.map(v => v == null ? "" : number(v))});
   const plot = new uPlot({
-    width: Math.max(280, box.clientWidth || 420), height: options.height || 240,
-    cursor: {points: {size: 7}}, legend: {live: true},
+    width: Math.max(240, box.clientWidth || 420), height: (options.height || 240) + lines.length * lineRow,
+    padding: [8 + lines.length * lineRow, 12, 0, 0], cursor: {points: {size: 7}}, legend: {live: true},
     scales: {
       x: {time: false, distr: 3, range: (u, min, max) => widen(min, max)},
       y: isLogY ? {distr: 3, range: (u, min, max) => widen(min, max)} : {range: (u, min, max) => {
@@ -85,18 +90,18 @@ function drawChart(parent, series, options) {
         return low === high ? [low, low + 1] : [low, high + 0.05 * (high - low)]; }}
     },
     axes: [axis(options.xLabel, 34, true), axis(options.yLabel, 58, isLogY)],
-    series: [{label: options.xLabel, value: (u, v) => v == null ? "" : number(v)},
+    series: [{label: options.xLabel, value: inLegend},
       ...series.map(s => ({
-        label: s.label, stroke: s.colour, width: s.line === false ? 0 : 2, dash: s.dash, spanGaps: true,
-        value: (u, v) => v == null ? "" : number(v),
+        label: s.label, stroke: () => s.colour || themeColour("--ink"), width: s.line === false ? 0 : 2, dash: s.dash, spanGaps: true,
+        value: inLegend,
         points: s.mark == null ? {show: false} : {show: (u, i) => {
           const c = u.ctx, [xs, ys] = [u.data[0], u.data[i]];
-          c.save(); c.fillStyle = c.strokeStyle = s.colour; c.lineWidth = 2 * devicePixelRatio;
+          c.save(); c.fillStyle = c.strokeStyle = s.colour || themeColour("--ink"); c.lineWidth = 2 * devicePixelRatio;
           xs.forEach((x, k) => { if (isNumber(ys[k])) drawMark(u, s.mark, u.valToPos(x, "x", true), u.valToPos(ys[k], "y", true), 3.5 * devicePixelRatio); });
           c.restore();
           return false; }}
       }))],
-    hooks: {draw: [u => drawLines(u, options.lines || [])]}
+    hooks: {draw: [u => drawLines(u, lines)]}
   }, data, box);
   charts.push([plot, box]);
   return plot;
@@ -107,3 +112,4 @@ function fitCharts() {
     if (box.isConnected && box.clientWidth > 0) plot.setSize({width: box.clientWidth, height: plot.height});
 }
 addEventListener("resize", fitCharts);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach(([plot]) => plot.redraw()));

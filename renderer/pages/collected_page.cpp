@@ -1,6 +1,7 @@
 #include "renderer/pages/collected_page.h"
 
 #include "renderer/pages/html_page.h"
+#include "stopping/observers/agreement.h"
 
 namespace lull {
 
@@ -15,13 +16,18 @@ Json ConsensusJson(const BlockConsensus& b) {
             {"deviation", Number(b.deviation)},
             {"octaves", Number(b.octaves)},
             {"low", Number(b.low)},
-            {"high", Number(b.high)}};
+            {"high", Number(b.high)},
+            {"answers", b.answers}};
 }
 
 Json ViewpointJson(const CollectedViewpoint& viewpoint, const Json& study) {
     Json json = {{"name", viewpoint.name},
                  {"observers", viewpoint.observers},
+                 {"procedure", viewpoint.procedure},
                  {"agreement", Number(viewpoint.agreement)},
+                 {"inAWord", viewpoint.agreement ? AgreementInAWord(*viewpoint.agreement) : ""},
+                 {"fewestAnswers", FewestAnswers(viewpoint)},
+                 {"enoughAnswers", kEnoughAnswers},
                  {"levels", viewpoint.levels},
                  {"blocks", Json::array()}};
     for (const BlockConsensus& block : viewpoint.blocks)
@@ -47,6 +53,7 @@ Json ObserverJson(const JudgedObserver& o) {
             {"viewpoint", o.answers.viewpoint},
             {"procedure", o.answers.procedure},
             {"leftOut", o.leftOut},
+            {"doubts", o.doubts},
             {"checks", o.checks},
             {"failed", o.failed},
             {"repeats", o.repeats},

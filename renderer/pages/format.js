@@ -13,6 +13,7 @@ const showCount = v => isNumber(v) ? Math.round(v).toLocaleString("en") : "\u201
 const showShare = v => isNumber(v) ? (100 * v).toFixed(1) + "\u00a0%" : "\u2013";
 function showSeconds(v) {
   if (!isNumber(v)) return "\u2013";
+  if (v > 0 && v < 1e-3) return "<\u00a01\u00a0ms";
   if (v < 120) return show(v, 3) + "\u00a0s";
   const minutes = Math.floor(v / 60);
   const two = n => String(Math.floor(n)).padStart(2, "0");
@@ -55,8 +56,8 @@ function diverging(t) {
   const x = Math.min(1, Math.max(0, t)) * 2 - 1, end = x < 0 ? [58, 134, 200] : [224, 130, 40];
   return `rgb(${end.map(v => Math.round(247 + Math.abs(x) * (v - 247))).join(",")})`;
 }
-// Says whether black or white can be read on that colour.
-const inkOn = t => t > 0.6 ? "#000" : "#fff";
 
-// Okabe and Ito's colours, which everyone can tell apart; together with dashes and marks.
-const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9", "#7f7f7f"];
+// Okabe and Ito's colours, which everyone can tell apart; together with dashes and marks. Their black
+// is left to what is drawn in the colour of text, which the browser chooses light or dark.
+const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
+const themeColour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -177,7 +177,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     }
     NotePictureScale(film.Region().Width(), film.Region().Height(), &page);
     page["kind"] = "render";
-    page["title"] = provenance.scene;
+    page["title"] = SceneName(provenance.scene);
     page["cap"] = provenance.schedule.cap;
     page["width"] = film.Region().Width();
     page["height"] = film.Region().Height();

@@ -22,12 +22,14 @@ function chooseBlock(i) {
 document.title = `${data.title} \u2013 lull ${data.kind}`;
 byId("title").textContent = data.title;
 const p = data.provenance;
+byId("sentence").textContent = saySentence(data);
 byId("subtitle").textContent = [{render: "A render", compare: "A comparison", bench: "A bench"}[data.kind] + " by lull" + (p ? " " + p.version : ""),
-  `${data.width}\u00d7${data.height} pixels`, data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
+  `${data.width}\u00d7${data.height} pixels`, data.kind === "render" ? `stops by ${p.criterion}` : "", data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
   p ? `sampler ${[].concat(p.sampler).join(", ")}` : ""].filter(t => t).join(" \u00b7 ");
 document.body.classList.add(data.kind);
 startBench(data);
 startViewer(data);
+showTotals(data);
 showSummary(data);
 showBlocksTable(data);
 showProvenance(data);

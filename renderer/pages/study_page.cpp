@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kFormat = "lull-study";
 constexpr int kVersion = 1;
+constexpr size_t kLongestText = 100000;
 
 Json BlockJson(const StudyBlock& block) {
     Json json = RectJson(block.pixels);
@@ -81,7 +82,17 @@ std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
     std::string pictures;
     for (const std::string& script : scripts) pictures += script;
     return FillPage("judge.html", {{"study", JsonForScript(DescribeStudy(study, settings))},
+                                   {"text", JsonForScript(Json(settings.text))},
                                    {"pictures", std::move(pictures)}});
+}
+
+std::string ReadStudyText(const std::string& path) {
+    std::string text = ReadWholeFile(path);
+    if (text.empty()) throw Error(path + ": is no text, or empty");
+    if (text.size() > kLongestText)
+        throw Error(fmt::format("{}: has {} bytes; a text that observers read has at most {}", path,
+                                text.size(), kLongestText));
+    return text;
 }
 
 Json ReadStudyPage(const std::string& path) try {

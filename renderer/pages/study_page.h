@@ -17,10 +17,15 @@ struct StudySettings {
     double repeats = 0.25;  // share of the blocks that are asked twice, [0, 1]
     double catches = 0.15;  // share that checks the observer, [0, 1)
     int answers = 8;        // to each block of a staircase, > 0
+    std::string text = {};  // shown first, in Markdown; empty: nothing
 };
 
 // Returns the page, which contains everything and loads nothing.
 std::string MakeStudyPage(const Study&, const StudySettings&);
+
+// Reads a text that observers are to see first. Throws Error beginning with the path if it cannot
+// be read, is empty or is longer than anybody would read.
+std::string ReadStudyText(const std::string& path);
 
 // Returns what a study's page says of the study, with the pictures of the blocks at the last level
 // in "references", as data URIs. Throws Error beginning with the path for anything that is not such

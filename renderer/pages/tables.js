@@ -6,6 +6,7 @@ const figureNames = [["rmse", "RMSE"], ["relMse", "relMSE"], ["rmseLightness", "
 // An image that is the same as the reference has an infinite PSNR, which JSON cannot hold.
 const showFigure = (figures, name) =>
   name === "psnr" && figures && figures.psnr === null && figures.rmseLightness === 0 ? "\u221e" : show(figures && figures[name], name === "ssim" ? 5 : 4);
+const blockEnds = {stopped: "clean: its rule stopped it", cap: "went to the cap, still noisy", interrupted: "interrupted", time: "the time was up"};
 const compared = data => data.images.filter(i => i.figures);
 
 // Says how much more or fewer samples a block had than people asked for.
@@ -19,6 +20,7 @@ function showBlock(data, i) {
   const block = data.blocks[i];
   byId("block").hidden = false;
   byId("block-title").textContent = `Block ${i} (${block.width}\u00d7${block.height} pixels at ${block.x}, ${block.y})`;
+  byId("curves-title").textContent = `What was computed of block ${i}`;
   const images = data.images.filter(m => m.blocks && m.blocks[i]);
   const rows = [];
   const add = (label, has, text) => { if (images.some(m => has(m.blocks[i]))) rows.push([label, ...images.map(m => has(m.blocks[i]) ? text(m.blocks[i]) : "\u2013")]); };
@@ -29,12 +31,12 @@ function showBlock(data, i) {
   const difference = differenceToHuman(data, i);
   if (difference) rows.push(["against human", difference, ...images.slice(1).map(() => "")]);
   if (block.people) rows.push(["people, 80 of 100 times", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
-  if (block.end) rows.push(["end", {stopped: "its rule stopped it", cap: "it went to the cap", interrupted: "interrupted", time: "the time was up"}[block.end]]);
+  if (block.end) rows.push(["end", blockEnds[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
   if (block.visibleError) rows.push(["visible error, denoised", `about ${block.visibleError.estimate.toFixed(2)}, probably at most ${block.visibleError.upper.toFixed(2)}`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["would probably have stopped at", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["seconds of processors it would have needed", `~${showSeconds(block.neededSeconds)}`]);
-  byId("block-facts").replaceChildren(makeTable("", ["", ...images.map(m => m.name)], rows));
+  byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));
 
   const lines = data.images.filter(m => m.blocks && m.blocks[i] && m.name !== data.reference && isNumber(m.blocks[i].spp))
     .map((m, k) => ({x: m.blocks[i].spp, label: m.name, colour: palette[k === 0 ? 1 : 2]}));
@@ -45,7 +47,7 @@ function showBlock(data, i) {
     const d = block.decisions, learned = /^learned/.test(rule);
     drawChart(parent, [
       {label: learned ? "P(noisy)" : "value", x: d.spp, y: d.value, colour: palette[0], mark: 0},
-      {label: "threshold", x: [d.spp[0], d.spp[d.spp.length - 1]], y: [d.threshold, d.threshold], colour: palette[4], dash: [2, 4]}
+      {label: "threshold", x: d.spp, y: d.spp.map(() => d.threshold), dash: [2, 4]}
     ], {title: learned ? "Probability of noise, as the network sees it" : `What the rule compared (${rule})`,
         xLabel: "samples per pixel", yLabel: learned ? "probability" : "value", logY: !learned, yRange: learned ? [0, 1] : null, lines});
   }
@@ -57,8 +59,7 @@ function showBlock(data, i) {
     drawChart(parent, [{label: "entropy", x: c.spp, y: c.entropy, colour: palette[2], mark: 2}],
       {title: "SVD-entropy, mean of 100 sub-blocks", xLabel: "samples per pixel", yLabel: "entropy", yRange: [low - room, high + room], lines});
   }
-  if (!block.decisions && !(block.curves && block.curves.spp.length))
-    parent.append(make("p", {class: "small"}, "No curves were recorded of this block."));
+  byId("curves").hidden = !parent.children.length;
 }
 
 function showSummary(data) {
@@ -76,14 +77,6 @@ function showSummary(data) {
         ...(i.saved && i.name !== data.reference ? [showShare(i.saved.samples), (i.saved.estimated && isNumber(i.saved.seconds) ? "~" : "") + showShare(i.saved.seconds)] : ["\u2013", "\u2013"])])));
     if (seams) parent.append(make("p", {class: "small"}, "Seams: how much more the noise level jumps across borders of blocks than inside them; 1 is not at all. ~ marks what is estimated from the seconds that a block took for the samples it had."));
   }
-  const t = data.totals;
-  if (t) parent.append(makeTable("", null, [
-    ["blocks stopped", `${t.stoppedBlocks} of ${t.blocks}` + (t.blocksAtCap ? `; ${t.blocksAtCap} went to the cap` : "")], ["median", showCount(t.medianSpp) + " spp"],
-    ...(isNumber(t.neededCap) ? [["a cap that would probably do", showCount(t.neededCap) + " spp"]] : []),
-    ["samples", showCount(t.samples) + (t.samplesSaved >= 5e-4 ? `; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} everywhere` : "")],
-    ["time", `${showSeconds(t.seconds)}; of processors ${showSeconds(t.threadSeconds)}` + (t.secondsSaved >= 5e-4 ? `, about ${showShare(t.secondsSaved)} less than to the cap` : "")],
-    ["the rule took", `${showSeconds(t.criterionSeconds)} of processors, ${showShare(t.criterionSeconds / t.threadSeconds)}`],
-    ["samples rejected", showCount(t.rejectedSamples)]]));
   const h = data.againstHuman;
   if (h) parent.append(make("p", {}, `Automatic against human: ${h.earlier} blocks earlier, ${h.later} later, ${showCount(h.meanDistance)} spp apart in the mean; ${showShare(Math.abs(h.savedSamples))} ${h.savedSamples < 0 ? "more" : "fewer"} samples.`));
   const e = data.estimates;
@@ -94,18 +87,36 @@ function showSummary(data) {
   byId("summary").hidden = !parent.children.length;
 }
 
+// What a render took in all.
+function showTotals(data) {
+  const t = data.totals;
+  if (!t) return;
+  byId("totals").hidden = false;
+  byId("totals-table").append(makeTable("", null, [
+    ["clean blocks", `${t.stoppedBlocks} of ${t.blocks}`],
+    ...(t.blocksAtCap ? [["at the cap, still noisy", String(t.blocksAtCap)]] : []),
+    ...(isNumber(t.neededCap) ? [["a cap that would probably do", showCount(t.neededCap) + " spp"]] : []),
+    ["median", showCount(t.medianSpp) + " spp"],
+    ["samples", showCount(t.samples) + (t.samplesSaved >= 5e-4 ? `; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} spp everywhere` : "")],
+    ["time", showSeconds(t.seconds)],
+    ["time of processors", showSeconds(t.threadSeconds) + (t.secondsSaved >= 5e-4 ? `, about ${showShare(t.secondsSaved)} less than to the cap` : "")],
+    ["of that the rule", `${showSeconds(t.criterionSeconds)}, ${showShare(t.criterionSeconds / t.threadSeconds)}`],
+    ...(t.rejectedSamples ? [["samples rejected", showCount(t.rejectedSamples)]] : [])]));
+}
+
 function showBlocksTable(data) {
   const images = data.images.filter(i => i.blocks && i.blocks.length && i.name !== data.reference);
   if (!data.blocks.length || !images.length) return;
   byId("blocks").hidden = false;
   const head = ["block"], cells = [];
   for (const image of images) {
-    head.push(`spp of ${image.name}`);
+    head.push(data.kind === "render" ? "spp" : `spp of ${image.name}`);
     cells.push(i => showCount(image.blocks[i].spp));
     if (image.blocks[0].seconds > 0) { head.push("seconds"); cells.push(i => (image.blocks[i].estimated ? "~" : "") + show(image.blocks[i].seconds, 3)); }
     if (image.figures) for (const [name, label] of figureNames) if (name !== "rmse") { head.push(label); cells.push(i => showFigure(image.blocks[i], name)); }
   }
   if (data.againstHuman) { head.push("against human"); cells.push(i => differenceToHuman(data, i)); }
+  if (data.blocks[0].end) { head.push("end"); cells.push(i => blockEnds[data.blocks[i].end].split(/[:,]/)[0]); }
   const table = makeTable("", head, data.blocks.map((b, i) => [String(i), ...cells.map(c => c(i))]));
   [...table.tBodies[0].rows].forEach((row, i) => row.addEventListener("click", () => chooseBlock(i)));
   byId("blocks-table").append(table);

@@ -1,9 +1,15 @@
 "use strict";
-// Shows the images with the grid of blocks: one, two side by side, or two to swipe between.
+// Shows the images with the grid of blocks: one; two that take turns, that a divider parts, or that
+// are side by side.
 
-const view = {a: 0, b: 1, mode: "one", overlay: "grid", zoom: 0, swipe: 0.5, block: 0};
+const view = {a: 0, b: 1, mode: "one", overlay: "grid", zoom: 0, divide: 0.5, block: 0};
 let layers = [];  // pictures that can be shown: [{label, src, isMap}]
 const stages = [];
+let flickering = 0;  // the timer of pictures that take turns
+
+// How long each of two pictures is shown. Noise is seen best where it appears and vanishes; three
+// flashes a second and more would be a danger to some.
+const flickerMs = 500;
 
 function makeLayers(data) {
   for (const image of data.images) if (image.src) layers.push({label: image.label, src: image.src});
@@ -18,7 +24,7 @@ function overlayNumbers(data) {
     // four at the ends.
     const [a, h] = ["automatic", "human"].map(name => data.images.find(i => i.name === name).blocks);
     return {values: a.map((b, i) => b.spp - h[i].spp), places: a.map((b, i) => 0.5 + Math.log2(b.spp / h[i].spp) / 4),
-      colour: diverging, ink: () => "#000", ends: ["4 times earlier", "automatic against human: difference in samples per pixel", "4 times later"],
+      colour: diverging, ends: ["4 times earlier", "automatic against human: difference in samples per pixel", "4 times later"],
       show: v => (v > 0 ? "+" : v < 0 ? "\u2212" : "\u00b1") + Math.abs(v)};
   }
   const image = data.images.find(i => "spp:" + i.name === view.overlay);
@@ -27,8 +33,8 @@ function overlayNumbers(data) {
   const low = (data.provenance && data.provenance.pass) || Math.min(...values);
   const high = Math.max(data.cap, ...values);
   const onScale = v => high > low ? Math.log(Math.max(v, low) / low) / Math.log(high / low) : 1;
-  return {values, places: values.map(onScale), colour: viridis, ink: inkOn, show: String,
-    ends: [showCount(low), `samples per pixel of ${image.name} (logarithmic)`, showCount(high)]};
+  return {values, places: values.map(onScale), colour: viridis, show: showCount,
+    ends: [showCount(low), data.kind === "render" ? "samples per pixel (logarithmic)" : `samples per pixel of ${image.name} (logarithmic)`, showCount(high)]};
 }
 
 function drawOverlay(data, svg) {
@@ -44,8 +50,8 @@ function drawOverlay(data, svg) {
     if (numbers) {
       const t = numbers.places[i];
       cell.setAttribute("style", `fill:${numbers.colour(t)}`);
-      const size = Math.min(b.width / 4, b.height / 3, data.width / 18);
-      svg.append(cell, make("text", {x: b.x + b.width / 2, y: b.y + b.height / 2, "font-size": size, fill: numbers.ink(t)},
+      const size = Math.min(b.width / 5, b.height / 4, data.width / 30);
+      svg.append(cell, make("text", {x: b.x + b.width / 2, y: b.y + b.height / 2, "font-size": size},
         isNumber(numbers.values[i]) ? numbers.show(numbers.values[i]) : ""));
     } else svg.append(cell);
     if (view.overlay !== "none") svg.append(make("rect", {...place, class: "shadow"}), make("rect", {...place, class: "grid"}));
@@ -70,12 +76,38 @@ function moveWithKeys(data, event) {
   if (to >= 0) chooseBlock(to);
 }
 
+// Sets the place of the divider, a share of the width.
+function divideAt(share) {
+  view.divide = Math.min(1, Math.max(0, share));
+  for (const stage of stages) {
+    stage.images[1].style.clipPath = view.mode === "divide" ? `inset(0 0 0 ${100 * view.divide}%)` : "";
+    stage.divider.style.left = 100 * view.divide + "%";
+    stage.divider.setAttribute("aria-valuenow", Math.round(100 * view.divide));
+  }
+}
+
+function makeDivider(canvas) {
+  const divider = make("div", {class: "divider", role: "slider", tabindex: 0, "aria-label": "Divider between both images",
+    "aria-valuemin": 0, "aria-valuemax": 100,
+    pointerdown: e => { e.preventDefault(); divider.focus(); divider.setPointerCapture(e.pointerId); },
+    pointermove: e => {
+      if (!divider.hasPointerCapture(e.pointerId)) return;
+      const place = canvas.getBoundingClientRect();
+      divideAt((e.clientX - place.left) / place.width);
+    },
+    keydown: e => {
+      const step = {ArrowLeft: -0.02, ArrowRight: 0.02}[e.key];
+      if (step) { e.preventDefault(); divideAt(view.divide + step); }
+    }});
+  return divider;
+}
+
 function makeStage(data) {
-  const stage = {images: [make("img", {alt: ""}), make("img", {alt: ""})],
-    divider: make("div", {class: "divider"}), caption: make("figcaption"),
+  const stage = {images: [make("img", {alt: ""}), make("img", {alt: ""})], caption: make("figcaption"), canvas: make("div", {class: "canvas"}),
     svg: make("svg", {viewBox: `0 0 ${data.width} ${data.height}`, preserveAspectRatio: "none", tabindex: 0, role: "application",
       "aria-label": "Grid of blocks; arrow keys choose a block", keydown: e => moveWithKeys(data, e)})};
-  stage.canvas = make("div", {class: "canvas"}, ...stage.images, stage.divider, stage.svg);
+  stage.divider = makeDivider(stage.canvas);
+  stage.canvas.append(...stage.images, stage.svg, stage.divider);
   stage.scroller = make("div", {class: "scroller"}, stage.canvas);
   // Two stages show the same part of their images.
   stage.scroller.addEventListener("scroll", () => stages.forEach(other => {
@@ -85,31 +117,49 @@ function makeStage(data) {
   return stage;
 }
 
+// Returns how wide an image is shown: as its zoom says, or as large as the window has room for.
+function shownWidth(data, room) {
+  if (view.zoom) return data.width * view.zoom;
+  return Math.min(room, Math.max(320, 0.85 * innerHeight * data.width / data.height));
+}
+
 function showStages(data) {
-  const two = view.mode === "side", swipe = view.mode === "swipe";
+  const two = view.mode === "side", over = view.mode === "divide" || view.mode === "flicker";
   stages[1].figure.hidden = !two;
-  byId("swipe-line").hidden = !swipe;
   stages.forEach((stage, s) => {
     if (s && !two) return;
-    const lower = layers[s ? view.b : view.a], upper = swipe ? layers[view.b] : null;
+    const lower = layers[s ? view.b : view.a], upper = over ? layers[view.b] : null;
     stage.images[0].src = lower.src;
     stage.images[0].alt = lower.label;
-    stage.images[1].hidden = stage.divider.hidden = !upper;
+    stage.images[1].hidden = !upper;
+    stage.divider.hidden = view.mode !== "divide";
     if (upper) {
       stage.images[1].src = upper.src;
       stage.images[1].alt = upper.label;
-      stage.images[1].style.clipPath = `inset(0 0 0 ${100 * view.swipe}%)`;
-      stage.divider.style.left = `calc(${100 * view.swipe}% - 1px)`;
     }
-    stage.caption.textContent = upper ? `left: ${lower.label} \u00b7 right: ${upper.label}` : lower.label;
-    const room = stage.scroller.clientWidth || 600;
-    const width = view.zoom ? data.width * view.zoom : Math.min(room, Math.max(data.width, 900));
+    stage.caption.textContent = view.mode === "divide" ? `left: ${lower.label} \u00b7 right: ${upper.label}` : lower.label;
+    const width = shownWidth(data, stage.scroller.clientWidth || 600);
     stage.canvas.style.width = width + "px";
     stage.canvas.style.height = width * data.height / data.width + "px";
     stage.canvas.classList.toggle("large", width > 1.5 * data.width);
     drawOverlay(data, stage.svg);
   });
+  divideAt(view.divide);
+  takeTurns();
   showLegend(data);
+}
+
+// Lets both images take turns while that is how they are shown.
+function takeTurns() {
+  clearInterval(flickering);
+  if (view.mode !== "flicker") return;
+  const [stage] = stages;
+  const turn = () => {
+    stage.images[1].hidden = !stage.images[1].hidden;
+    stage.caption.textContent = stage.images[1].hidden ? layers[view.a].label : layers[view.b].label;
+  };
+  turn();
+  flickering = setInterval(turn, flickerMs);
 }
 
 function showLegend(data) {
@@ -141,18 +191,29 @@ function startViewer(data) {
   const update = () => { showStages(data); };
   const pictures = layers.map((l, i) => [i, l.label]);
   const overlays = [["grid", "grid"], ["none", "nothing"],
-    ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, "spp of " + i.name]),
+    ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, data.kind === "render" ? "samples per pixel" : "spp of " + i.name]),
     ...(data.againstHuman ? [["human", "difference to human"]] : [])];
+  // A render's first question is where its samples went; a comparison's, what can be seen.
+  if (data.kind === "render" && overlays[2]) view.overlay = overlays[2][0];
+  if (data.kind === "compare" && layers.length > 1) {
+    view.mode = "divide";
+    view.b = data.images.filter(i => i.src).length - 1;
+  }
   const second = makeChoice("and", pictures, view.b, v => { view.b = +v; update(); });
+  const over = makeChoice("Over it", overlays, view.overlay, v => { view.overlay = v; update(); });
   const showSecond = () => { second.hidden = view.mode === "one"; };
+  const setMode = mode => {
+    view.mode = mode;
+    if (mode === "flicker") over.querySelector("select").value = view.overlay = "none";  // it would hide the noise
+    showSecond();
+    update();
+  };
   byId("controls").append(
-    layers.length > 1 ? makeChoice("Show", [["one", "one image"], ["swipe", "two, to swipe"], ["side", "two, side by side"]], view.mode,
-      v => { view.mode = v; showSecond(); update(); }) : "",
+    layers.length > 1 ? makeChoice("Show", [["one", "one image"], ["flicker", "two, flickering"], ["divide", "two, with a divider"], ["side", "two, side by side"]], view.mode, setMode) : "",
     makeChoice("Image", pictures, view.a, v => { view.a = +v; update(); }), second,
-    data.blocks.length ? makeChoice("Over it", overlays, view.overlay, v => { view.overlay = v; update(); }) : "",
+    data.blocks.length ? over : "",
     makeChoice("Zoom", [[0, "fit"], [0.5, "50 %"], [1, "100 %"], [2, "200 %"], [4, "400 %"], [8, "800 %"]], 0, v => { view.zoom = +v; update(); }));
   showSecond();
-  byId("swipe").addEventListener("input", e => { view.swipe = e.target.value / 100; update(); });
   addEventListener("resize", update);
   update();
 }

@@ -66,6 +66,13 @@ std::optional<double> IntraclassCorrelation(std::span<const std::vector<double>>
     return (msr - mse) / whole;
 }
 
+const char* AgreementInAWord(double correlation) {
+    return correlation < 0.5    ? "poor"
+           : correlation < 0.75 ? "moderate"
+           : correlation < 0.9  ? "good"
+                                : "excellent";
+}
+
 std::optional<double> SampleDeviation(std::span<const double> values) {
     if (values.size() < 2) return {};
     const double mean = Mean(values);

@@ -20,7 +20,7 @@ constexpr int kVersion = 1;
 // Bounds on what a damaged file can ask for.
 constexpr size_t kMostBytes = size_t(1) << 26;
 constexpr int kMostBlocks = 1 << 16, kMostLevels = 1000, kMostSpp = 1 << 24;
-constexpr size_t kLongestText = 200;
+constexpr size_t kLongestText = 200, kMostTrials = 1000;
 
 [[noreturn]] void Refuse(const std::string& what) { throw std::runtime_error(what); }
 
@@ -95,9 +95,18 @@ BlockAnswer ReadAnswer(const Json& json, const ObserverAnswers& head, int blocks
         if (!failed.is_boolean()) Refuse("'failed' is neither true nor false");
         answer.failed = failed.get<bool>();
     } else if (head.procedure == "adjust") {
-        answer.spp = head.levels[size_t(GetInt(json, "level", 0, int(head.levels.size()) - 1))];
+        const int top = int(head.levels.size()) - 1, level = GetInt(json, "level", 0, top);
+        answer.spp = head.levels[size_t(level)];
+        const int start = json.contains("start") ? GetInt(json, "start", 0, top) : level;
+        for (int i = start; i < level; ++i)
+            answer.single.push_back({.spp = head.levels[size_t(i)], .seen = true});
+        // Whether there is noise in the reference nobody was asked.
+        if (level < top) answer.single.push_back({.spp = head.levels[size_t(level)]});
     } else {
         answer.spp = GetNumber(json, "spp", head.levels.front(), head.levels.back());
+        answer.octaves = GetOptional(json, "octaves");
+        if (json.contains("trials"))
+            answer.answers = int(GetArray(json, "trials", kMostTrials).size());
     }
     return answer;
 }
@@ -144,12 +153,15 @@ ObserverAnswers Read(const Json& json) {
     result.levels = ReadLevels(study);
     const int blocks = GetInt(study, "blocks", 1, kMostBlocks);
 
-    int clicks = 0;
+    int64_t clicks = 0;
     for (const Json& entry : GetArray(json, "answers", 16 * size_t(kMostBlocks))) {
         result.answers.push_back(ReadAnswer(entry, result, blocks));
-        if (result.procedure == "adjust") clicks |= GetInt(entry, "clicks", 0, 1 << 20);
+        if (result.procedure == "adjust") clicks += GetInt(entry, "clicks", 0, 1 << 20);
     }
     result.isIdle = result.procedure == "adjust" && clicks == 0;
+    result.given = int(std::min<int64_t>(clicks, kMostSpp));
+    if (result.procedure == "staircase")
+        for (const BlockAnswer& answer : result.answers) result.given += answer.answers;
     for (const Json& threshold : GetArray(json, "thresholds", kMostBlocks))
         result.thresholds.push_back(
             ToNumber(threshold, "thresholds", result.levels.front(), result.levels.back()));

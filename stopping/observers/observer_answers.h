@@ -15,11 +15,20 @@ enum class AnswerKind {
     Catch    // a check of the observer, to which the right answer is known
 };
 
+// Says whether noise was seen in a picture of so many samples per pixel.
+struct NoiseAnswer {
+    int spp = 0;
+    bool seen = false;
+};
+
 struct BlockAnswer {
     AnswerKind kind = AnswerKind::Asked;
-    int block = 0;        // row-major
-    double spp = 0;       // the threshold, within the ladder; 0 for a check
-    bool failed = false;  // of a check
+    int block = 0;                         // row-major
+    double spp = 0;                        // the threshold, within the ladder; 0 for a check
+    bool failed = false;                   // of a check
+    int answers = 1;                       // that the threshold rests on
+    std::optional<double> octaves = {};    // standard deviation of the threshold; of staircases
+    std::vector<NoiseAnswer> single = {};  // of adjustments: staircases ask for the noisier of two
 };
 
 struct ObserverAnswers {
@@ -33,6 +42,7 @@ struct ObserverAnswers {
     std::vector<BlockAnswer> answers;  // at least one for each block that is no check
     bool isIdle = false;               // the observer pointed at nothing
     double seconds = 0;                // without pauses
+    int given = 0;                     // answers in all: clicks, or trials
     std::optional<double> gamma, distanceCm;
 
     bool operator==(const ObserverAnswers& other) const;  // but for the file

@@ -15,4 +15,10 @@ std::string DetailsCsv(const Collected& collected);
 // left out and why, and how consistent each was.
 std::string ObserversCsv(const Collected& collected);
 
+// Returns what those who count said one by one, as ReadSingleAnswers() in stopping/evaluation reads
+// it and `lull evaluate --answers` takes it: of each adjustment that noise was seen at the levels
+// that were left, and none where it ended. Empty if there is none: of staircases it is known which
+// of two pictures was found noisier, half of the time by chance, and not whether noise was seen.
+std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);
+
 }  // namespace lull

@@ -1,8 +1,12 @@
 #include "stopping/observers/observers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -11,6 +15,9 @@
 namespace lull {
 
 namespace {
+
+constexpr double kQuickSeconds = 0.4;  // an answer that takes less is doubtful
+constexpr double kLooseOctaves = 1;    // and a deviation of one that is more
 
 // Moves answers for which `reasonOf` has a reason to `refused`.
 template <typename ReasonOf>
@@ -27,22 +34,39 @@ void RefuseSome(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswer
     *answers = std::move(kept);
 }
 
+std::string NameOfProcedure(const std::string& procedure) {
+    return procedure == "adjust" ? "adjustment" : procedure;
+}
+
 void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
-                        const std::string& wanted) {
-    // The study of a viewpoint is the one that most files answer, the first of them in a tie.
-    std::map<std::string, std::map<std::string, int>> counts;
-    for (const ObserverAnswers& one : *answers) ++counts[one.viewpoint][one.study];
-    std::map<std::string, std::string> chosen;
+                        const CollectOptions& options) {
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        if (!options.study.empty() && one.study != options.study) return "answers another study";
+        if (!options.procedure.empty() && one.procedure != options.procedure)
+            return "answers the study by " + NameOfProcedure(one.procedure) + ", not by " +
+                   NameOfProcedure(options.procedure);
+        return "";
+    });
+    // The study of a viewpoint is the one that most files answer, the first of them in a tie; the
+    // same pictures give other thresholds where they are asked for in another way.
+    using Asked = std::pair<std::string, std::string>;  // study and procedure
+    std::map<std::string, std::map<Asked, int>> counts;
+    for (const ObserverAnswers& one : *answers) ++counts[one.viewpoint][{one.study, one.procedure}];
+    std::map<std::string, Asked> chosen;
     for (const ObserverAnswers& one : *answers) {
-        std::string& study = chosen[one.viewpoint];
-        std::map<std::string, int>& of = counts[one.viewpoint];
-        if (study.empty() || of[one.study] > of[study]) study = one.study;
+        const Asked asked(one.study, one.procedure);
+        Asked& best = chosen.emplace(one.viewpoint, asked).first->second;
+        if (counts[one.viewpoint][asked] > counts[one.viewpoint][best]) best = asked;
     }
     RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
-        if (!wanted.empty() && one.study != wanted) return "answers another study";
-        if (wanted.empty() && one.study != chosen[one.viewpoint])
+        const auto& [study, procedure] = chosen[one.viewpoint];
+        if (one.study != study)
             return "answers another study of '" + one.viewpoint +
                    "', with other pictures, than most files do";
+        if (one.procedure != procedure)
+            return "was asked by " + NameOfProcedure(one.procedure) + ", most files of '" +
+                   one.viewpoint + "' by " + NameOfProcedure(procedure) +
+                   "; collect the two apart, as they are not the same thresholds";
         return "";
     });
     // Studies are told apart by a hash; a file whose head was changed by hand has the hash still.
@@ -94,6 +118,21 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
     });
 }
 
+// Says of answers that count what is odd about them.
+std::string DoubtsOf(const JudgedObserver& judged, double secondsEach) {
+    std::string doubts;
+    const auto add = [&](const std::string& doubt) {
+        doubts += (doubts.empty() ? "" : "; ") + doubt;
+    };
+    if (judged.failed > 0) add(fmt::format("failed {} of {} checks", judged.failed, judged.checks));
+    if (secondsEach < kQuickSeconds) add(fmt::format("took only {:.2g} s an answer", secondsEach));
+    // Two answers differ by the root of 2 more than one from the mean.
+    if (judged.repeatOctaves && *judged.repeatOctaves > kLooseOctaves)
+        add(fmt::format("asked twice, gave answers that differ by a factor of {:.1f}",
+                        std::exp2(std::numbers::sqrt2 * *judged.repeatOctaves)));
+    return doubts;
+}
+
 JudgedObserver JudgeObserver(ObserverAnswers answers, const CollectOptions& options) {
     JudgedObserver judged;
     double squares = 0;
@@ -116,6 +155,10 @@ JudgedObserver JudgeObserver(ObserverAnswers answers, const CollectOptions& opti
                          std::to_string(judged.checks) + " checks";
     else if (answers.isIdle)
         judged.leftOut = "pointed at nothing";
+    const double secondsEach = answers.seconds / std::max(1, answers.given);
+    if (judged.leftOut.empty() && secondsEach < options.leastSeconds)
+        judged.leftOut = fmt::format("took {:.2g} s an answer, in which nobody looks", secondsEach);
+    if (judged.leftOut.empty()) judged.doubts = DoubtsOf(judged, secondsEach);
     judged.answers = std::move(answers);
     return judged;
 }
@@ -140,11 +183,23 @@ BlockConsensus MakeConsensus(const std::vector<double>& spp, const std::vector<i
     return block;
 }
 
+// Adds what the staircases of the only observer say of their thresholds.
+void AddOwnConfidence(const ObserverAnswers& answers, CollectedViewpoint* viewpoint) {
+    for (const BlockAnswer& answer : answers.answers) {
+        if (answer.kind != AnswerKind::Asked || !answer.octaves) continue;
+        BlockConsensus& block = viewpoint->blocks[size_t(answer.block)];
+        const double factor = std::exp2(1.96 * std::min(20.0, std::max(0.0, *answer.octaves)));
+        block.low = std::max(double(viewpoint->levels.front()), block.mean / factor);
+        block.high = std::min(double(viewpoint->levels.back()), block.mean * factor);
+    }
+}
+
 // Makes the viewpoint of observers whose answers count, and notes how far each is from all.
 CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) {
     const ObserverAnswers& first = observers.front()->answers;
     CollectedViewpoint viewpoint{.name = first.viewpoint,
                                  .study = first.study,
+                                 .procedure = first.procedure,
                                  .levels = first.levels,
                                  .observers = int(observers.size()),
                                  .blocks = {},
@@ -158,6 +213,11 @@ CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) 
         }
         viewpoint.blocks.push_back(MakeConsensus(spp, viewpoint.levels));
     }
+    for (const JudgedObserver* o : observers)
+        for (const BlockAnswer& answer : o->answers.answers)
+            if (answer.kind != AnswerKind::Catch)
+                viewpoint.blocks[size_t(answer.block)].answers += answer.answers;
+    if (observers.size() == 1) AddOwnConfidence(first, &viewpoint);
     viewpoint.agreement = IntraclassCorrelation(logs);
     for (size_t k = 0; k < observers.size(); ++k) {
         double shift = 0;
@@ -175,7 +235,7 @@ CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) 
 
 Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOptions& options) {
     Collected collected;
-    RefuseOtherStudies(&answers, &collected.refused, options.study);
+    RefuseOtherStudies(&answers, &collected.refused, options);
     RefuseDoubles(&answers, &collected.refused);
     std::ranges::stable_sort(answers, {}, [](const ObserverAnswers& one) {
         return std::pair(one.viewpoint, one.observer);
@@ -188,6 +248,12 @@ Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOp
     for (const auto& [name, observers] : counting)
         collected.viewpoints.push_back(MakeCollected(observers));
     return collected;
+}
+
+int FewestAnswers(const CollectedViewpoint& viewpoint) {
+    int fewest = std::numeric_limits<int>::max();
+    for (const BlockConsensus& block : viewpoint.blocks) fewest = std::min(fewest, block.answers);
+    return fewest;
 }
 
 Collected CollectFiles(const std::vector<std::string>& files, const CollectOptions& options) {

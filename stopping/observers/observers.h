@@ -7,8 +7,10 @@
 namespace lull {
 
 struct CollectOptions {
-    double mostFailed = 0.25;  // share of the checks that an observer may fail
-    std::string study = {};    // the id of the only study that is taken; empty: any
+    double mostFailed = 0.25;    // share of the checks that an observer may fail
+    double leastSeconds = 0.2;   // that an answer takes in the mean; nobody looks in less
+    std::string study = {};      // the id of the only study that is taken; empty: any
+    std::string procedure = {};  // and how it has to have asked; empty: any
 };
 
 // Names what was not taken, and why.
@@ -20,6 +22,7 @@ struct RefusedAnswers {
 struct JudgedObserver {
     ObserverAnswers answers;
     std::string leftOut;  // why; empty: the answers count
+    std::string doubts;   // what a reader should know of answers that count; may be empty
     int checks = 0, failed = 0, repeats = 0;
     // Standard deviation of a single answer, from those given twice: the root of the mean of half
     // the squared differences.
@@ -32,11 +35,15 @@ struct JudgedObserver {
 struct BlockConsensus {
     double mean = 0, lowest = 0, highest = 0;
     std::optional<double> deviation, octaves;  // standard deviations over observers
-    std::optional<double> low, high;           // 95 % confidence of the mean, within the ladder
+    // 95 % confidence of the mean, within the ladder: from the spread over observers; of a single
+    // one from the staircase; else not known.
+    std::optional<double> low, high;
+    int answers = 0;  // that it rests on, of all observers
 };
 
 struct CollectedViewpoint {
     std::string name, study;  // and the study's id
+    std::string procedure;
     std::vector<int> levels;
     int observers = 0;  // whose answers count
     std::vector<BlockConsensus> blocks;
@@ -49,9 +56,16 @@ struct Collected {
     std::vector<RefusedAnswers> refused;
 };
 
+// A threshold that rests on fewer answers is rough.
+inline constexpr int kEnoughAnswers = 30;
+
+// Returns how many answers the threshold of a block rests on, at the least.
+int FewestAnswers(const CollectedViewpoint& viewpoint);
+
 // Reads files of answers and refuses those that cannot be read, answer another study than most
-// files of that viewpoint do, come twice, or contradict each other: the same session with other
-// answers (all of them), or a name that has judged the viewpoint before (the later one).
+// files of that viewpoint do, or were asked by another procedure, come twice, or contradict each
+// other: the same session with other answers (all of them), or a name that has judged the viewpoint
+// before (the later one).
 Collected CollectFiles(const std::vector<std::string>& files, const CollectOptions& options);
 
 // Does the same with answers that have been read.

@@ -107,7 +107,7 @@ TEST(Compare, TakesPicturesForDisplays) {
           "--human at20.png --reference at160.png --report r.html"}) {
         const Outcome outcome = RunLull(directory, files + names + " -o png");
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "of 8 bits a channel: ")) << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, "Pictures for displays: ")) << outcome.err;
         const Json json = directory.Read("png.compare.json"), image = json["images"][0];
         EXPECT_TRUE(Contains(json["notes"][0].get<std::string>(), "no radiance"));
         for (const Json& figures : {image["figures"], image["blocks"][0]}) {
@@ -127,6 +127,26 @@ TEST(Compare, TakesPicturesForDisplays) {
     const Json image = directory.Read("beside.compare.json")["images"][0];
     EXPECT_EQ(image["figures"]["flip"], expected["figures"]["flip"]);
     EXPECT_TRUE(image["figures"]["rmse"].is_null());
+}
+
+// Returns a grey TIFF of 64x64 pixels, each of so many bytes 128.
+std::string GreyTiff(int bytes) {
+    const auto number = [](int value, int size) {
+        std::string text;
+        for (int i = 0; i < size; ++i) text += char(value >> 8 * i & 255);
+        return text;
+    };
+    std::string file = "II" + number(42, 2) + number(8, 4) + number(8, 2);
+    for (const auto& [tag, value] : std::vector<std::pair<int, int>>{{256, 64},
+                                                                     {257, 64},
+                                                                     {258, 8 * bytes},
+                                                                     {259, 1},
+                                                                     {262, 1},
+                                                                     {273, 110},
+                                                                     {278, 64},
+                                                                     {279, 64 * 64 * bytes}})
+        file += number(tag, 2) + number(4, 2) + number(1, 4) + number(value, 4);
+    return file + number(0, 4) + std::string(size_t(64 * 64 * bytes), '\x80');
 }
 
 TEST(Compare, ReadsJpegAndGreyPictures) {
@@ -151,9 +171,19 @@ TEST(Compare, ReadsJpegAndGreyPictures) {
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     const Json figures = directory.Read("both.compare.json")["images"][0]["figures"];
     EXPECT_LT(figures["rmseLightness"], 0.5);  // a step of 8 bits, if the JPEG has rounded
+    directory.Write("grey.tif", GreyTiff(1));
+    directory.Write("large.tif", GreyTiff(2));
+    const Outcome tiff = RunLull(
+        directory, "compare --automatic grey.tif --reference grey.png -o made/here/ --block 40");
+    ASSERT_EQ(tiff.exitCode, 0) << tiff.err;
+    EXPECT_TRUE(Contains(tiff.out, "made/here/lull.compare.json\n"));
+    EXPECT_EQ(
+        directory.Read("made/here/lull.compare.json")["images"][0]["figures"]["rmseLightness"], 0);
+    ExpectFailure(directory, "compare --automatic large.tif --reference grey.png",
+                  {"large.tif", "8 bits"});
     RunLull(directory, "render scene.pbrt --spp 1 --quiet -o small.exr");
     ExpectFailure(directory, "compare --automatic small.exr --reference colour.JPG",
-                  {"colour.JPG", "another part"});
+                  {"colour.JPG", "different sizes", "64x64"});
 }
 
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
@@ -209,10 +239,11 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
         "compare scene.pbrt --block 50 --resolution 100x90 --snapshots --human human.csv:a",
         {"9 blocks", "the image has 4"});
     ExpectFailure(directory, scene + "--snapshots --stop dammertz:x", {"--stop", "'x'"}, 2);
-    ExpectFailure(directory, scene + "--reference small.exr", {"small.exr", "another part"});
+    ExpectFailure(directory, scene + "--reference small.exr", {"small.exr", "100x90 pixels"});
     ExpectFailure(directory, scene + "--snapshots -o nowhere/room", {"nowhere"});
+    ExpectFailure(directory, scene + "--snapshots -o text.exr/", {"-o text.exr/"});
     ExpectFailure(directory, "compare --automatic small.exr --reference crop.exr",
-                  {"crop.exr", "another part"});
+                  {"crop.exr", "different sizes"});
     ExpectFailure(directory, "compare --automatic small.exr --reference text.exr", {"text.exr"});
     ExpectFailure(directory, "compare --reference small.exr --human human.csv",
                   {"human.csv", "need a scene"});

@@ -12,6 +12,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import time
 
 from report_page import Browser, check
 from simulated_observer import Participant
@@ -26,6 +27,22 @@ def snapped(spp):
     return next((s for s in STEPS if s >= spp), STEPS[-1])
 
 
+def check_touch(observer):
+    """A finger taps for a step forward, and holds for one back."""
+    browser = observer.browser
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+    x, y = browser.evaluate("(() => { const r = adjustView.cells[3].noisy.cell.getBoundingClientRect();"
+                            " return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+    for seconds, step in ((0.05, "+"), (0.8, "-")):
+        browser.call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+        time.sleep(seconds)
+        browser.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        time.sleep(0.5)  # what a touch means is decided later
+        check(browser.evaluate("session.events[session.events.length - 1].slice(0, 2)") == [step, 3],
+              f"touched for {seconds} s: {step}")
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+
+
 def by_mouse(browser, page, folder):
     observer = Participant(browser, page, lambda block, kind: RULE[block])
     check(observer.levels == STEPS, "the ladder goes up by a quarter, in whole passes")
@@ -36,13 +53,28 @@ def by_mouse(browser, page, folder):
     browser.wait_for("typeof screenName === 'string' && screenName === 'welcome'")
     browser.click("#known button")
     observer.expect("task")
+    browser.evaluate(observer.time)
     check(observer.state() == before, "a reload loses nothing")
     browser.click("#undo")
     check(observer.state() != before, "undo takes the last answer back")
     observer.click_block(3)
     observer.click_block(3, back=True)
+    check_touch(observer)
+    before = browser.evaluate("session.events.length")
+    browser.evaluate("{ const now = lastEvent + 100; performance.now = () => now; }")
+    observer.click_block(3)
+    check(browser.evaluate("session.events.length") == before, "what comes within 150 ms is no answer")
+    browser.evaluate(observer.time)
+    browser.evaluate("timing.breakAfter = 0")
+    observer.click_block(3)
+    observer.expect("pause")
+    check(not browser.evaluate("byId('pause-why').hidden"), "after a while there is a break")
+    browser.evaluate(observer.time)
+    browser.click("#go-on")
+    observer.click_block(3, back=True)
     observer.key("p")
     observer.expect("pause")
+    check(browser.evaluate("byId('pause-why').hidden"), "a pause is a pause")
     browser.click("#go-on")
     browser.click("#flicker")
     check(browser.evaluate("adjustView.cells.every((c, i) => c.noisy.canvas.dataset.shows === i + '/' +"
@@ -77,7 +109,7 @@ def carelessly(browser, page, folder):
             break
         for block in range(len(RULE)):
             observer.click_block(block)
-        observer.press("#same")
+        observer.press_same()
     observer.expect("end")
     return observer.save(folder)
 
@@ -140,6 +172,16 @@ def staircase(browser, page, folder):
     return observer.save(folder)
 
 
+def guessing(browser, page, folder):
+    """Somebody who looks at nothing, and presses this or that."""
+    observer = Participant(browser, page, lambda block, kind: 0, guesses=random.Random(7))
+    observer.begin("gus")
+    observer.keys = True
+    observer.look()
+    observer.expect("end")
+    return observer.save(folder)
+
+
 def rows(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
@@ -169,6 +211,10 @@ def check_collected(lull, folder, files):
     for block, spp in enumerate(human):
         if block not in repeated:
             check(spp == snapped(RULE[block]), f"block {block}: the threshold is the rule's")
+    singles = rows(folder / "human.answers.csv")
+    check({one["noise_seen"] for one in singles} == {"0", "1"} and
+          all(one["noise_seen"] == "1" for one in singles if int(one["spp"]) < RULE[int(one["block"])]),
+          "single answers: noise is seen below the rule")
     squares = [math.log2(snapped(RULE[b] * SHIFT) / snapped(RULE[b])) ** 2 / 2 for b in repeated]
     check(float(observers["ada"]["repeat_octaves"]) == 0, "the same twice is consistent")
     check(len(squares) > 0 and abs(float(observers["bo"]["repeat_octaves"])
@@ -195,8 +241,11 @@ def main(lull, chromium, scenes):
 
         (folder / "staircase").mkdir()
         stairs = staircase(browser, folder / "stairs.html", folder / "staircase")
-        subprocess.run([lull, "judge", "--collect", stairs, "-o", "stairs.csv", "--quiet"], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL)
+        guesses = guessing(browser, folder / "stairs.html", folder / "staircase")
+        subprocess.run([lull, "judge", "--collect", stairs, guesses, "-o", "stairs.csv", "--quiet"], cwd=folder,
+                       check=True, stdout=subprocess.DEVNULL)
+        check(rows(folder / "stairs.observers.csv")[1]["reason"].startswith("failed"), "who guesses is left out")
+        check(not (folder / "stairs.answers.csv").exists(), "staircases have no single answers")
         found = [int(t) for t in (folder / "stairs.csv").read_text().strip().split(";")[1:-1]]
         print("rule", RULE, "staircase", found)
         check(rows(folder / "stairs.observers.csv")[0]["failed"] == "0", "staircase: the easy trials are right")

@@ -96,7 +96,8 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     const Outcome outcome = RunLull(
         directory, "judge --collect a.json b.json c.json d.json -o human.csv --report r.html");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "human.csv\nhuman.details.csv\nhuman.observers.csv\nr.html\n");
+    EXPECT_EQ(outcome.out,
+              "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
     EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));
     EXPECT_TRUE(Contains(outcome.err, "d.json: is no JSON, or cut short; left out"));
     EXPECT_EQ(ReadBytes(directory.File("human.csv")), "room;100;80;160;320;\n");
@@ -105,8 +106,11 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     EXPECT_TRUE(Contains(observers, "c.json,room,c,no,failed 3 of 4 checks,"));
     EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is no JSON, or cut short\","));
     const std::string details = ReadBytes(directory.File("human.details.csv"));
-    EXPECT_TRUE(Contains(details, "room,0,2,100,20,320,40,160,84.85,1.414,\n"));
+    EXPECT_TRUE(Contains(details, "room,0,2,100,20,320,40,160,84.85,1.414,,2\n"));
     EXPECT_TRUE(Contains(details, "room,all,2,"));
+    EXPECT_TRUE(Contains(outcome.err, "rest on as few as 2 answers; they are rough"));
+    EXPECT_TRUE(ReadBytes(directory.File("human.answers.csv"))
+                    .starts_with("block,spp,noise_seen\n0,40,0\n1,80,0\n"));
     EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);
 }
 
@@ -120,6 +124,7 @@ TEST(Judge, RefusesWhatDoesNotFit) {
     ExpectFailure(directory, "judge scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
     ExpectFailure(directory, "judge scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
     ExpectFailure(directory, "judge --images nowhere -o s.html", {"--images nowhere"});
+    ExpectFailure(directory, "judge scene.pbrt -o s.html --text none.md", {"none.md"});
     ExpectFailure(directory, "judge scene.pbrt -o no/such/s.html", {"no/such"});
     for (const char* usage :
          {"judge -o s.html", "judge scene.pbrt", "judge scene.pbrt -o s.csv",

@@ -158,6 +158,51 @@ def choose(browser, label, value):
         s.value = '{value}'; s.dispatchEvent(new Event('change')); }})()""")
 
 
+def check_dark(browser):
+    colour = "getComputedStyle(document.body).backgroundColor"
+    check(browser.evaluate(colour) == "rgb(255, 255, 255)", "the page is light")
+    browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    check(browser.evaluate(colour) == "rgb(22, 22, 22)", "and dark where the browser wants that")
+    browser.call("Emulation.setEmulatedMedia", features=[])
+
+
+def check_sentences(browser):
+    """What the first sentence says of a render, whose blocks have so many samples."""
+    for totals, spp, rule, sentence in (
+            ({"stoppedBlocks": 2, "blocksAtCap": 0}, [20, 40], "lnoise:1",
+             "Rendered in 5\u00a0s: all 2 blocks are clean, at 20 to 40 samples per pixel."),
+            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "lnoise:1",
+             "Rendered in 5\u00a0s: 0 of 2 blocks are clean; 2 went to the cap of 80 samples per pixel, still noisy."),
+            ({"stoppedBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
+             "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 not done when the time was up."),
+            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
+             "Rendered in 5\u00a0s: 80 samples per pixel, without looking for noise.")):
+        data = {"cap": 80, "provenance": {"criterion": rule}, "images": [{"blocks": [{"spp": s} for s in spp]}],
+                "totals": {"blocks": 2, "seconds": 5, "interrupted": False, **totals}}
+        said = browser.evaluate(f"sayRender({json.dumps(data)})")
+        check(said == sentence, "a first sentence: " + said)
+
+
+def check_two(browser):
+    """A divider that is dragged, and images that take turns."""
+    upper = "document.querySelector('.canvas img:nth-child(2)')"
+    place = browser.evaluate("(() => { const r = document.querySelector('.divider').getBoundingClientRect(),"
+                             " c = document.querySelector('.canvas').getBoundingClientRect();"
+                             " return [r.x + 12, r.y + 30, c.x + c.width / 4]; })()")
+    for kind, x in (("mousePressed", place[0]), ("mouseMoved", place[2]), ("mouseReleased", place[2])):
+        browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=place[1], button="left", buttons=1, clickCount=1)
+    check(abs(browser.evaluate("view.divide") - 0.25) < 0.01, "compare: the divider can be dragged")
+    browser.press("ArrowRight", 39)
+    check(abs(browser.evaluate("view.divide") - 0.27) < 0.01, "compare: and moved by keys")
+    check("27%" in browser.evaluate(upper + ".style.clipPath"), "compare: it parts the images")
+    choose(browser, "Show", "flicker")
+    for hidden in ("true", "false"):
+        browser.wait_for(f"{upper}.hidden === {hidden}")
+    check(browser.evaluate(upper + ".style.clipPath + view.overlay") == "none", "compare: two images take turns, with nothing over them")
+    for mode in ("side", "one"):
+        choose(browser, "Show", mode)
+
+
 def main(lull, chromium):
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory)
@@ -174,10 +219,17 @@ def main(lull, chromium):
         browser = Browser(chromium, folder / "profile")
         browser.open(folder / "render.html")
         check_blocks(browser, "render", 3)
+        check(browser.evaluate("document.title").startswith(folder.name), "render: its title is the scene")
+        check(browser.evaluate("byId('sentence').textContent").startswith("Rendered in"), "render: a sentence says what")
+        check(browser.evaluate("[...document.querySelectorAll('#block-charts .u-value')].every(v => /\\d/.test(v.textContent))"),
+              "render: legends have numbers before anybody points at them")
+        check(browser.evaluate("document.querySelectorAll('.stage:not([hidden]) svg text').length") == 6,
+              "render: the samples are over the image")
+        check_dark(browser)
+        check_sentences(browser)
         browser.open(folder / "compare.html")
+        check_two(browser)
         check_blocks(browser, "compare", 3)
-        for mode in ("swipe", "side", "one"):
-            choose(browser, "Show", mode)
         choose(browser, "Over it", "spp:human")
         check(browser.evaluate("document.querySelector('.stage svg').textContent.includes('80')"),
               "compare: the map has the samples of each block")

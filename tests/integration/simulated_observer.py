@@ -21,14 +21,21 @@ CODES = {"Enter": 13, "Tab": 9, " ": 32, "Backspace": 8, "ArrowLeft": 37, "Arrow
          "ArrowRight": 39, "ArrowDown": 40, "u": 85, "p": 80}
 
 
-class Participant:
-    """Uses the page by mouse or by keys. `threshold(block, kind)` is in spp."""
+# A person takes time to look; a program that plays one says that it did. The cross between trials is
+# not waited for.
+LOOK = """(() => { let now = lastEvent + 1e6; performance.now = () => now += %d; timing.fixation = 0; timing.breakAfter = 1e12; })()"""
 
-    def __init__(self, browser, page, threshold, keys=False, guesses=None):
+
+class Participant:
+    """Uses the page by mouse or by keys. `threshold(block, kind)` is in spp; looks last `look` ms."""
+
+    def __init__(self, browser, page, threshold, keys=False, guesses=None, look=700):
         self.browser, self.keys, self.threshold = browser, keys, threshold
         self.guesses = guesses or random.Random(1)
         self.seen = {}  # (round, block): the threshold of this time
+        self.time = LOOK % look
         browser.open(pathlib.Path(page))
+        browser.evaluate(self.time)
         self.levels, self.blocks = browser.evaluate("[study.levels, study.blocks]")
 
     def key(self, key, shift=False):
@@ -64,7 +71,23 @@ class Participant:
         else:
             self.browser.click("input[name=tones]")
         self.press("#check-form button")
+        self.practise()
         self.expect("task")
+
+    def practise(self):
+        """Does the trials that teach what noise is."""
+        self.expect("practice")
+        for _ in range(3):
+            side = self.browser.evaluate("practice.noisySide") + 1
+            self.press(f"#practice figure:nth-child({side}) button")
+            self.press("#practice-next")
+
+    def press_same(self):
+        """Says that both pictures look the same, and again when asked; goes on to the next round."""
+        self.press("#same")
+        self.press("#same")
+        if self.browser.evaluate("screenName === 'round'"):
+            self.press("#round-on")
 
     def expect(self, screen):
         self.browser.wait_for(f"screenName === '{screen}'")
@@ -132,7 +155,7 @@ class Participant:
                 self.click_block(block)
             given += max(1, len(noisy))
             if not noisy:
-                self.press("#same")
+                self.press_same()
         return self.state() is None
 
     def save(self, folder):

@@ -1,7 +1,8 @@
 "use strict";
 // Shows the whole image beside its reference, and lets the observer point at blocks.
 
-const adjustView = {block: 0, flicker: false, cells: []};
+const adjustView = {block: 0, flicker: false, isAsked: false, cells: []};
+const holdTime = 500;  // ms that a finger is held to go a step back
 
 // Says where a block is in words, for those who do not see it.
 function placeName(block) {
@@ -16,20 +17,49 @@ function makeAdjustView() {
     study.blocks.forEach((b, block) => {
       const canvas = make("canvas", {width: b.width, height: b.height, "aria-hidden": "true"});
       const cell = make(side === "noisy" ? "button" : "div", {class: "cell", "data-block": block,
-        click: e => point(block, e.shiftKey ? "-" : "+"), mouseenter: () => markBlock(block), mouseleave: () => markBlock(-1)}, canvas);
+        click: e => point(block, e.shiftKey ? "-" : "+"), contextmenu: e => e.preventDefault(), mouseenter: () => markBlock(block), mouseleave: () => markBlock(-1)}, canvas);
       if (side === "noisy") {
         cell.tabIndex = block ? -1 : 0;
         cell.setAttribute("aria-label", `Block in ${placeName(block)}`);
         cell.addEventListener("focus", () => { moveTo(block); if (cell.matches(":focus-visible")) markBlock(block); });
         cell.addEventListener("blur", () => markBlock(-1));
+        stepBackWhenHeld(cell, block);
       }
       stage.append(cell);
       (adjustView.cells[block] = adjustView.cells[block] || {})[side] = {cell, canvas};
     });
   }
   byId("noisy").addEventListener("keydown", adjustKeys);
-  byId("same").addEventListener("click", () => { addEvent("same"); say(""); });
+  byId("same").addEventListener("click", bothLookTheSame);
   byId("flicker").addEventListener("click", () => flicker());
+}
+
+// A finger has no shift key: held, it goes a step back, and is no click then.
+function stepBackWhenHeld(cell, block) {
+  let timer = 0, wasHeld = false;
+  cell.addEventListener("pointerdown", e => {
+    wasHeld = false;
+    if (e.pointerType === "touch") timer = setTimeout(() => { wasHeld = true; point(block, "-"); }, holdTime);
+  });
+  for (const end of ["pointerup", "pointercancel", "pointerleave"]) cell.addEventListener(end, () => clearTimeout(timer));
+  cell.addEventListener("click", e => { if (wasHeld) { wasHeld = false; e.stopImmediatePropagation(); } }, true);
+}
+
+// Asks once more, as this ends the round.
+function askIfSame(isAsked) {
+  adjustView.isAsked = isAsked;
+  byId("same").textContent = isAsked ? "Everywhere? Then press again" : "Both look the same";
+  byId("same").classList.toggle("asked", isAsked);
+}
+
+function bothLookTheSame() {
+  if (!adjustView.isAsked) {
+    askIfSame(true);
+    say("Everywhere? Then press again");
+  } else if (addEvent("same")) {
+    askIfSame(false);
+    say("");
+  }
 }
 
 function layOutAdjust() {
@@ -39,11 +69,14 @@ function layOutAdjust() {
     byId(side).style.width = width + "px";
     byId(side).style.height = height + "px";
   }
+  alignStages();
   study.blocks.forEach((b, block) => {
     for (const {cell} of Object.values(adjustView.cells[block]))
       Object.assign(cell.style, {left: b.x * size + "px", top: b.y * size + "px", width: b.width * size + "px", height: b.height * size + "px"});
   });
 }
+
+const alignStages = () => ["noisy", "reference"].forEach(side => alignToDisplay(byId(side)));
 
 // Frames a block on both sides: a thin line around it, as one across it would hide its noise.
 function markBlock(block) {
@@ -77,7 +110,8 @@ function adjustKeys(event) {
 
 function point(block, direction) {
   if (adjustView.flicker) flicker();
-  addEvent(direction, block);
+  askIfSame(false);
+  if (!addEvent(direction, block)) return;
   say(`${placeName(block)}: one step ${direction === "+" ? "better" : "back"}`);
 }
 
@@ -96,6 +130,7 @@ function showAdjust(state) {
   byId("progress-text").textContent = ["First look", "Second look", "Last look"][Math.min(2, state.round)] +
     `: ${session.events.filter(e => e[0] !== "same").length} answers so far`;
   byId("progress").value = Math.min(0.95, state.round / 2);
+  alignStages();
   const drawn = state.entries.map((entry, block) => {
     const level = shownLevel(study, entry);
     drawPicture(adjustView.cells[block].reference.canvas, block, top);

@@ -28,12 +28,13 @@ function pageZoom() {
 
 function showZoom() {
   byId("gamma-field").style.setProperty("--pixel", pixelSize() + "px");
-  const zoom = pageZoom(), ratio = devicePixelRatio, isWhole = Math.abs(ratio - Math.round(ratio)) < 0.01;
+  const zoom = pageZoom(), shown = Math.round(pixelSize() * devicePixelRatio);
   const off = zoom !== null && Math.abs(zoom - 1) > 0.06;
-  byId("zoom").textContent = off || !isWhole
-    ? `The page seems to be zoomed (${off ? Math.round(100 * zoom) + " %" : "one pixel of it is " + ratio.toFixed(2) + " of the display"}). Press Ctrl and 0 to set it to 100 %.`
-    : `The zoom is 100 %, as it should be; one pixel of the page is ${Math.round(ratio)} of the display.`;
-  byId("zoom").classList.toggle("warning", off || !isWhole);
+  const pixels = `a pixel of a picture is ${shown === 1 ? "one" : shown + "x" + shown} of the display, whatever its scale (${Math.round(100 * devicePixelRatio)} %)`;
+  byId("zoom").textContent = off
+    ? `The page seems to be zoomed to ${Math.round(100 * zoom)} %. Press Ctrl and 0 to set it to 100 %.`
+    : `The zoom is 100 %, as it should be; ${pixels}.`;
+  byId("zoom").classList.toggle("warning", off);
 }
 
 function showCard() {

@@ -1,8 +1,9 @@
 "use strict";
 // Shows the thresholds of people on the image, where they disagree, and who was left out:
 //   viewpoints [{name, observers, agreement, levels [], width?, height?, references? [src],
-//     places? [{x, y, width, height}], blocks [{mean, lowest, highest, deviation, octaves, low, high}]}]
-//   observers [{file, observer, viewpoint, procedure, leftOut, checks, failed, repeats,
+//     places? [{x, y, width, height}], blocks [{mean, lowest, highest, deviation, octaves, low, high, answers}],
+//     procedure, inAWord (of the agreement), fewestAnswers, enoughAnswers}]
+//   observers [{file, observer, viewpoint, procedure, leftOut, doubts, checks, failed, repeats,
 //     repeatOctaves, shiftOctaves, seconds, gamma, distanceCm}],  refused [{file, reason}]
 
 const data = JSON.parse(byId("data").textContent);
@@ -27,9 +28,9 @@ function drawViewpointOverlay(viewpoint, svg, legend, name) {
   const overlay = overlaysOf(viewpoint)[name];
   if (!overlay) return;
   viewpoint.places.forEach((p, i) => {
-    const place = overlay.places[i], size = Math.min(p.width / 4, p.height / 3, viewpoint.width / 18);
+    const place = overlay.places[i], size = Math.min(p.width / 5, p.height / 4, viewpoint.width / 30);
     svg.append(make("rect", {...p, class: "shade", style: `fill:${viridis(place)}`}),
-      make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size, fill: inkOn(place)}, overlay.values[i]));
+      make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size}, overlay.values[i]));
   });
   const stops = [...Array(17).keys()].map(i => viridis(i / 16)).join(",");
   legend.append(make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
@@ -49,20 +50,32 @@ function makePicture(viewpoint) {
   return make("div", {style: `--width:${Math.max(viewpoint.width, 600)}px`}, make("p", {class: "controls"}, make("label", {}, "Over the image ", select)), picture, legend);
 }
 
+// Intraclass correlation of the logarithms: 1 if all say the same, 0 if only chance decides.
+function sayAgreement(viewpoint) {
+  if (!isNumber(viewpoint.agreement)) return "How far observers agree cannot be told of one of them.";
+  return `Their agreement is ${viewpoint.inAWord} (intraclass correlation ${viewpoint.agreement.toFixed(2)})` +
+    (viewpoint.inAWord === "poor" ? ": these thresholds say more of the observers than of the picture." : ".");
+}
+
 function makeViewpoint(viewpoint) {
-  const rows = viewpoint.blocks.map((b, i) => [String(i), showCount(b.mean), showRange(b.low, b.high), showRange(b.lowest, b.highest), show(b.deviation, 3), showOctaves(b.octaves)]);
+  const rows = viewpoint.blocks.map((b, i) => [String(i), showCount(b.mean), showRange(b.low, b.high), showRange(b.lowest, b.highest), show(b.deviation, 3), showOctaves(b.octaves), String(b.answers)]);
   return make("section", {}, make("h2", {}, viewpoint.name),
-    make("p", {}, `${viewpoint.observers} observer${viewpoint.observers === 1 ? "" : "s"}; agreement ${isNumber(viewpoint.agreement) ? viewpoint.agreement.toFixed(2) : "\u2013"}` +
-      " (intraclass correlation of the logarithms: 1 if all say the same, 0 if only chance decides)"),
-    viewpoint.references ? makePicture(viewpoint) : make("p", {class: "hint"}, "--study STUDY.html shows the image here."),
-    make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves"], rows)));
+    make("p", {}, `${viewpoint.observers} observer${viewpoint.observers === 1 ? "" : "s"}, asked by ${viewpoint.procedure === "adjust" ? "adjustment" : "staircases"}. ` + sayAgreement(viewpoint)),
+    viewpoint.fewestAnswers < viewpoint.enoughAnswers
+      ? make("p", {}, `Thresholds of blocks rest on as few as ${viewpoint.fewestAnswers} answer${viewpoint.fewestAnswers === 1 ? "" : "s"}: they are rough with fewer than ${viewpoint.enoughAnswers}.`) : null,
+    make("div", {class: "beside"},
+      viewpoint.references ? makePicture(viewpoint) : make("p", {class: "hint"}, "--study STUDY.html shows the image here."),
+      make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows))));
 }
 
 function makeObservers() {
   const table = makeTable("", ["observer", "viewpoint", "procedure", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm", ""],
     data.observers.map(o => [o.observer, o.viewpoint, o.procedure, `${o.failed} of ${o.checks}`, String(o.repeats), showOctaves(o.repeatOctaves), showOctaves(o.shiftOctaves),
-      showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3), o.leftOut ? "left out: " + o.leftOut : ""]));
-  [...table.querySelectorAll("tbody tr")].forEach((row, i) => row.classList.toggle("left-out", data.observers[i].leftOut !== ""));
+      showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3), o.leftOut ? "left out: " + o.leftOut : o.doubts ? "counts, but " + o.doubts : ""]));
+  [...table.querySelectorAll("tbody tr")].forEach((row, i) => {
+    row.classList.toggle("left-out", data.observers[i].leftOut !== "");
+    row.lastElementChild.classList.add("words");
+  });
   return make("section", {}, make("h2", {}, "Observers"), make("div", {class: "scroll"}, table));
 }
 

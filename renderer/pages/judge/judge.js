@@ -1,34 +1,28 @@
 "use strict";
 // Leads through the screens: welcome, check of the display, the task, a pause, the end.
 
-const isStaircase = study.procedure === "staircase";
 const view = isStaircase
   ? {make: makeStaircaseView, show: showStaircase, layOut: layOutStaircase}
   : {make: makeAdjustView, show: showAdjust, layOut: layOutAdjust};
 
+const ownText = JSON.parse(byId("own-text").textContent);
 let sessions = store.load();
 let session = null;     // the one under way
 let lastEvent = 0;      // when the last answer was given, or the task went on
-let screenName = "";
+let begunWork = 0;      // when the task went on after the last pause
 
-function showScreen(name) {
-  screenName = name;
-  for (const section of document.querySelectorAll("main > section")) section.hidden = section.id !== name;
-  document.body.classList.toggle("judging", name === "task");
-  const focus = name === "task" ? document.querySelector(isStaircase ? "#left" : "#noisy .cell[tabindex='0']") : byId(name).querySelector("h1");
-  focus.focus();
-  scrollTo(0, 0);
-}
-
-function say(text) {
-  byId("said").textContent = text;
-}
-
+// Adds an answer, unless it came before anybody could have looked. Returns whether it was taken.
 function addEvent(...event) {
   const now = performance.now();
+  if (now - lastEvent < timing.shortest) return false;
+  const {round} = replay(session);
   session.events.push([...event, Math.round(now - lastEvent)]);
   lastEvent = now;
   keep();
+  if (screenName !== "task") return true;
+  if (replay(session).round !== round) showScreen("round");
+  else if (now - begunWork > timing.breakAfter) pause(true);
+  return true;
 }
 
 function undo() {
@@ -55,13 +49,15 @@ function keep() {
 function goOn() {
   showScreen("task");
   view.layOut();
-  lastEvent = performance.now();
+  lastEvent = begunWork = performance.now();
   if (!isStaircase) flicker(false);
   keep();
 }
 
-function pause() {
+function pause(isBreak) {
   store.save(sessions);
+  byId("pause-title").textContent = isBreak ? "Time for a break" : "A pause";
+  byId("pause-why").hidden = !isBreak;
   byId("paused-name").textContent = session.observer;
   showScreen("pause");
 }
@@ -71,8 +67,14 @@ function finish() {
   showScreen("end");
 }
 
-function welcome() {
+// Whoever comes reads the researcher's text first.
+function begin() {
   session = null;
+  if (ownText) showScreen("own");
+  else welcome();
+}
+
+function welcome() {
   byId("known").replaceChildren(...sessions.map(s => make("li", {},
     make("button", {type: "button", click: () => { session = s; s.finished ? finish() : goOn(); }},
       s.finished ? `The answers of ${s.observer}` : `Go on as ${s.observer}`),
@@ -80,6 +82,7 @@ function welcome() {
   byId("known-part").hidden = !sessions.length;
   byId("name").value = "";
   showScreen("welcome");
+  drawExample();
 }
 
 function enterName(event) {
@@ -98,7 +101,7 @@ function endCheck(event) {
   session = startSession(byId("name").value.trim());
   session.display = displayFacts();
   sessions.push(session);
-  goOn();
+  startPractice(goOn);
 }
 
 function taskKeys(event) {
@@ -110,7 +113,7 @@ function taskKeys(event) {
     event.preventDefault();
     if (!event.repeat) choose(event.key === "ArrowLeft" ? 0 : 1);
   } else if (event.key === "u" || event.key === "U") undo();
-  else if (event.key === "p" || event.key === "P") pause();
+  else if (event.key === "p" || event.key === "P") pause(false);
 }
 
 function start() {
@@ -120,20 +123,24 @@ function start() {
   byId("storage").hidden = store.works;
   view.make();
   makeCheck();
+  makePractice();
+  byId("minutes").textContent = guessMinutes();
+  byId("own-elements").append(...elementsOf(ownText));
+  byId("agree").addEventListener("click", welcome);
   byId("name-form").addEventListener("submit", enterName);
   byId("check-form").addEventListener("submit", endCheck);
   byId("undo").addEventListener("click", undo);
   byId("undo-end").addEventListener("click", undo);
-  byId("pause-button").addEventListener("click", pause);
+  byId("pause-button").addEventListener("click", () => pause(false));
   byId("full").addEventListener("click", () => document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen());
-  byId("go-on").addEventListener("click", goOn);
-  for (const id of ["other", "other-end"]) byId(id).addEventListener("click", welcome);
+  for (const id of ["go-on", "round-on"]) byId(id).addEventListener("click", goOn);
+  for (const id of ["other", "other-end"]) byId(id).addEventListener("click", begin);
   byId("download").addEventListener("click", () => downloadAnswers(session));
   addEventListener("keydown", taskKeys);
   addEventListener("keyup", e => { if (screenName === "task" && e.key === " ") e.preventDefault(); });
   addEventListener("resize", () => { if (screenName === "task") view.layOut(); });
-  document.addEventListener("visibilitychange", () => { if (document.hidden && screenName === "task") pause(); });
-  welcome();
+  document.addEventListener("visibilitychange", () => { if (document.hidden && screenName === "task") pause(false); });
+  begin();
 }
 
 start();

@@ -42,3 +42,19 @@ async function drawPicture(canvas, block, level) {
 // The size of a pixel of a picture in those of the page: a whole number of those of the display, as
 // anything else would blur the noise.
 const pixelSize = () => Math.max(1, Math.round(devicePixelRatio)) / devicePixelRatio;
+
+// Gives a canvas the size of a block.
+function sizeCanvas(canvas, block) {
+  const b = study.blocks[block], size = pixelSize();
+  Object.assign(canvas.style, {width: b.width * size + "px", height: b.height * size + "px"});
+}
+
+// Moves an element, which has to be positioned, to where a pixel of the display begins: between two of
+// them the browser would leave out or double a row of the picture.
+function alignToDisplay(element) {
+  element.style.left = element.style.top = "0";
+  const at = element.getBoundingClientRect();
+  const rest = v => Math.round(v * devicePixelRatio) / devicePixelRatio - v;
+  element.style.left = rest(at.left + scrollX) + "px";
+  element.style.top = rest(at.top + scrollY) + "px";
+}

@@ -5,7 +5,8 @@ function makeStaircaseView() {
   ["left", "right"].forEach((id, side) => byId(id).addEventListener("click", () => choose(side)));
 }
 
-let choosing = false;  // whether the pictures of the next trial are on their way
+let choosing = false;  // whether the pictures of the next trial are on their way, or a cross is shown
+let fixating = 0;      // the timer of that
 
 function choose(side) {
   if (!choosing) addEvent("a", side);
@@ -14,9 +15,9 @@ function choose(side) {
 function layOutStaircase() {
   const {trial} = replay(session);
   if (!trial) return;
-  const b = study.blocks[trial.block], size = pixelSize();
-  for (const id of ["left", "right"])
-    Object.assign(byId(id).firstElementChild.style, {width: b.width * size + "px", height: b.height * size + "px"});
+  const canvases = ["left", "right"].map(id => byId(id).firstElementChild);
+  for (const canvas of canvases) sizeCanvas(canvas, trial.block);
+  canvases.forEach(alignToDisplay);
 }
 
 function showStaircase(state) {
@@ -25,9 +26,14 @@ function showStaircase(state) {
   byId("progress").value = state.count / state.of;
   layOutStaircase();
   choosing = true;
-  Promise.all(["left", "right"].map((id, side) =>
-    drawPicture(byId(id).firstElementChild, trial.block, side === trial.noisySide ? trial.level : top))).then(() => {
-      choosing = false;
-      forgetPictures((block, level) => level === top);
-    });
+  clearTimeout(fixating);
+  byId("pair").classList.add("waiting");
+  const drawn = Promise.all(["left", "right"].map((id, side) =>
+    drawPicture(byId(id).firstElementChild, trial.block, side === trial.noisySide ? trial.level : top)));
+  fixating = setTimeout(() => drawn.then(() => {
+    choosing = false;
+    byId("pair").classList.remove("waiting");
+    lastEvent = performance.now();  // from here on the pictures are seen
+    forgetPictures((block, level) => level === top);
+  }), timing.fixation);
 }

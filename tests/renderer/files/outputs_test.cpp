@@ -53,5 +53,17 @@ TEST(CheckOutputs, TakesDevicesTwice) {
         CheckOutputs(std::vector<NamedFile>{{"-o", "/dev/null"}, {"--csv", "/dev/null"}}, {}));
 }
 
+TEST(BeginningOfNames, IsTheNameOrInAFolderThatIsMade) {
+    const TemporaryDirectory directory;
+    EXPECT_EQ(BeginningOfNames("", "room"), "room");
+    EXPECT_EQ(BeginningOfNames("a/b", "room"), "a/b");
+    const std::string folder = directory.File("new/deep/");
+    EXPECT_EQ(BeginningOfNames(folder, "room"), folder + "room");
+    EXPECT_TRUE(fs::is_directory(folder));
+    EXPECT_EQ(BeginningOfNames(folder, "room"), folder + "room");
+    const std::string file = directory.Write("file", "");
+    EXPECT_TRUE(Contains(ErrorOf([&] { BeginningOfNames(file + "/", "room"); }), "-o " + file));
+}
+
 }  // namespace
 }  // namespace lull

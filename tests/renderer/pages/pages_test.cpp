@@ -43,8 +43,9 @@ ComparisonReport TwoImages() {
 
 TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
     const std::string page = MakePage({{"title", "x"}});
-    for (const char* name : {"page.css", "page.js", "format.js", "charts.js", "viewer.js",
-                             "tables.js", "bench.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
+    for (const char* name :
+         {"page.css", "page.js", "format.js", "charts.js", "viewer.js", "tables.js", "bench.js",
+          "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }
@@ -197,7 +198,9 @@ TEST(PagePicture, IsOfMeansWhereTheImageIsLarge) {
     EXPECT_EQ(std::vector(picture.values.end() - 3, picture.values.end()),
               std::vector<float>({5, 6, 7}));
     RenderResult result;
-    const Json data = DataOf(MakeRenderPage({}, result, film, {}, {}, nullptr));
+    Provenance provenance;
+    provenance.scene = "a.pbrt";
+    const Json data = DataOf(MakeRenderPage(provenance, result, film, {}, {}, nullptr));
     EXPECT_EQ(data["width"], 2901);
     EXPECT_NE(data["notes"][0].get<std::string>().find("2x2"), std::string::npos);
 }
@@ -211,12 +214,14 @@ TEST(MakeRenderPage, HasCurvesAndDecisions) {
     std::vector<BlockHistory> histories(1);
     histories[0].curves = {{20}, {0.5f}, {1.5f}};
     Provenance provenance;
+    provenance.scene = "rooms/hall/scene.pbrt";
     provenance.criterion = "lnoise:2";
     provenance.schedule.cap = 100;
     const Film film({{4, 4}, {8, 8}});
     const Json data =
         DataOf(MakeRenderPage(provenance, result, film, histories, {{"odd", 2}}, nullptr));
     EXPECT_EQ(data["kind"], "render");
+    EXPECT_EQ(data["title"], "hall");
     EXPECT_EQ(data["blocks"][0]["x"], 0);
     EXPECT_EQ(data["blocks"][0]["curves"]["noise"][0], 1.5);
     EXPECT_EQ(data["blocks"][0]["decisions"]["value"][0], 1);

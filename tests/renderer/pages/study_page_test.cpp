@@ -20,9 +20,10 @@ Study TwoBlocks() {
 
 TEST(MakeStudyPage, NeedsNothingElseAndAsksForNothing) {
     const std::string page = MakeStudyPage(TwoBlocks(), {});
-    for (const char* name : {"judge.css", "random.js", "adjust.js", "quest.js", "staircase.js",
-                             "session.js", "pictures.js", "adjust_view.js", "staircase_view.js",
-                             "check.js", "judge.js", "format.js"}) {
+    for (const char* name :
+         {"judge.css", "random.js", "adjust.js", "quest.js", "staircase.js", "session.js",
+          "pictures.js", "adjust_view.js", "staircase_view.js", "practice.js", "own_text.js",
+          "screens.js", "check.js", "judge.js", "format.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_TRUE(Contains(page, std::string(EmbeddedFile(name)))) << name;
     }
@@ -52,6 +53,19 @@ TEST(MakeStudyPage, HoldsWhatPeopleAreToldAndShown) {
     ASSERT_EQ(json["references"].size(), 2u);
     EXPECT_EQ(json["references"][0],
               "data:image/png;base64," + Base64(EncodePng(DisplayPixels(6, 200), 2, 1)));
+}
+
+TEST(MakeStudyPage, ShowsAnOwnTextAndNoMarkup) {
+    const TemporaryDirectory folder;
+    const std::string text = ReadStudyText(folder.Write("t.md", "# <b>Hello</b>\n</script>"));
+    const std::string page = MakeStudyPage(TwoBlocks(), {.text = text});
+    EXPECT_TRUE(Contains(page, "\"# \\u003cb>Hello\\u003c/b>\\n\\u003c/script>\""));
+    EXPECT_EQ(ReadStudyPage(folder.Write("s.html", page))["id"], StudyId(TwoBlocks()));
+    EXPECT_TRUE(Contains(MakeStudyPage(TwoBlocks(), {}), "id=\"own-text\">\"\"</script>"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.Write("e.md", "")); }), "e.md: "));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.File("none")); }), "none: "));
+    const std::string large = folder.Write("large.md", std::string(200000, 'a'));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(large); }), "200000 bytes"));
 }
 
 TEST(ReadStudyPage, RefusesOtherPages) {

@@ -40,5 +40,12 @@ TEST(SampleDeviation, DividesByOneLess) {
     EXPECT_FALSE(SampleDeviation(std::vector<double>{1}));
 }
 
+TEST(AgreementInAWord, HasTheBoundsOfKooAndLi) {
+    EXPECT_STREQ(AgreementInAWord(-0.1), "poor");
+    EXPECT_STREQ(AgreementInAWord(0.5), "moderate");
+    EXPECT_STREQ(AgreementInAWord(0.75), "good");
+    EXPECT_STREQ(AgreementInAWord(0.9), "excellent");
+}
+
 }  // namespace
 }  // namespace lull

@@ -14,7 +14,9 @@ struct ExampleAnswers {
     std::string started = "2026-01-01T00:00:00.000Z";
     std::vector<int> levels = {1, 2, 3, 4};  // of each block, as numbers in the ladder
     std::vector<int> repeats = {};           // of the first blocks, asked again
+    std::vector<int> starts = {};            // where the first blocks began; empty: not said
     int checks = 4, failed = 0, clicks = 3;
+    double seconds = 12.5;
 
     std::string Text() const {
         static const int spp[] = {20, 40, 80, 160, 320};
@@ -26,7 +28,9 @@ struct ExampleAnswers {
                            << R"(,"kind":")" << kind << "\",";
         };
         for (size_t i = 0; i < levels.size(); ++i) {
-            add(i, "asked") << R"("level":)" << levels[i] << "}";
+            add(i, "asked") << R"("level":)" << levels[i];
+            if (i < starts.size()) answers << R"(,"start":)" << starts[i];
+            answers << "}";
             double mean = spp[levels[i]];
             if (i < repeats.size()) {
                 add(i, "repeat") << R"("level":)" << repeats[i] << "}";
@@ -40,8 +44,8 @@ struct ExampleAnswers {
              << R"(","viewpoint":")" << viewpoint << R"(","procedure":"adjust","blocks":)"
              << levels.size() << R"(,"levels":[20,40,80,160,320]},"observer":")" << observer
              << R"(","session":")" << session << R"(","seed":1,"started":")" << started
-             << R"(","finished":"2026-01-01T01:00:00.000Z","seconds":12.5,)"
-             << R"("display":{"gamma":2.2,"distanceCm":60},"thresholds":[)" << thresholds.str()
+             << R"(","finished":"2026-01-01T01:00:00.000Z","seconds":)" << seconds
+             << R"(,"display":{"gamma":2.2,"distanceCm":60},"thresholds":[)" << thresholds.str()
              << R"(],"answers":[)" << answers.str() << "]}";
         return text.str();
     }

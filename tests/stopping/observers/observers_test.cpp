@@ -128,5 +128,53 @@ TEST(CollectFiles, NamesFilesThatCannotBeRead) {
     EXPECT_TRUE(collected.viewpoints.empty());
 }
 
+TEST(CollectObservers, SaysOfWhomItDoubts) {
+    const Collected collected = Collect({{.observer = "a", .session = "1", .failed = 1},
+                                         {.observer = "b", .session = "2", .seconds = 3},
+                                         {.observer = "c", .session = "3", .seconds = 7},
+                                         {.observer = "d", .session = "4", .repeats = {4, 0}}});
+    EXPECT_EQ(collected.observers[0].doubts, "failed 1 of 4 checks");
+    EXPECT_EQ(collected.observers[1].leftOut, "took 0.12 s an answer, in which nobody looks");
+    EXPECT_EQ(collected.observers[1].doubts, "");
+    EXPECT_EQ(collected.observers[2].doubts, "took only 0.29 s an answer");
+    EXPECT_EQ(collected.observers[3].doubts,
+              "asked twice, gave answers that differ by a factor of 5.9");
+    EXPECT_EQ(collected.viewpoints.at(0).observers, 3);
+    EXPECT_EQ(collected.viewpoints[0].blocks[0].answers, 4);
+    EXPECT_EQ(FewestAnswers(collected.viewpoints[0]), 3);
+    EXPECT_EQ(Collect({{}}).observers[0].doubts, "");
+}
+
+// Thresholds of adjustment are not those of staircases, whatever the pictures.
+TEST(CollectObservers, NeverMixesProcedures) {
+    std::vector<ObserverAnswers> answers;
+    for (const char* session : {"1", "2", "3"}) {
+        answers.push_back(
+            ParseAnswers(ExampleAnswers{.observer = session, .session = session}.Text()));
+        answers.back().file = session;
+    }
+    answers[0].procedure = "staircase";
+    const Collected most = CollectObservers(answers, {});
+    EXPECT_EQ(most.viewpoints.at(0).procedure, "adjust");
+    EXPECT_EQ(most.viewpoints[0].observers, 2);
+    ExpectRefused(most, 0, "1", "was asked by staircase, most files of 'room' by adjustment");
+    const Collected wanted = CollectObservers(answers, {.procedure = "staircase"});
+    EXPECT_EQ(wanted.viewpoints.at(0).observers, 1);
+    ExpectRefused(wanted, 0, "2", "by adjustment, not by staircase");
+}
+
+TEST(CollectObservers, TakesTheConfidenceOfOneFromTheStaircase) {
+    ObserverAnswers answers = ParseAnswers(ExampleAnswers{}.Text());
+    for (BlockAnswer& answer : answers.answers) {
+        answer.octaves = 0.5;
+        answer.answers = 40;
+    }
+    const Collected collected = CollectObservers({answers}, {});
+    const BlockConsensus& block = collected.viewpoints.at(0).blocks[1];  // of 80
+    EXPECT_NEAR(block.low.value(), 80 / std::exp2(0.98), 1e-6);
+    EXPECT_NEAR(block.high.value(), 80 * std::exp2(0.98), 1e-6);
+    EXPECT_EQ(block.answers, 40);
+}
+
 }  // namespace
 }  // namespace lull
