@@ -130,6 +130,7 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings) {
     const GltfDocument document = ReadGltf(file, warnings);
     Description description;
+    description.upAxis = 1;
     description.directory = std::filesystem::path(file).parent_path().string();
     const std::vector<GltfNode> nodes = ListNodes(document);
 

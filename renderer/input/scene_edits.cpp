@@ -9,11 +9,13 @@ namespace lull {
 namespace {
 
 // Returns the transform of light space, whose +z is the top of an environment map, to the world.
-Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, double degrees) {
+Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, std::optional<int> upAxis,
+                           double degrees) {
     const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
     int axis;
     m.row(1).cwiseAbs().maxCoeff(&axis);
-    const double side = m(1, axis) < 0 ? -1 : 1;
+    double side = m(1, axis) < 0 ? -1 : 1;
+    if (upAxis) axis = *upAxis, side = 1;
     const Eigen::Vector3d up = side * Eigen::Vector3d::Unit(axis);
     // Camera space is left-handed, as pbrt's light space is. A world of the other hand sees the
     // image mirrored unless light space is mirrored as well; it is turned to where Blender has it.
@@ -46,7 +48,8 @@ void SetEnvironment(const std::string& file, double rotation, Description* descr
     light.name = "infinite";
     light.parameters.Add({ParameterType::String, "mapname", light.loc,
                           std::vector<std::string>{std::filesystem::absolute(file).string()}});
-    light.worldFromLight = WorldFromEnvironment(description->cameraFromWorld, rotation);
+    light.worldFromLight =
+        WorldFromEnvironment(description->cameraFromWorld, description->upAxis, rotation);
     description->lights.push_back(std::move(light));
 }
 

@@ -134,6 +134,14 @@ struct JsonAt {
         extension.Object();
         f(extension);
     }
+    // Calls f with what the object has for lull alone.
+    template <typename F>
+    void Extras(const F& f) const {
+        if (!Has("extras") || !value.at("extras").contains("lull")) return;
+        const JsonAt extras = Member("extras").Member("lull");
+        extras.Object();
+        f(extras);
+    }
 };
 
 void CheckUri(const JsonAt& owner) {
@@ -308,6 +316,11 @@ void CheckCamera(const JsonAt& o) {
         view.Number(name);
     for (const char* name : {"yfov", "xmag", "ymag"})
         if ((name[0] == 'y' && name[1] == 'f') == (type == "perspective")) view.Required(name);
+    o.Extras([](const JsonAt& lens) {
+        lens.Numbers("shift", 2);
+        lens.Number("lensRadius");
+        lens.Number("focusDistance");
+    });
 }
 
 void CheckImage(const JsonAt& o) {
@@ -370,6 +383,7 @@ void CheckGltfJson(const std::string& file, const json& json) {
             light.Numbers("color", 3);
             light.Number("intensity");
             light.Number("range");
+            light.Extras([](const JsonAt& e) { e.Number("radius"); });
             if (light.value.at("type") == "spot" && light.Has("spot")) {
                 light.Member("spot").Object();
                 light.Member("spot").Number("innerConeAngle");
