@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 
-#include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
@@ -188,19 +187,21 @@ PreparedScene Prepare(const Options& options, const Job& job) {
 // Says how far the comparisons are, at most once a second.
 class PointCounter {
   public:
-    PointCounter(size_t count, bool quiet) : count(count), quiet(quiet) {}
+    PointCounter(size_t count, const RenderSettings& settings)
+        : count(count), quiet(settings.quiet), talk(TalkOf(settings)) {}
     void Add() {
         const double seconds = SecondsSince(start);
         ++done;
         if (quiet || (seconds < next && done < count)) return;
         next = seconds + 10;
-        Say("lull: compared {} of {} images, {} left\n", done, count,
-            FormatDuration(seconds / double(done) * double(count - done)));
+        talk.Note(fmt::format("compared {} of {} images, {} left", done, count,
+                              FormatDuration(seconds / double(done) * double(count - done))));
     }
 
   private:
     size_t count, done = 0;
     bool quiet;
+    Talk talk;
     double next = 10;
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
@@ -235,7 +236,7 @@ void AddPoints(const Options& options, const Variant& variant, const ObservedRen
     const bool makesReference = !prepared->reference;
     const int threads = observed.result.threads;
     if (makesReference) prepared->reference = TakeWholeImage(observed).image;
-    PointCounter counter(prepared->rules.size(), options.render.quiet);
+    PointCounter counter(prepared->rules.size(), options.render);
     for (BenchPoint point : MeasurePoints(observed, prepared->rules, *prepared->reference, threads,
                                           [&] { counter.Add(); })) {
         point.sampler = NameOf(variant);
@@ -305,7 +306,7 @@ ExitCode RunBench(Options options, Job* job) {
     for (const Variant& variant : variants) {
         names.push_back(NameOf(variant));
         if (!BenchVariant(options, variant, &prepared, job, &points))
-            return SayInterrupted(CheckpointName(options, variant));
+            return SayInterrupted(options.render, CheckpointName(options, variant));
     }
     job->End();
     if (job->Rank() > 0) return kDone;

@@ -4,7 +4,6 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
-#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/compare_options.h"
 #include "renderer/commands/comparison_table.h"
@@ -28,7 +27,7 @@ namespace {
 // all files. Throws Error where one is not where it should be.
 void WriteReport(const CompareOptions& options, ComparisonReport report, ResultFiles results) {
     if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
-        Say("lull: {}\n", note);
+        TalkOf(options.render).Note(note);
         report.notes.push_back(note);
     }
     results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));
@@ -215,10 +214,11 @@ void AddImages(const CompareOptions& options, const std::vector<ObservedRule>& r
         report->estimates = JudgeEstimates(comparison.images.front(), comparison.images.back());
 }
 
-ExitCode SayInterrupted(const CheckpointOptions& checkpoint) {
-    PrintTalk("interrupted" + (checkpoint.file.empty()
-                                   ? "; nothing was written, as there is no --checkpoint"
-                                   : "; --resume goes on from " + checkpoint.file));
+ExitCode SayInterrupted(const RenderSettings& settings) {
+    const std::string& file = settings.checkpoint.file;
+    TalkOf(settings).Note("interrupted; " +
+                          (file.empty() ? "nothing was written, as there is no --checkpoint"
+                                        : "--resume goes on from " + file));
     return kInterrupted;
 }
 
@@ -258,7 +258,7 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
     job->End();
     if (!session.Leads()) return kDone;
     printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(settings.checkpoint);
+    if (result.cancelled) return SayInterrupted(settings);
 
     AddImages(options, prepared.rules,
               {session.Source(), session.Options(), session.TheFilm(), result, report.histories},

@@ -134,7 +134,7 @@ ExitCode RunDataset(const Options& options, Job* job) {
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(CheckpointName(options));
+    if (result.cancelled) return SayInterrupted(settings, CheckpointName(options));
 
     AddToDataset(viewpoint, &dataset);
     WriteFileAtomically(options.output, EncodeDataset(dataset));

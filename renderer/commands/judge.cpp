@@ -98,7 +98,7 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
         return RenderStudy(render..., &study, records ? &viewpoint : nullptr);
     });
     printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(file);
+    if (result.cancelled) return SayInterrupted(settings, file);
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
     if (records) {

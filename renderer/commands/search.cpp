@@ -93,11 +93,12 @@ ExitCode RunSearch(const TrainOptions& options) {
                                         {"the checkpoint", checkpoint.Path()}},
                  inputs);
     CheckGrid(plan, options.search, axes, SetPlanOptions);
+    const Talk talk{.isJson = options.jsonProgress};
+    const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
-    const std::vector<Trial> trials =
-        MakeTrials(plan, options.search, axes,
-                   ReadJudgedBlocks(viewpoints, plan.human, plan.without, PrintTalk),
-                   SetPlanOptions, PrintTalk);
+    const std::vector<Trial> trials = MakeTrials(
+        plan, options.search, axes, ReadJudgedBlocks(viewpoints, plan.human, plan.without, note),
+        SetPlanOptions, note);
 
     const std::string data = SearchDataText(plan, trials.front());
     std::vector<SearchResult> known;
@@ -115,11 +116,11 @@ ExitCode RunSearch(const TrainOptions& options) {
                                            [&](const std::vector<SearchResult>& results) {
                                                WriteResults(options, axes, data, results);
                                            },
-                                       .warn = PrintTalk,
+                                       .warn = note,
                                        .isCancelled = Interrupted});
     printer.Finish();
     if (outcome.cancelled) {
-        Say("lull: interrupted; --resume goes on from {}.checkpoint\n", options.csv);
+        talk.Note("interrupted; --resume goes on from " + options.csv + ".checkpoint");
         return kInterrupted;
     }
     std::filesystem::remove(options.csv + ".checkpoint");

@@ -60,8 +60,8 @@ void SetWording(const RenderSettings& settings, Job* job) {
     });
 }
 
-ExitCode SayInterrupted(const std::string& checkpoint) {
-    PrintTalk("interrupted; the same command goes on from " + checkpoint);
+ExitCode SayInterrupted(const RenderSettings& settings, const std::string& checkpoint) {
+    TalkOf(settings).Note("interrupted; the same command goes on from " + checkpoint);
     return kInterrupted;
 }
 

@@ -15,6 +15,6 @@ SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, ProgressPr
 void SetWording(const RenderSettings&, Job*);
 
 // Says that a render was interrupted, and what goes on from where.
-ExitCode SayInterrupted(const std::string& checkpoint);
+ExitCode SayInterrupted(const RenderSettings&, const std::string& checkpoint);
 
 }  // namespace lull

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/evaluation_table.h"
 #include "renderer/commands/input_files.h"
@@ -21,22 +20,25 @@ namespace lull {
 namespace {
 
 // Shows a training.
-TrainingEvents PrintTo(TrainingPrinter* printer, const BlockSplit& split, bool quiet) {
-    return {.begin =
-                [=, &split](const TrainingSamples& samples, const TrainingProgress& progress) {
-                    const auto noisy = std::ranges::count(samples.noisy, char(1));
-                    if (!quiet)
-                        Say("lull: {}{} windows of {} blocks to train on, {:.1f}% noisy\n",
-                            split.name.empty() ? "" : split.name + ": ", samples.Count(),
-                            split.training.size(), 100.0 * double(noisy) / double(samples.Count()));
-                    printer->Begin(split.name, progress);
-                },
-            .step =
-                [=](const Trainer& trainer) {
-                    if (printer->IsDue()) printer->Print(trainer.Progress());
-                },
-            .end = [=](const TrainingProgress& progress) { printer->Finish(progress); },
-            .isCancelled = Interrupted};
+TrainingEvents PrintTo(TrainingPrinter* printer, const Talk& talk, const BlockSplit& split,
+                       bool quiet) {
+    return {
+        .begin =
+            [=, &split](const TrainingSamples& samples, const TrainingProgress& progress) {
+                const auto noisy = std::ranges::count(samples.noisy, char(1));
+                if (!quiet)
+                    talk.Note(fmt::format("{}{} windows of {} blocks to train on, {:.1f}% noisy",
+                                          split.name.empty() ? "" : split.name + ": ",
+                                          samples.Count(), split.training.size(),
+                                          100.0 * double(noisy) / double(samples.Count())));
+                printer->Begin(split.name, progress);
+            },
+        .step =
+            [=](const Trainer& trainer) {
+                if (printer->IsDue()) printer->Print(trainer.Progress());
+            },
+        .end = [=](const TrainingProgress& progress) { printer->Finish(progress); },
+        .isCancelled = Interrupted};
 }
 
 ExitCode RunTrain(const TrainOptions& options) {
@@ -46,10 +48,11 @@ ExitCode RunTrain(const TrainOptions& options) {
         std::vector<NamedFile>{
             {"-o", options.output}, {"the checkpoint", checkpointName}, {"--csv", options.csv}},
         InputsOf(plan));
+    const Talk talk{.isJson = options.jsonProgress};
+    const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
-    const std::vector<JudgedBlock> blocks =
-        KeepRecordedForAll(ReadJudgedBlocks(viewpoints, plan.human, plan.without, PrintTalk),
-                           {&plan.settings, 1}, PrintTalk);
+    const std::vector<JudgedBlock> blocks = KeepRecordedForAll(
+        ReadJudgedBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
     CheckSpacing(plan.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
@@ -57,12 +60,12 @@ ExitCode RunTrain(const TrainOptions& options) {
     TrainingPrinter printer(StyleOf(options), stderr);
     CatchInterrupts();
 
-    const std::optional<TrainingResult> result =
-        TrainAll(plan, splits, &checkpoint,
-                 [&](const BlockSplit& split) { return PrintTo(&printer, split, options.quiet); });
+    const std::optional<TrainingResult> result = TrainAll(
+        plan, splits, &checkpoint,
+        [&](const BlockSplit& split) { return PrintTo(&printer, talk, split, options.quiet); });
     if (!result) {
         if (!options.quiet && !checkpoint.Path().empty())
-            Say("lull: interrupted; --resume goes on from {}\n", checkpoint.Path());
+            talk.Note("interrupted; --resume goes on from " + checkpoint.Path());
         return kInterrupted;
     }
     const JudgeOptions judge{.grid = plan.settings.n};

@@ -268,6 +268,14 @@ TEST(CommandLine, PrintsNothingButJson) {
     EXPECT_EQ(percents.back(), 100);
     EXPECT_EQ(std::ranges::adjacent_find(events), events.end()) << outcome.err;
 
+    for (const char* command : {"compare scene.pbrt --snapshots -o c", "bench scene.pbrt -o b.csv"})
+        EXPECT_GE(Count(EventsOf(RunLull(directory,
+                                         command + std::string(" --resolution 20x20 --block 20 "
+                                                               "--cap 60 --json-progress"))),
+                        "progress"),
+                  1)
+            << command;
+
     directory.Write("old.pbrt", SceneText("Shape \"sphere\" \"float radios\" [1]"));
     const std::vector<nlohmann::json> warned =
         EventsOf(RunLull(directory, "render old.pbrt --spp 2 --quiet -o i.exr --json-progress"));

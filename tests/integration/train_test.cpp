@@ -164,6 +164,7 @@ TEST(Train, SearchesAGrid) {
     directory.Write("grid.txt", "k 2 4\nfeatures H noise\nsnorm 0 1\nbatch 32 64\n");
     const Outcome outcome = RunLull(directory, kSearch + "--units 4 --epochs 2 --json-progress");
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_FALSE(Contains(outcome.err, "lull: ")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, R"("combinations":16,"remainingSeconds":)")) << outcome.err;
     const std::string csv = ReadBytes(directory.File("s.csv"));
     EXPECT_EQ(std::ranges::count(csv, '\n'), 17) << csv;

@@ -14,4 +14,14 @@ double ReachThrough(const Mat4d& transform) {
     return std::min(double(kFarthest), (double(kLongestRay) - offset) / (4 * scale));
 }
 
+bool IsInvertibleInFloats(const Mat4d& transform) {
+    const auto linear = transform.topLeftCorner<3, 3>();
+    const Eigen::Array3d lengths = linear.colwise().norm();
+    const double determinant = std::abs(linear.determinant()), product = lengths.prod();
+    const double least = std::min(determinant, product / lengths.maxCoeff());
+    const double greatest = std::max(determinant, product / lengths.minCoeff());
+    return least >= double(std::numeric_limits<float>::min()) &&
+           greatest <= double(std::numeric_limits<float>::max());
+}
+
 }  // namespace lull

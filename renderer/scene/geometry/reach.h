@@ -24,4 +24,8 @@ double Farthest(const Bounds3f& box);
 // transform, an affine one; kFarthest at most. It may be negative.
 double ReachThrough(const Mat4d& transform);
 
+// Says whether an affine transform can be inverted by Cramer's rule in floats, as Embree does: the
+// products of two and of three lengths are floats.
+bool IsInvertibleInFloats(const Mat4d& transform);
+
 }  // namespace lull

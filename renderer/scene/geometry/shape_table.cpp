@@ -111,10 +111,10 @@ void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
     for (size_t i = 0; i < instances.size(); ++i) {
         if (instances[i].motion >= 0) continue;
         const double through = ReachThrough(instances[i].instanceFromWorld);
-        if (!(through >= Farthest(bounds)))
+        if (!(through >= Farthest(bounds)) || !IsInvertibleInFloats(instances[i].worldFromInstance))
             throw Error(placesOfInstances[i],
-                        "the instance's transform shrinks so much that no ray could be followed "
-                        "into it; give the object itself a smaller size");
+                        "the instance's transform changes sizes so much that no ray could be "
+                        "followed into it; give the object itself another size");
         reach = std::min(reach, float(through));
     }
 }
