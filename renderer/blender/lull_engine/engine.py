@@ -156,8 +156,8 @@ class _Job:
                     what["stoppedBlocks"], what["blocks"], what["medianSpp"],
                     "at most " if what.get("remainingIsUpperBound") else "",
                     _duration(what["remainingSeconds"])))
-            elif kind == "warning":
-                self.engine.report({'WARNING'}, "lull: " + what)
+            elif kind in ("warning", "note"):
+                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
                 _set(result.layers[0].passes["Combined"], view)
                 self.engine.update_result(result)

@@ -36,7 +36,7 @@ def run(command, stopped):
 
 class Render:
     """A render of lull: `for kind, what in render.events(stopped)` gives
-    ("progress", {...}), ("warning", text), ("show", (x, y, channels)) and ("idle", None), until the
+    ("progress", {...}), ("warning", text), ("note", text), ("show", (x, y, channels)) and ("idle", None), until the
     program has ended; then `code` is its exit code. When `stopped` returns true it is told to end
     with what it has."""
 
@@ -95,7 +95,7 @@ class Render:
             if kind == "error":
                 self.errors.append(event["message"])
             elif kind in ("warning", "note"):
-                yield "warning", event["message"]
+                yield kind, event["message"].removeprefix("warning: ")
             elif kind == "progress":
                 yield "progress", event
 

@@ -52,7 +52,9 @@ if o.plots:
     figure, axes = plt.subplots()
     for name, picture in pictures.items():
         axes.plot(picture.seconds, error(picture.image), "o", label=name)
-    axes.set(xlabel="seconds", ylabel="RMSE of lightness", xscale="log", yscale="log")
+    axes.set(xlabel="seconds", ylabel="RMSE of lightness")
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
     axes.legend()
     figure.savefig(o.plots / "error.png")
 

@@ -65,7 +65,7 @@ def run(command, inputs, given, progress=None):
                         break
                     event = _event(line)
                     if event["event"] == "warning":
-                        warnings.warn(event["message"], stacklevel=3)
+                        warnings.warn(event["message"].removeprefix("warning: "), stacklevel=3)
                     elif event["event"] == "error":
                         said.append(event["message"])
                     last = event
