@@ -35,8 +35,8 @@ def run(command, stopped):
 
 
 class Render:
-    """A render of lull: `for kind, what in render.events(stopped)` gives
-    ("progress", {...}), ("warning", text), ("note", text), ("show", (x, y, channels)) and ("idle", None), until the
+    """A render of lull: `for kind, what in render.events(stopped)` gives ("progress", {...}),
+    ("warning", text), ("note", text), ("show", (x, y, channels)) and ("idle", None), until the
     program has ended; then `code` is its exit code. When `stopped` returns true it is told to end
     with what it has."""
 
