@@ -122,7 +122,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         app.add_option(
                "--environment", options->environment,
                "Surround the scene by this latitude-longitude image of radiance instead of\n"
-               "what surrounded it; its top is where the camera's up nearly is")
+               "what surrounded it; its top is glTF's +y, or where the camera's up nearly is")
             ->type_name("FILE.exr|.hdr");
     app.add_option("--environment-rotation", options->environmentRotation,
                    "Turn it by so many degrees, counterclockwise as seen from the top")

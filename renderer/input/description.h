@@ -162,6 +162,7 @@ struct Description {
     Mat4d cameraFromWorld = Mat4d::Identity();
     std::optional<TransformPair> movingCameraFromWorld;  // where the camera moves
     std::array<double, 2> transformTimes = {0, 1};       // in units of the camera's shutter times
+    std::optional<int> upAxis;  // of the world's x, y, z, where the file's format says so
 
     std::vector<MediumEntity> media;  // none where the integrator does not see them
     int cameraMedium = -1;            // around the camera; -1: vacuum

@@ -159,6 +159,7 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
         warnings.Add(document.At("/animations"),
                      "the scene is shown as the file stands; --frame SECONDS poses its animation");
     Description description;
+    description.upAxis = 1;
     description.directory = std::filesystem::path(file).parent_path().string();
     const std::vector<GltfNode> nodes = ListNodes(document);
 

@@ -8,8 +8,9 @@
 namespace lull {
 namespace {
 
-// Returns the axis of the world that is nearest to the camera's up.
-Eigen::Vector3d UpOf(const Eigen::Matrix3d& cameraFromWorld) {
+// Returns the axis that is up, or where it is not known that which is nearest to the camera's up.
+Eigen::Vector3d UpOf(const Eigen::Matrix3d& cameraFromWorld, std::optional<int> upAxis) {
+    if (upAxis) return Eigen::Vector3d::Unit(*upAxis);
     int axis;
     cameraFromWorld.row(1).cwiseAbs().maxCoeff(&axis);
     return (cameraFromWorld(1, axis) < 0 ? -1. : 1.) * Eigen::Vector3d::Unit(axis);
@@ -19,7 +20,7 @@ Eigen::Vector3d UpOf(const Eigen::Matrix3d& cameraFromWorld) {
 // +y to its right.
 Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
     const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
-    const Eigen::Vector3d up = UpOf(m);
+    const Eigen::Vector3d up = UpOf(m, {});
     Eigen::Vector3d right = m.row(0).transpose();
     right = (right - right.dot(up) * up).normalized();
     Eigen::Vector3d back = up.cross(right);
@@ -32,9 +33,10 @@ Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
 }
 
 // Returns the transform of light space, whose +z is the top of an environment map, to the world.
-Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, double degrees) {
+Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, std::optional<int> upAxis,
+                           double degrees) {
     const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
-    const Eigen::Vector3d up = UpOf(m);
+    const Eigen::Vector3d up = UpOf(m, upAxis);
     int axis;
     up.cwiseAbs().maxCoeff(&axis);
     // Camera space is left-handed, as pbrt's light space is. A world of the other hand sees the
@@ -68,7 +70,8 @@ void SetEnvironment(const std::string& file, double rotation, Description* descr
     light.name = "infinite";
     light.parameters.Add({ParameterType::String, "mapname", light.loc,
                           std::vector<std::string>{std::filesystem::absolute(file).string()}});
-    light.worldFromLight = WorldFromEnvironment(description->cameraFromWorld, rotation);
+    light.worldFromLight =
+        WorldFromEnvironment(description->cameraFromWorld, description->upAxis, rotation);
     description->lights.push_back(std::move(light));
 }
 

@@ -1,4 +1,4 @@
-// The Python module `lull`: the C interface with numpy arrays and exceptions.
+// What the Python module `lull` has of stopping: the C interface with numpy arrays and exceptions.
 #include <lull/stopping.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -223,7 +223,7 @@ std::optional<double> Known(double value) {
 
 }  // namespace
 
-PYBIND11_MODULE(lull, module) {
+PYBIND11_MODULE(_stopping, module) {
     using namespace py::literals;
     module.doc() =
         "Says when a picture that is being rendered has had enough samples.\n\n"

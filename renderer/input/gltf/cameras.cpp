@@ -69,6 +69,22 @@ void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* 
     SetFilm(aspect, loc, description);
 }
 
+// Sets what glTF's cameras lack, from `extras`: the window moved by shares of the image's sides,
+// and a thin lens.
+void SetLens(const tinygltf::Value& extras, const FileLoc& loc, Description* description) {
+    if (!extras.Has("lull")) return;
+    const tinygltf::Value& lens = extras.Get("lull");
+    const ParameterWriter write(&description->camera.parameters, loc);
+    const auto number = [](const tinygltf::Value& value) {
+        return float(value.GetNumberAsDouble());
+    };
+    if (lens.Has("shift"))
+        write.Floats(ParameterType::Float, "screenshift",
+                     {number(lens.Get("shift").Get(0)), number(lens.Get("shift").Get(1))});
+    if (lens.Has("lensRadius")) write.Float("lensradius", number(lens.Get("lensRadius")));
+    if (lens.Has("focusDistance")) write.Float("focaldistance", number(lens.Get("focusDistance")));
+}
+
 void LookThrough(const GltfDocument& document, const View& view, Description* description) {
     const auto index = size_t(view.camera - document.model.cameras.data());
     const FileLoc loc = document.At(fmt::format("/cameras/{}", index));
@@ -89,6 +105,7 @@ void LookThrough(const GltfDocument& document, const View& view, Description* de
         if (!(p.aspectRatio >= 0)) throw Error(loc, "aspectRatio has to be positive");
         SetPerspective(p.yfov, p.aspectRatio > 0 ? p.aspectRatio : kDefaultAspect, loc,
                        description);
+        SetLens(view.camera->extras, loc, description);
         return;
     }
     const double x = std::abs(view.camera->orthographic.xmag);
@@ -98,6 +115,7 @@ void LookThrough(const GltfDocument& document, const View& view, Description* de
     ParameterWriter(&description->camera.parameters, loc)
         .Floats(ParameterType::Float, "screenwindow", {float(-x), float(x), float(-y), float(y)});
     SetFilm(x / y, loc, description);
+    SetLens(view.camera->extras, loc, description);
 }
 
 }  // namespace

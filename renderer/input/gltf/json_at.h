@@ -130,6 +130,14 @@ struct JsonAt {
         extension.Object();
         f(extension);
     }
+    // Calls f with what the object has for lull alone.
+    template <typename F>
+    void Extras(const F& f) const {
+        if (!Has("extras") || !value.at("extras").contains("lull")) return;
+        const JsonAt extras = Member("extras").Member("lull");
+        extras.Object();
+        f(extras);
+    }
 };
 
 }  // namespace lull

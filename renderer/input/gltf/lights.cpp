@@ -2,9 +2,42 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "renderer/input/gltf/parameters.h"
 
 namespace lull {
+namespace {
+
+// Adds a point light that `extras` give a radius: a sphere that emits evenly, and reflects nothing.
+void AddSphere(const Rgb& intensity, double radius, const Mat4d& worldFromLight, const FileLoc& loc,
+               Description* description) {
+    MaterialEntity black;
+    black.name = "matte";
+    black.loc = loc;
+    ParameterWriter(&black.parameters, loc).Spectrum("Kd", Rgb::Zero());
+    ShapeEntity sphere;
+    sphere.name = "sphere";
+    sphere.loc = loc;
+    sphere.worldFromObject = worldFromLight;
+    sphere.material = int(description->materials.size());
+    ParameterWriter(&sphere.parameters, loc).Float("radius", radius);
+    sphere.areaLight = Entity{"diffuse", {}, loc};
+    ParameterWriter(&sphere.areaLight->parameters, loc)
+        .Spectrum("L", intensity / float(std::numbers::pi * radius * radius));
+    description->materials.push_back(std::move(black));
+    description->shapes.push_back(std::move(sphere));
+}
+
+// Returns the radius of a light that is lull's own to know, 0 for none.
+double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
+    if (!light.extras.Has("lull") || !light.extras.Get("lull").Has("radius")) return 0;
+    const double radius = light.extras.Get("lull").Get("radius").GetNumberAsDouble();
+    if (!(radius >= 0)) throw Error(loc, "its radius is negative");
+    return radius;
+}
+
+}  // namespace
 
 void AddLight(const GltfDocument& document, const GltfNode& node, Description* description,
               Warnings& warnings) {
@@ -31,6 +64,8 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
     const Rgb strength = color.max(0.f) * float(light.intensity / kLumensPerWatt);
+    if (const double radius = RadiusOf(light, loc); radius > 0 && light.type == "point")
+        return AddSphere(strength, radius, rigid, loc, description);
     if (light.type == "directional") {
         entity.name = "distant";
         write.Spectrum("L", strength);

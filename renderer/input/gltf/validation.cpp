@@ -227,6 +227,11 @@ void CheckCamera(const JsonAt& o) {
         view.Number(name);
     for (const char* name : {"yfov", "xmag", "ymag"})
         if ((name[0] == 'y' && name[1] == 'f') == (type == "perspective")) view.Required(name);
+    o.Extras([](const JsonAt& lens) {
+        lens.Numbers("shift", 2);
+        lens.Number("lensRadius");
+        lens.Number("focusDistance");
+    });
 }
 
 void CheckImage(const JsonAt& o) {
@@ -289,6 +294,7 @@ void CheckGltfJson(const std::string& file, const json& json) {
             light.Numbers("color", 3);
             light.Number("intensity");
             light.Number("range");
+            light.Extras([](const JsonAt& e) { e.Number("radius"); });
             if (light.value.at("type") == "spot" && light.Has("spot")) {
                 light.Member("spot").Object();
                 light.Member("spot").Number("innerConeAngle");

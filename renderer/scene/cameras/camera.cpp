@@ -88,6 +88,12 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
             throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
         std::copy(window.begin(), window.end(), screen.begin());
     }
+    // lull's own: moves the window by shares of its width and height, right and up.
+    if (const auto shift = params.GetFloats(ParameterType::Float, "screenshift"); !shift.empty()) {
+        if (shift.size() != 2) throw Error(entity.loc, "\"screenshift\" needs two values: x y");
+        const float x = shift[0] * (screen[1] - screen[0]), y = shift[1] * (screen[3] - screen[2]);
+        screen = {screen[0] + x, screen[1] + x, screen[2] + y, screen[3] + y};
+    }
     return screen;
 }
 

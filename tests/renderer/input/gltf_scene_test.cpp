@@ -170,6 +170,22 @@ TEST(GltfCameras, FillThePictureFromAnywhere) {
         }
 }
 
+TEST(GltfCameras, HaveLensesOfOurOwn) {
+    GltfFile file = WithCameras();
+    file.root["cameras"][0]["extras"] = {
+        {"lull", {{"shift", {0.25, -0.5}}, {"lensRadius", 0.125}, {"focusDistance", 3}}}};
+    const Parameters camera = kFolder.Parse(file).camera.parameters;
+    ExpectNear(FloatsOf(kFolder.Parse(file).camera, ParameterType::Float, "screenshift"),
+               {0.25f, -0.5f}, 0);
+    EXPECT_EQ(camera.GetFloat("lensradius", 0), 0.125f);
+    EXPECT_EQ(camera.GetFloat("focaldistance", 0), 3);
+    file.root["cameras"][0]["extras"] = {{"lull", {{"shift", 1}}}};
+    EXPECT_EQ(kFolder.ErrorOf(file),
+              "scene.gltf: /cameras/0/extras/lull/shift: has to be an array of 2 numbers");
+    file.root["cameras"][0]["extras"] = {{"somebody", "else's"}};
+    EXPECT_EQ(kFolder.ErrorOf(file), "");
+}
+
 TEST(GltfLights, AreTakenFromPhotometricUnits) {
     GltfFile file;
     file.root["extensions"] = {
@@ -189,6 +205,32 @@ TEST(GltfLights, AreTakenFromPhotometricUnits) {
     EXPECT_EQ(d.lights[2].name, "spot-squared");
     EXPECT_NEAR(d.lights[2].parameters.GetFloat("coneangle", 0), 0.5 * 180 / kPi, 1e-4);
     EXPECT_NEAR(d.lights[2].parameters.GetFloat("conedeltaangle", 0), 0.3 * 180 / kPi, 1e-4);
+}
+
+TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}},
+            {{"type", "point"}, {"extras", {{"lull", {{"radius", 0}}}}}}}}}}};
+    for (int i = 0; i < 2; ++i)
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
+                   {"translation", {1, 2, 3}},
+                   {"scale", {3, 3, 3}}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_EQ(d.lights.size(), 1u);
+    ASSERT_EQ(d.shapes.size(), 2u);
+    const ShapeEntity& sphere = d.shapes[1];
+    EXPECT_EQ(sphere.name, "sphere");
+    EXPECT_EQ(sphere.parameters.GetFloat("radius", 0), 0.5f);
+    EXPECT_TRUE(Transformed(sphere.worldFromObject, {0, 0.5f, 0}).isApprox(Vec3f(1, 2.5f, 3)));
+    ASSERT_TRUE(sphere.areaLight);
+    // A watt per steradian, seen as a disk of that radius.
+    EXPECT_TRUE(sphere.areaLight->parameters.GetSpectrum("L", Rgb::Zero())
+                    .isApprox(Rgb::Constant(4 / kPi)));
 }
 
 TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
@@ -304,6 +346,10 @@ TEST(SceneEdits, TurnEnvironmentsUpright) {
     const Mat4d& m = d.lights[0].worldFromLight;
     EXPECT_TRUE(TransformVector(m, Vec3f::UnitZ()).isApprox(Vec3f::UnitY()));
     EXPECT_LT(m.determinant(), 0);  // the world is right-handed
+    // The file's format says where up is, not the camera, which may look down.
+    Description above = kFolder.Parse(file, {.orbit = std::array{10.f, 90.f}});
+    SetEnvironment("sky.exr", 90, &above);
+    EXPECT_TRUE(above.lights[0].worldFromLight.isApprox(m));
     // A quarter turn, counterclockwise as seen from above, from where Blender has the image's edge.
     EXPECT_TRUE(TransformVector(m, Vec3f::UnitX()).isApprox(Vec3f::UnitZ()));
 }

@@ -57,6 +57,11 @@ TEST(Camera, FollowsScreenWindowAndAspect) {
     const Camera aspect =
         MakeTestCamera(FilmOf(100, 100), {FloatParameter("frameaspectratio", {3})});
     ExpectNear(Direction(aspect, 0, 0), Vec3f(-3, 1, 1).normalized());
+    // By a quarter of its width to the right and a half of its height down.
+    const Camera shifted =
+        MakeTestCamera(FilmOf(200, 100), {FloatParameter("screenshift", {0.25f, -0.5f})});
+    ExpectNear(Direction(shifted, 0, 0), Vec3f(-1, 0, 1).normalized());
+    ExpectNear(Direction(shifted, 200, 100), Vec3f(3, -2, 1).normalized());
 }
 
 // A crop is a part of the same picture.

@@ -1,0 +1,31 @@
+"""The render engine lull for Blender: scenes go to it as glTF, pictures and layers come back."""
+bl_info = {
+    "name": "lull",
+    "description": "A path tracer that knows when to stop",
+    "author": "The authors of lull",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Render properties > Render Engine",
+    "category": "Render",
+}
+
+import bpy  # noqa: E402
+
+from . import engine, panels, settings  # noqa: E402
+
+_CLASSES = (settings.LullPreferences, settings.LullSettings, engine.LullEngine,
+            panels.LULL_RENDER_PT_stopping, panels.LULL_RENDER_PT_sampling)
+
+
+def register():
+    for each in _CLASSES:
+        bpy.utils.register_class(each)
+    bpy.types.Scene.lull = bpy.props.PointerProperty(type=settings.LullSettings)
+    panels.share(True)
+
+
+def unregister():
+    panels.share(False)
+    del bpy.types.Scene.lull
+    for each in reversed(_CLASSES):
+        bpy.utils.unregister_class(each)

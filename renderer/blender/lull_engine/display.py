@@ -1,0 +1,49 @@
+"""Receives pictures in the protocol of tev, which `lull render --display` speaks."""
+import struct
+
+import numpy as np
+
+_UPDATE = 6  # of the kinds of messages; the others change no pixels
+
+
+def _text(message, at):
+    end = message.index(b"\0", at)
+    return message[at:end].decode(), end + 1
+
+
+def _decode(message):
+    """Returns where an update lies, x and y from the upper left, and its channels by name; None for
+    another message."""
+    if message[4] != _UPDATE:
+        return None
+    _, at = _text(message, 6)
+    count, = struct.unpack_from("<i", message, at)
+    at += 4
+    names = []
+    for _ in range(count):
+        name, at = _text(message, at)
+        names.append(name)
+    x, y, width, height = struct.unpack_from("<4i", message, at)
+    # What is skipped says where the channels lie; lull has those of a pixel beside each other.
+    values = np.frombuffer(message, "<f4", width * height * count, at + 16 + 16 * count)
+    values = values.reshape(height, width, count)
+    return x, y, {name: values[:, :, i] for i, name in enumerate(names)}
+
+
+class Stream:
+    """Puts the bytes of a connection together again."""
+
+    def __init__(self):
+        self.bytes = bytearray()
+
+    def feed(self, data):
+        """Takes bytes as they come and yields the updates that they complete."""
+        self.bytes += data
+        while len(self.bytes) >= 5:
+            size, = struct.unpack_from("<I", self.bytes)
+            if len(self.bytes) < size:
+                return
+            message = bytes(self.bytes[:size])
+            del self.bytes[:size]
+            if update := _decode(message):
+                yield update

@@ -1,0 +1,188 @@
+"""The render engine: exports the scene, runs lull, and fills Blender's render result."""
+import json
+import os
+import tempfile
+import time
+
+import bpy
+import numpy as np
+
+from . import exr
+from .process import Failure, Render, run
+from .settings import find_lull
+
+_EXPORT = os.path.join(os.path.dirname(__file__), "export.py")
+_SECONDS_BETWEEN_VIEWS = 0.5
+
+# Passes beside Combined: their name, their channels for Blender, and those of the EXR.
+_PASSES = (
+    ("Depth", "Z", ("Z",)),
+    ("Normal", "XYZ", ("N.X", "N.Y", "N.Z")),
+    ("Albedo", "RGB", ("albedo.R", "albedo.G", "albedo.B")),
+    ("Samples", "X", ("spp",)),
+    ("Noise", "X", ("noise",)),
+)
+_NOISY = ("Noisy", "RGB", ("noisy.R", "noisy.G", "noisy.B"))
+
+
+def _passes(scene):
+    return _PASSES + (_NOISY,) if scene.lull.denoise else _PASSES
+
+
+def _duration(seconds):
+    minutes, hours = round(seconds / 60), round(seconds / 3600)
+    return ("%d s" % seconds if seconds < 60 else "%d min" % minutes if minutes < 120 else
+            "%d h" % hours)
+
+
+class LullEngine(bpy.types.RenderEngine):
+    bl_idname = "LULL"
+    bl_label = "lull"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False
+    bl_use_postprocess = True
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", 'COLOR')
+        for name, channels, _ in _passes(scene):
+            kind = ('VALUE' if len(channels) == 1 else 'VECTOR' if channels == "XYZ" else 'COLOR')
+            self.register_pass(scene, renderlayer, name, len(channels), channels, kind)
+
+    def render(self, depsgraph):
+        try:
+            with tempfile.TemporaryDirectory(prefix="lull-") as folder:
+                _Job(self, depsgraph, folder).run()
+        except (Failure, OSError) as e:
+            self.error_set(str(e))  # in the window
+            self.report({'ERROR'}, str(e))  # and in the terminal
+
+
+class _Job:
+    """One picture of one view layer."""
+
+    def __init__(self, engine, depsgraph, folder):
+        self.engine, self.folder = engine, folder
+        self.scene = depsgraph.scene.original
+        self.settings = self.scene.lull
+        self.layer = depsgraph.view_layer.name
+        self._measure(depsgraph.scene.render)
+
+    def _measure(self, render):
+        """Finds the size of the whole picture and, in fractions, the part that is wanted."""
+        scale = render.resolution_percentage / 100
+        self.whole = int(render.resolution_x * scale), int(render.resolution_y * scale)
+        self.crop, self.size = None, self.whole
+        if render.use_border:
+            (x0, x1), (y0, y1) = ((int(low * n), int(high * n)) for low, high, n in (
+                (render.border_min_x, render.border_max_x, self.whole[0]),
+                (render.border_min_y, render.border_max_y, self.whole[1])))
+            self.size = x1 - x0, y1 - y0
+            width, height = self.whole
+            # lull rounds up: half a pixel less is the same pixel, whatever the fractions lose.
+            edges = ((x0, width), (x1, width), (height - y1, height), (height - y0, height))
+            self.crop = ",".join("%.9g" % max(0, (at - 0.5) / n) for at, n in edges)
+
+    def run(self):
+        lull, engine = find_lull(), self.engine
+        engine.update_stats("", "Exporting")
+        exported = self._export()
+        if exported is None:
+            return
+        for warning in exported["warnings"]:
+            engine.report({'WARNING'}, warning)
+        picture = os.path.join(self.folder, "picture.exr")
+        command = [lull, "render", exported["gltf"], "-o", picture,
+                   "--resolution", "%dx%d" % self.whole, "--aov", "albedo,normal,depth,noise",
+                   *self.settings.arguments()]
+        if self.crop:
+            command += ["--crop", self.crop]
+        if exported["environment"]:
+            command += ["--environment", exported["environment"]]
+        if self.scene.render.threads_mode == 'FIXED':
+            command += ["--threads", str(self.scene.render.threads)]
+        engine.update_stats("", "Reading the scene")
+        render = Render(command)
+        result = engine.begin_result(0, 0, *self.size, layer=self.layer)
+        try:
+            self._watch(render, result)
+            if os.path.exists(picture):
+                self._fill(result, picture)
+            elif render.code != 130:
+                raise Failure("lull: " + (" ".join(render.errors) or
+                                          "ended with exit code %d" % render.code))
+        finally:
+            engine.end_result(result)
+
+    def _export(self):
+        """Writes the scene as glTF, by a Blender of its own, so that this one's scene stays as it
+        is. Returns what export.py says of it, None where the user has ended it."""
+        blend = os.path.join(self.folder, "scene.blend")
+        bpy.data.libraries.write(blend, {self.scene}, path_remap='ABSOLUTE')
+        said = os.path.join(self.folder, "export.json")
+        what = {"blend": blend, "scene": self.scene.name, "layer": self.layer, "folder": self.folder,
+                "frame": self.scene.frame_current, "subframe": self.scene.frame_subframe,
+                "said": said}
+        scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
+        code, output, ended = run(
+            [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
+             "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
+             "--python", _EXPORT, "--", json.dumps(what)], self.engine.test_break)
+        if ended:
+            return None
+        if code != 0 or not os.path.exists(said):
+            lines = [line for line in output.splitlines() if line.strip() and
+                     not line.startswith("Blender quit")]
+            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" %
+                                                              code))
+        with open(said, encoding="utf-8") as f:
+            return json.load(f)
+
+    def _watch(self, render, result):
+        """Shows how the render goes on, until it ends."""
+        view = np.zeros((self.size[1], self.size[0], 4), np.float32)
+        changed, shown = False, time.monotonic()
+        for kind, what in render.events(self.engine.test_break):
+            if kind == "show":
+                x, y, channels = what
+                rectangle = view[y:y + len(channels["R"]), x:x + channels["R"].shape[1]]
+                for i, name in enumerate("RGB"):
+                    rectangle[:, :, i] = channels[name]
+                rectangle[:, :, 3] = channels["spp"] > 0
+                changed = True
+            elif kind == "progress":
+                self.engine.update_progress(what["percent"] / 100)
+                self.engine.update_stats("", "%d of %d blocks stopped, %d spp, %s%s left" % (
+                    what["stoppedBlocks"], what["blocks"], what["medianSpp"],
+                    "at most " if what.get("remainingIsUpperBound") else "",
+                    _duration(what["remainingSeconds"])))
+            elif kind in ("warning", "note"):
+                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
+            if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
+                _set(result.layers[0].passes["Combined"], view)
+                self.engine.update_result(result)
+                changed, shown = False, time.monotonic()
+
+    def _fill(self, result, picture):
+        try:
+            channels, _ = exr.read(picture)
+        except ValueError as e:
+            raise Failure(str(e)) from e
+        for name, ids, _ in _passes(self.scene):
+            self.engine.add_pass(name, len(ids), ids, layer=self.layer)
+        passes = result.layers[0].passes
+        combined = np.ones((self.size[1], self.size[0], 4), np.float32)
+        for i, name in enumerate("RGB"):
+            combined[:, :, i] = channels[name]
+        _set(passes["Combined"], combined)
+        for name, _, names in _passes(self.scene):
+            values = np.stack([channels[n] for n in names], -1)
+            if name == "Normal":  # of glTF's world, whose y is up
+                values = np.stack([values[..., 0], -values[..., 2], values[..., 1]], -1)
+            _set(passes[name], values)
+
+
+def _set(target, values):
+    """Fills a pass, whose lowest row comes first."""
+    values = np.ascontiguousarray(values[::-1], np.float32)
+    target.rect.foreach_set(values.reshape(-1, values.shape[2]))

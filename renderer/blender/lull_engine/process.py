@@ -1,0 +1,107 @@
+"""Runs the program beside Blender: what it says and shows comes as it goes on."""
+import json
+import os
+import selectors
+import signal
+import socket
+import subprocess
+
+from .display import Stream
+
+
+class Failure(Exception):
+    """Is what the user has to know; nothing more can be done."""
+
+
+def run(command, stopped):
+    """Runs a command whose output nobody sees. Returns its exit code, all that it said, and whether
+    it ended because `stopped` returned true."""
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace",
+                          start_new_session=True) as process:
+        with selectors.DefaultSelector() as selector:
+            selector.register(process.stdout, selectors.EVENT_READ)
+            said = ""
+            while True:
+                if stopped():
+                    process.kill()
+                    return 0, said, True
+                if selector.select(0.1):
+                    line = os.read(process.stdout.fileno(), 1 << 16)
+                    if not line:
+                        break
+                    said += line.decode(errors="replace")
+        return process.wait(), said, False
+
+
+class Render:
+    """A render of lull: `for kind, what in render.events(stopped)` gives ("progress", {...}),
+    ("warning", text), ("note", text), ("show", (x, y, channels)) and ("idle", None), until the
+    program has ended; then `code` is its exit code. When `stopped` returns true it is told to end
+    with what it has."""
+
+    def __init__(self, command):
+        self.server = socket.create_server(("127.0.0.1", 0))
+        address = "127.0.0.1:%d" % self.server.getsockname()[1]
+        # In a group of its own, so that Ctrl-C in Blender's terminal reaches it once, through us.
+        self.process = subprocess.Popen(
+            command + ["--json-progress", "--display", address], stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+        self.code, self.said, self.errors = None, b"", []
+
+    def events(self, stopped):
+        stream, told = Stream(), False
+        try:
+            with selectors.DefaultSelector() as selector:
+                selector.register(self.process.stderr, selectors.EVENT_READ)
+                selector.register(self.server, selectors.EVENT_READ)
+                while self.code is None:
+                    if not told and stopped():
+                        self.process.send_signal(signal.SIGINT)
+                        told = True
+                    ready = [key.fileobj for key, _ in selector.select(0.1)]
+                    if not ready:
+                        yield "idle", None
+                    for source in ready:
+                        if source is self.server:
+                            selector.register(self.server.accept()[0], selectors.EVENT_READ)
+                        elif source is self.process.stderr:
+                            yield from self._heard(os.read(source.fileno(), 1 << 16))
+                        elif data := _receive(source):
+                            yield from (("show", update) for update in stream.feed(data))
+                        else:
+                            selector.unregister(source)
+                            source.close()
+                for key in list(selector.get_map().values()):
+                    if key.fileobj not in (self.server, self.process.stderr):
+                        key.fileobj.close()
+        finally:
+            self.server.close()
+            if self.code is None:
+                self.process.kill()
+                self.process.wait()
+            self.process.stderr.close()
+
+    def _heard(self, data):
+        if not data:
+            self.code = self.process.wait()
+        *lines, self.said = (self.said + data).split(b"\n")
+        for line in lines:
+            try:
+                event = json.loads(line)
+                kind = event["event"]
+            except (ValueError, TypeError, KeyError):  # of the command line, before it knows JSON
+                kind, event = "error", {"message": line.decode(errors="replace")}
+            if kind == "error":
+                self.errors.append(event["message"])
+            elif kind in ("warning", "note"):
+                yield kind, event["message"].removeprefix("warning: ")
+            elif kind == "progress":
+                yield "progress", event
+
+
+def _receive(connection):
+    try:
+        return connection.recv(1 << 20)
+    except ConnectionError:
+        return b""

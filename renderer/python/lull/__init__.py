@@ -1,0 +1,12 @@
+"""lull for Python: the renderer as functions, and the judge of noise for other renderers.
+
+    import lull
+    r = lull.render("scene.pbrt", resolution=(400, 300), denoise=True)
+    r.image, r.spp, r.blocks, r.seconds
+
+Options are those of the command of the same name, with _ for -: `lull render --help`.
+"""
+from ._stopping import *  # noqa: F401,F403
+from ._stopping import __version__  # noqa: F401
+from .commands import Comparison, Rendering, compare, evaluate, render  # noqa: F401
+from .program import Error  # noqa: F401

@@ -1,0 +1,66 @@
+"""Makes arguments of keywords: what a command takes is read from its own help."""
+import difflib
+import keyword
+import os
+import re
+
+# An entry of a help text: its long name, and its value if it has one.
+_ENTRY = re.compile(r"^  (?:-\w,)?--([a-z0-9-]+)(?: (?!Needs:|Excludes:)(\S+))?")
+_OURS = {"help", "json-progress", "quiet"}  # what this module sets
+
+
+class Option:
+    """`value` is None of a flag, else how the help writes its value."""
+
+    def __init__(self, name, value):
+        self.name, self.value, self.text = name, value, ""
+
+    def arguments(self, given):
+        """Returns what stands on the command line for a value of Python."""
+        if given is None or given is False:
+            return []
+        flag = "--" + self.name
+        if self.value is None or given is True:
+            if self.value is not None or given is not True:
+                raise TypeError("%s is %s" % (_keyword(self.name), "True or False" if
+                                              self.value is None else self.value.split(":")[0]))
+            return [flag]
+        if not isinstance(given, (list, tuple)):
+            return [flag, _text(given)]
+        if "given again" in self.text:
+            return [word for one in given for word in (flag, _text(one))]
+        return [flag, ("x" if self.value.startswith("WxH") else ",").join(map(_text, given))]
+
+
+def _keyword(name):
+    word = name.replace("-", "_")
+    return word + "_" if keyword.iskeyword(word) else word
+
+
+def _text(value):
+    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+
+
+def read(help_text):
+    """Returns the options that a help text describes, by their keywords."""
+    options, last = {}, None
+    for line in help_text.split("\nOptions:\n", 1)[-1].split("\n\n")[0].split("\n"):
+        if entry := _ENTRY.match(line):
+            last = Option(*entry.groups())
+            if last.name not in _OURS:
+                options[_keyword(last.name)] = last
+        if last:
+            last.text += line + "\n"
+    return options
+
+
+def arguments(command, options, given):
+    """Returns the arguments for keywords. Raises TypeError for what the command does not have."""
+    words = []
+    for name, value in given.items():
+        if name not in options:
+            like = difflib.get_close_matches(name, options, 1)
+            raise TypeError("%s() has no option %s%s" % (command, name, "; is %s meant?" % like[0]
+                                                         if like else ""))
+        words += options[name].arguments(value)
+    return words

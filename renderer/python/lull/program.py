@@ -1,0 +1,122 @@
+"""Runs the program lull."""
+import functools
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import warnings
+
+from . import options as _options
+
+_INTERRUPTED = 130
+
+
+class Error(RuntimeError):
+    """What the program says is wrong with the input or the environment."""
+
+
+def find():
+    """Returns the program: what $LULL_PROGRAM names, the one that this module was installed with, or
+    the one on the path. Raises FileNotFoundError."""
+    prefix = pathlib.Path(__file__).resolve().parents[4]
+    for path in (os.environ.get("LULL_PROGRAM"), prefix / "bin" / "lull", prefix / "renderer" / "lull",
+                 "lull"):
+        if path and (found := shutil.which(path)):
+            return found
+    raise FileNotFoundError("the program lull is not on the path; $LULL_PROGRAM can name it")
+
+
+@functools.lru_cache
+def _help(program, command):
+    return subprocess.run([program, command, "--help"], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+
+
+def options(command):
+    """Returns the options of a command by their keywords, as its help has them."""
+    return _options.read(_help(find(), command))
+
+
+def run(command, inputs, given, progress=None):
+    """Runs a command on files, with options as keywords. `progress` is called with each event that
+    it tells, where it tells any; None: a line in a terminal or a notebook, False: nothing. Returns
+    its last event, or {}. A KeyboardInterrupt tells it to end with what it has, which is no error;
+    another ends it at once.
+
+    Raises TypeError for options that the command does not have, ValueError for values that it does
+    not take, and Error for all else that it says is wrong."""
+    known = options(command)
+    words = [find(), command, *map(os.fspath, inputs), *_options.arguments(command, known, given)]
+    if "--json-progress" in _help(find(), command):
+        words.append("--json-progress")
+    show = _Line() if progress is None else progress or (lambda event: None)
+    # In a group of its own, so that Ctrl-C reaches it once, through us.
+    with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, text=True,
+                          stderr=subprocess.PIPE, start_new_session=True) as process:
+        said, last, told = [], {}, False
+        try:
+            while True:
+                try:
+                    line = process.stderr.readline()
+                    if not line:
+                        break
+                    event = _event(line)
+                    if event["event"] == "warning":
+                        warnings.warn(event["message"].removeprefix("warning: "), stacklevel=3)
+                    elif event["event"] == "error":
+                        said.append(event["message"])
+                    last = event
+                    show(event)
+                except KeyboardInterrupt:
+                    if told:
+                        raise
+                    process.send_signal(signal.SIGINT)
+                    told = True
+            code = process.wait()
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            if isinstance(show, _Line):
+                show.end()
+    if code not in (0, _INTERRUPTED):
+        message = "\n".join(said) or "%s ended with exit code %d" % (command, code)
+        raise ValueError(message) if code == 2 else Error(message)
+    return last
+
+
+def _event(line):
+    try:
+        event = json.loads(line)
+        if "event" in event:
+            return event
+    except (ValueError, TypeError):
+        pass
+    if line.startswith("Run with --help"):
+        return {"event": "note", "message": line}
+    return {"event": "error", "message": line.strip().removeprefix("lull: error: ")}
+
+
+class _Line:
+    """Shows progress as a line that is written again and again."""
+
+    def __init__(self):
+        self.shows = sys.stderr.isatty() or "ipykernel" in sys.modules
+        self.width = 0
+
+    def __call__(self, event):
+        if not self.shows or event["event"] != "progress":
+            return
+        text = "%3.0f %%, %d of %d blocks stopped, %d spp, %.0f s left" % (
+            event["percent"], event["stoppedBlocks"], event["blocks"], event["medianSpp"],
+            event["remainingSeconds"])
+        sys.stderr.write("\r" + text.ljust(self.width))
+        sys.stderr.flush()
+        self.width = len(text)
+
+    def end(self):
+        if self.width:
+            sys.stderr.write("\n")

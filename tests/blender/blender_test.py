@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Tests of the Blender add-on, headless: blender_test.py BLENDER ADDON.zip PROGRAM.
+
+Pictures are compared with those of Cycles, as means of the whole and of blocks of 10x10 pixels: small,
+with a fixed seed on both sides. `--keep FOLDER` leaves them there to look at."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).parent
+sys.path.insert(0, str(HERE.parents[1] / "renderer/python/lull"))
+import exr  # noqa: E402
+
+BLENDER, ADDON, PROGRAM = sys.argv[1:4]
+KEEP = sys.argv[5] if sys.argv[4:5] == ["--keep"] else None
+SIZE, SPP = (60, 40), 64
+SAMPLES = "s.stop_by, s.spp = 'SAMPLES', %d; " % SPP
+
+
+def rgb(channels, name="Combined"):
+    return np.stack([channels[f"{name}.{c}"] for c in "RGB"], -1)
+
+
+def blocks(image, n=10):
+    height, width = image.shape[:2]
+    return image.reshape(height // n, n, width // n, n, 3).mean((1, 3))
+
+
+class AddOn(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(KEEP or cls.scratch.name)
+        user = pathlib.Path(cls.scratch.name, "user")
+        cls.environment = dict(os.environ, BLENDER_USER_SCRIPTS=str(user / "scripts"),
+                               BLENDER_USER_CONFIG=str(user / "config"),
+                               PATH=f"{pathlib.Path(PROGRAM).parent}:{os.environ['PATH']}")
+        os.makedirs(user / "scripts/addons")
+        cls.blender("--factory-startup", "--python-expr",
+                    f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
+        for frame, names in (1, ["factory", "lamps", "glass"]), (11, ["skin"]):
+            what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
+                    "frame": frame}
+            cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
+                        json.dumps(what))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def blender(cls, *arguments, fails=False):
+        ran = subprocess.run([BLENDER, "-b", "-noaudio", "--python-exit-code", "3", *arguments],
+                             text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                             env=cls.environment, timeout=300)
+        assert (ran.returncode != 0) == fails, ran.stdout
+        return ran.stdout
+
+    def command(self, name, settings, frame=1):
+        """Returns the arguments that render a scene with lull."""
+        return [str(self.folder / f"{name}.blend"), "--addons", "lull_engine", "-E", "LULL", "-o",
+                str(self.folder / f"{name}.lull."), "-F", "OPEN_EXR_MULTILAYER", "--python-expr",
+                f"import bpy; scene = bpy.context.scene; s = scene.lull; {settings}", "-f", str(frame)]
+
+    def read(self, name, frame=1):
+        """Returns the passes of a picture by their names, without that of the view layer."""
+        file = f"{name}.exr" if frame is None else f"{name}.lull.{frame:04}.exr"
+        channels, _ = exr.read(self.folder / file)
+        return {key.split(".", 1)[1]: plane for key, plane in channels.items()}
+
+    def render(self, name, settings=SAMPLES, frame=1):
+        said = self.blender(*self.command(name, settings, frame))
+        return self.read(name, frame), said
+
+    def assert_close(self, name, passes, most, most_of_blocks):
+        """Compares with Cycles: the mean of each channel, and blocks, on average."""
+        lull, cycles = rgb(passes), rgb(self.read(f"{name}.cycles", None))
+        apart = lull.mean((0, 1)) / cycles.mean((0, 1)) - 1
+        of_blocks = abs(blocks(lull) - blocks(cycles)).mean() / cycles.mean()
+        print(f"{name}: means {np.round(100 * apart, 2)} %, blocks {100 * of_blocks:.2f} %")
+        self.assertLess(abs(apart).max(), most)
+        self.assertLess(of_blocks, most_of_blocks)
+
+    def test_factory_scene(self):
+        passes, said = self.render("factory")
+        # Blender's base below the interface is lighter: tests/measurements/cycles.md.
+        self.assert_close("factory", passes, 0.05, 0.05)
+        cycles = self.read("factory.cycles", None)
+        seen = cycles["Depth.Z"] < 1e9
+        self.assertLess(np.median(abs(passes["Depth.Z"] - cycles["Depth.Z"])[seen]), 0.01)
+        for axis in "XYZ":
+            self.assertLess(np.median(abs(passes[f"Normal.{axis}"] - cycles[f"Normal.{axis}"])[seen]),
+                            0.01)
+        self.assertAlmostEqual(np.median(passes["Albedo.R"][seen]), 0.8, delta=0.1)
+        self.assertTrue((passes["Samples.X"] == SPP).all())
+        self.assertTrue((passes["Noise.X"][seen] > 0).any())
+        self.assertTrue((passes["Combined.A"] == 1).all())
+        self.assertIn("blocks stopped", said)
+
+    def test_lamps(self):
+        passes, said = self.render("lamps")
+        self.assert_close("lamps", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_glass_under_an_image(self):
+        passes, said = self.render("glass")
+        self.assert_close("glass", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_skin_at_a_frame(self):
+        passes, _ = self.render("skin", frame=11)
+        self.assert_close("skin", passes, 0.005, 0.01)
+
+    def test_denoises_a_border(self):
+        passes, _ = self.render("skin", "s.denoise = True; " + SAMPLES + "r = scene.render; "
+                                "r.use_border = r.use_crop_to_border = True; r.border_min_x = 0.3; "
+                                "r.border_max_x, r.border_min_y, r.border_max_y = 0.7, 0.25, 0.9", 3)
+        self.assertEqual(passes["Noisy.R"].shape, (26, 24))
+        self.assertGreater(abs(rgb(passes) - rgb(passes, "Noisy")).max(), 0)
+        self.assertLess(abs(rgb(passes) - rgb(passes, "Noisy")).mean(), 0.05)
+
+    def test_ends_early_with_what_there_is(self):
+        # Of a frame that is ended, Blender's own -f writes nothing.
+        render = ("s.stop_by, s.spp, s.cap = 'SAMPLES', 1000000, 1000000; bpy.ops.render.render(); "
+                  f"bpy.data.images['Render Result'].save_render({str(self.folder / 'ended.exr')!r})")
+        with subprocess.Popen([BLENDER, "-b", "-noaudio", *self.command("lamps", render)[:-2]],
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              env=self.environment, start_new_session=True) as process:
+            said = ""
+            for line in process.stdout:
+                said += line
+                if "blocks stopped, " in line and "stopped, 0 spp" not in line:
+                    process.send_signal(signal.SIGINT)
+                    break
+            said += process.communicate(timeout=100)[0]
+        passes = self.read("ended", None)
+        self.assertTrue((1 <= passes["Samples.X"]).all() and (passes["Samples.X"] < 1000000).all(), said)
+        self.assertGreater(rgb(passes).mean(), 0)
+
+    def test_says_what_is_wrong(self):
+        for message, settings in (
+                ("no program /nowhere/lull", "bpy.ops.preferences.addon_enable(module='lull_engine'); "
+                 "bpy.context.preferences.addons['lull_engine'].preferences.program = '/nowhere/lull'"),
+                ("lull is not on the PATH", "import os; os.environ['PATH'] = '/nowhere'"),
+                ("lull: --stop", "s.stop_by, s.rule = 'RULE', 'nonsense'"),
+                ("panoramic", "scene.camera.data.type = 'PANO'")):
+            said = self.blender(*self.command("factory", settings), fails=True)
+            errors = [line for line in said.splitlines() if line.startswith("Error")]
+            self.assertEqual(len(errors), 1, said)
+            self.assertIn(message, errors[0])
+            self.assertNotIn("Traceback", said)
+
+    def test_warns_by_name(self):
+        _, said = self.render("factory", SAMPLES + """
+scene.render.film_transparent = True
+cube = bpy.data.objects['Cube']
+cube.modifiers.new('hair', 'PARTICLE_SYSTEM').particle_system.name = 'fur'
+nodes = cube.active_material.node_tree.nodes
+noise = nodes.new('ShaderNodeTexNoise')
+cube.active_material.node_tree.links.new(noise.outputs['Color'], nodes['Principled BSDF'].inputs['Base Color'])
+bpy.data.lights['Light'].type = 'SPOT'""")
+        for text in ("film is not transparent", "particles 'fur' of object 'Cube'",
+                     "material 'Material': glTF cannot express its node 'Noise Texture'",
+                     "spot light 'Light' has no radius"):
+            self.assertEqual(said.count(text), 1, said)
+
+
+if __name__ == "__main__":
+    del sys.argv[1:4]
+    if KEEP:
+        del sys.argv[1:3]
+    unittest.main()

@@ -1,0 +1,196 @@
+"""Makes the scenes of the tests, for blender_test.py. Runs inside Blender, with a JSON object as its last
+argument: the folder to write NAME.blend to, the names, and the size and samples of the pictures that
+Cycles makes of them, NAME.cycles.exr; 0 samples: none."""
+import json
+import math
+import os
+import sys
+
+import bpy
+
+
+def material(name, node, **inputs):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.clear()
+    output, surface = tree.nodes.new('ShaderNodeOutputMaterial'), tree.nodes.new('ShaderNode' + node)
+    for key, value in inputs.items():
+        surface.inputs[key].default_value = value
+    tree.links.new(surface.outputs[0], output.inputs['Surface'])
+    return made
+
+
+def dress(made, smooth=False):
+    o = bpy.context.object
+    if made:
+        o.data.materials.append(made)
+    for polygon in o.data.polygons:
+        polygon.use_smooth = smooth
+    return o
+
+
+def floor(made):
+    bpy.ops.mesh.primitive_plane_add(size=12)
+    return dress(made)
+
+
+def sphere(made, at, radius=0.7):
+    bpy.ops.mesh.primitive_uv_sphere_add(location=at, radius=radius, segments=32, ring_count=16)
+    return dress(made, smooth=True)
+
+
+def lamp(kind, energy, at, turned=(0, 0, 0), **more):
+    bpy.ops.object.light_add(type=kind, location=at, rotation=turned)
+    light = bpy.context.object.data
+    light.energy = energy
+    if hasattr(light, "shadow_soft_size"):
+        light.shadow_soft_size = 0
+    for key, value in more.items():
+        setattr(light, key, value)
+    return bpy.context.object
+
+
+def camera(at, turned, **more):
+    bpy.ops.object.camera_add(location=at, rotation=turned)
+    bpy.context.scene.camera = bpy.context.object
+    for key, value in more.items():
+        setattr(bpy.context.object.data, key, value)
+    return bpy.context.object.data
+
+
+def matte(name="matte", color=(0.6, 0.5, 0.4, 1)):
+    return material(name, 'BsdfDiffuse', Color=color)
+
+
+def lamps(folder):
+    """Primitives, lamps of all kinds, out of view, shift and depth of field; no world."""
+    floor(matte())
+    bpy.ops.mesh.primitive_cube_add(size=1.2, location=(-1.6, 0.5, 0.6))
+    dress(matte("red", (0.8, 0.1, 0.1, 1)))
+    sphere(material("metal", 'BsdfGlossy', Color=(0.9, 0.7, 0.3, 1), Roughness=0.4), (1.5, 0, 0.7))
+    lamp('POINT', 60, (-3, -2, 2), shadow_soft_size=0.3, color=(1, 0.8, 0.6))
+    noded = lamp('POINT', 10, (3, 3, 2)).data
+    noded.use_nodes = True
+    noded.node_tree.nodes["Emission"].inputs['Strength'].default_value = 3
+    noded.node_tree.nodes["Emission"].inputs['Color'].default_value = (1, 0.5, 0.5, 1)
+    lamp('SUN', 0.3, (0, 0, 5), (0.5, 0.3, 0), angle=0)
+    lamp('SPOT', 150, (2, -3, 4), (0.6, 0.3, 0), spot_size=0.8)
+    lamp('AREA', 40, (3.5, -1, 2.5), (0, 0.8, 0), shape='RECTANGLE', size=1.5, size_y=0.5)
+    disk = lamp('AREA', 40, (-2, -2, 3), (0.4, -0.4, 0), shape='DISK', size=0.8, color=(0.4, 0.6, 1))
+    disk.scale = (1.5, 1, 1)
+    data = camera((0, -7, 3.2), (1.2, 0, 0), lens=35, shift_x=0.08, shift_y=-0.1)
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 7, 0.2
+
+
+def world_image(folder):
+    """Returns a picture of all directions whose parts differ, as a file of high range."""
+    width, height = 64, 32
+    image = bpy.data.images.new("sky", width, height, float_buffer=True)
+    pixels = []
+    for y in range(height):
+        for x in range(width):
+            sun = 60 if (x - 44) ** 2 + (y - 24) ** 2 < 5 else 0
+            pixels += [0.1 + 0.5 * x / width + sun, 0.2 + sun, 0.6 * y / height + sun, 1]
+    image.pixels = pixels
+    image.filepath_raw, image.file_format = os.path.join(folder, "sky.exr"), 'OPEN_EXR'
+    image.save()
+    return image
+
+
+def glass(folder):
+    """Glass and an emitting sphere under a world that is an image, turned, twice as strong."""
+    floor(matte())
+    sphere(material("glass", 'BsdfGlass', Color=(1, 1, 1, 1), Roughness=0, IOR=1.5), (0.9, 0, 0.8))
+    sphere(material("glowing", 'Emission', Color=(0.2, 1, 0.3, 1), Strength=3), (-0.9, 0.3, 0.5), 0.4)
+    world = bpy.data.worlds.new("sky")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    background = next(n for n in nodes if n.type == 'BACKGROUND')
+    background.inputs['Strength'].default_value = 2
+    image, turn = nodes.new('ShaderNodeTexEnvironment'), nodes.new('ShaderNodeMapping')
+    where = nodes.new('ShaderNodeTexCoord')
+    image.image = world_image(folder)
+    turn.inputs['Rotation'].default_value = (0.2, 0, 0.7)
+    links.new(where.outputs['Generated'], turn.inputs['Vector'])
+    links.new(turn.outputs['Vector'], image.inputs['Vector'])
+    links.new(image.outputs['Color'], background.inputs['Color'])
+    camera((0, -4.5, 2), (1.25, 0, 0))
+
+
+def skin(folder):
+    """A bone bends a bar in the frames 1 to 11; the world is a plain colour, the floor has no
+    material, and what is in an excluded collection is not there."""
+    scene = bpy.context.scene
+    floor(None)
+    sphere(matte("unseen"), (2, -2, 2), 1)
+    unseen = bpy.data.collections.new("unseen")
+    scene.collection.children.link(unseen)
+    unseen.objects.link(bpy.context.object)
+    scene.collection.objects.unlink(bpy.context.object)
+    scene.view_layers[0].layer_collection.children["unseen"].exclude = True
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.4, depth=3, location=(0, 0, 1.5))
+    bar = dress(matte("bar", (0.2, 0.4, 0.7, 1)))
+    bpy.ops.object.mode_set(mode='EDIT')
+    bpy.ops.mesh.select_all(action='SELECT')
+    bpy.ops.mesh.subdivide(number_cuts=8)
+    bpy.ops.object.mode_set(mode='OBJECT')
+    bpy.ops.object.armature_add()
+    rig = bpy.context.object
+    bpy.ops.object.mode_set(mode='EDIT')
+    bones = rig.data.edit_bones
+    bones[0].head, bones[0].tail = (0, 0, 0), (0, 0, 1.5)
+    upper = bones.new("upper")
+    upper.head, upper.tail, upper.parent = (0, 0, 1.5), (0, 0, 3), bones[0]
+    bpy.ops.object.mode_set(mode='OBJECT')
+    for number, name in enumerate((rig.data.bones[0].name, "upper")):
+        group = bar.vertex_groups.new(name=name)
+        group.add([v.index for v in bar.data.vertices if (v.co.z > 0) == number], 1, 'REPLACE')
+    modifier = bar.modifiers.new("skin", 'ARMATURE')
+    modifier.object = rig
+    bone = rig.pose.bones["upper"]
+    bone.rotation_mode = 'XYZ'
+    for frame, angle in (1, 0), (11, 1.2):
+        bone.rotation_euler = (angle, 0, 0)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    scene.frame_end = 11
+    scene.world = bpy.data.worlds.new("plain")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs['Color'].default_value = (0.5, 0.6, 0.8, 1)
+    lamp('SUN', 2, (0, 0, 5), (0.5, 0.5, 0), angle=0)
+    camera((5, -5, 3), (1.2, 0, math.pi / 4))
+
+
+def factory(folder):
+    """Blender's own scene."""
+    bpy.ops.wm.read_factory_settings()
+
+
+def main():
+    o = json.loads(sys.argv[-1])
+    for name in o["names"]:
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        globals()[name](o["folder"])
+        scene = bpy.context.scene
+        r, c = scene.render, scene.cycles
+        r.resolution_x, r.resolution_y = o["size"]
+        path = os.path.join(o["folder"], name)
+        bpy.ops.wm.save_as_mainfile(filepath=path + ".blend", check_existing=False)
+        if not o["spp"]:
+            continue
+        r.engine = 'CYCLES'
+        r.image_settings.file_format, r.image_settings.color_depth = 'OPEN_EXR_MULTILAYER', '32'
+        r.image_settings.exr_codec = 'ZIP'
+        c.samples, c.use_denoising, c.use_adaptive_sampling = o["spp"], False, False
+        c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
+        c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 12
+        c.pixel_filter_type, c.filter_width = 'BOX', 1
+        for used in scene.view_layers:
+            used.use_pass_z = used.use_pass_normal = True
+        scene.frame_set(o.get("frame", 1))
+        r.filepath = path + ".cycles.exr"
+        bpy.ops.render.render(write_still=True)
+
+
+main()
