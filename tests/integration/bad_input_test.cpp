@@ -45,7 +45,7 @@ TEST(BadInput, TooLargeForRays) {
            {"scene.pbrt:1"});
     expect(SceneText("ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\nScale 1e-19 1 1\n"
                      "ObjectInstance \"a\""),
-           {"scene.pbrt:11", "shrinks"});
+           {"scene.pbrt:11", "changes sizes"});
 }
 
 TEST(BadInput, TooDenseForRays) {
