@@ -41,8 +41,9 @@ cost: the measured seconds of processors, divided by the number of threads. The 
 --reference, or else against the image of the first sampler at the cap; that one has the samples of
 its sampler's other images in it, so that their error is understated near the cap.
 
-With --guide, each sampler renders once more with paths that are guided, "sobol+guide"; learning
-counts among the seconds of each of these points. With auto, only where the guide is used.
+With --guide, each sampler renders once more with paths that are guided, "sobol+guide"; the time
+between rounds of learning counts among the seconds of each of these points. With auto, there are
+such points only where the guide is used.
 
 With --denoise, images where the rule `denoised` stops (with --rule also at other thresholds than
 its own) are rendered again and denoised. What that takes is counted, as are the looks at blocks.
@@ -207,8 +208,7 @@ class PointCounter {
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-// Returns how to render a variant. Its checkpoints hold nothing of what was learned: learning
-// begins anew, to the same bits.
+// Returns how to render a variant.
 SessionOptions MakeOptions(const Options& options, const Variant& variant,
                            const PreparedScene& prepared, ProgressPrinter* printer, Job* job) {
     Provenance provenance = prepared.provenance;
@@ -222,7 +222,6 @@ SessionOptions MakeOptions(const Options& options, const Variant& variant,
     if (variant.isGuided) how.guide = options.guide;
     how.checkpoint =
         ResumeIfThere(CheckpointName(options, variant), options.render.checkpoint.interval);
-    how.checkpoint.keepsGuide = false;
     how.identity = IdentityOf(provenance, prepared.sceneHash);
     how.render.checkpointAtEnd = true;
     how.features = options.denoise;
@@ -262,13 +261,12 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
                                              {.snapshots = true, .goesOn = true}, &histories);
     Session session(*prepared->scene, region, how);
     if (options.denoise) prepared->denoiser->Show(&session.TheFilm(), session.Features());
-    if (!session.Learn()) return false;
-    if (variant.isGuided && !session.Guidance().isUsed) return true;
     session.Resume();
     if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
     const RenderResult result = session.Run();
     printer.Finish(result.progress);
     if (result.cancelled) return false;
+    if (variant.isGuided && !session.Guidance().isUsed) return true;
     if (session.Leads())
         AddPoints(options, variant,
                   {session.Source(), session.Options(), session.TheFilm(), result, histories},
@@ -289,7 +287,7 @@ std::vector<std::string> Notes(const Options& options) {
         "by the number of threads.");
     if (options.guide.mode != GuideMode::Off)
         notes.push_back(
-            "The seconds of guided points have all the time that was taken to learn in them.");
+            "The seconds of guided points have all the time between rounds of learning in them.");
     return notes;
 }
 

@@ -327,12 +327,8 @@ ExitCode RunRender(Options options, Job* job) {
         });
     session.Resume();
     CatchInterrupts();
-    if (!session.Learn()) {
-        talk.Note("interrupted while learning");
-        return kInterrupted;
-    }
-    provenance.guideFigures = session.Guidance();
     const RenderResult result = session.Run();
+    provenance.guideFigures = session.Guidance();
     job->End();
     if (!leads) return kDone;
     printer.Finish(result.progress);

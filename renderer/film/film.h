@@ -98,6 +98,13 @@ class Film {
     int64_t SampleCount() const;
     int64_t RejectedCount() const;
 
+    // Returns the number, below TileCount(), of the tile that a pixel is in.
+    size_t TileAt(const Vec2i& p) const {
+        return TileIndex(columns[size_t(p.x() - region.min.x())],
+                         rows[size_t(p.y() - region.min.y())]);
+    }
+    size_t TileCount() const { return tiles.size(); }
+
   private:
     struct Tile {
         uint32_t count = 0, rejected = 0;

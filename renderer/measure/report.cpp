@@ -65,13 +65,13 @@ Json GuideJson(const Provenance& p) {
     const GuideFigures& f = p.guideFigures;
     Json json = {{"mode", NameOf(p.guide)}, {"memory", p.guideMegabytes},
                  {"used", f.isUsed},        {"why", f.why},
-                 {"rounds", f.rounds},      {"spp", f.samples},
-                 {"seconds", f.seconds},    {"bytes", f.bytes},
-                 {"leaves", f.leaves}};
+                 {"rounds", f.rounds},      {"from", f.from},
+                 {"spp", f.samples},        {"seconds", f.seconds},
+                 {"bytes", f.bytes},        {"leaves", f.leaves}};
     if (p.guide == GuideMode::Auto && f.rounds > 0) {
-        json["variance"] = f.variance;
-        json["varianceError"] = f.varianceError;
-        json["vertices"] = f.vertices;
+        json["variance"] = f.comparison.variance;
+        json["varianceError"] = f.comparison.error;
+        json["vertices"] = f.comparison.vertices;
     }
     return json;
 }

@@ -21,8 +21,7 @@ RenderIdentity IdentityOf(const Provenance& provenance, const std::string& scene
 std::string TextOf(const RenderIdentity&);
 
 // Writes film, layers and state to an HDF5 file, whole or not at all, and what was learned, if
-// anything (SaveLearning()). A state without blocks stands for a render that is still learning.
-// Throws Error.
+// anything (GuideLearner::Save()). Throws Error.
 void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
                      const Film&, const Layers& = {}, std::span<const std::byte> guide = {});
 

@@ -2,7 +2,9 @@
 
 #include <tbb/task_arena.h>
 
+#include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
+#include "renderer/render/guide_learning.h"
 
 namespace lull {
 
@@ -10,21 +12,34 @@ namespace {
 
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same part
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
-// render has taken further already keep what they have. Returns how many were taken.
+// render has taken further already keep what they have. Adds them to `spread`, if there is one.
+// Returns how many were taken.
 template <typename Source>
-int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film) {
+int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film,
+                   SampleSpread* spread) {
     int64_t samples = 0;
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
         for (int x = tile.pixels.min.x(); x < tile.pixels.max.x(); ++x) {
             const Vec2i pixel(x, y);
             FilmPixel sums = film->At(pixel);
-            const uint32_t end = uint32_t(tile.first + tile.count);
-            for (uint32_t k = sums.count; k < end; ++k) {
+            const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
+            double sum = 0, squares = 0;  // of luminance
+            for (uint32_t k = first; k < end; ++k) {
                 const PathSample sample = source(sampler, pixel, k);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
+                if (!spread) continue;
+                const double y = double(Luminance(sample.radiance));
+                sum += y;
+                squares += Sqr(y);
+                spread->vertices += sample.vertices;
+                ++spread->samples;
             }
             film->Set(pixel, sums);
+            if (spread && end > first) {
+                spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
+                spread->freedom += end - first - 1;
+            }
         }
     return samples;
 }
@@ -51,14 +66,23 @@ Executor::Executor(const SampleSource& source, const RenderOptions& options, Fil
 
 RenderResult Executor::Run() {
     do {
-        pausing = false;
         nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
-        SpawnReady();
-        tasks.Wait();
+        do {
+            pausing = false;
+            SpawnReady();
+            tasks.Wait();
+        } while (EndRound());
         if (schedule.TimeCalled() && !pausing && !IsCancelled()) Undo();
         WriteCheckpoint();
     } while (pausing && !IsCancelled());
     return Result();
+}
+
+bool Executor::EndRound() {
+    if (!options.learner || IsCancelled() || !schedule.IsRoundOver()) return false;
+    options.learner->EndRound(*film);
+    schedule.BeginRound(options.learner->RoundEnd());
+    return true;
 }
 
 void Executor::Quiesce() {
@@ -85,12 +109,15 @@ void Executor::RunTile() {
 }
 
 int64_t Executor::TakeSamples(const Tile& tile) {
-    const Sampler sampler(options.sampler, options.seed);
-    if (!options.layers) return RenderTile(source, tile, sampler, film);
+    GuideLearner* learner = options.learner;
+    const Sampler sampler(options.sampler,
+                          learner ? learner->SeedFrom(options.seed) : options.seed);
+    SampleSpread* spread = learner ? learner->SpreadOf(*film, tile.pixels) : nullptr;
+    if (!options.layers) return RenderTile(source, tile, sampler, film, spread);
     const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
         return options.layers.Take(s, pixel, index);
     };
-    return RenderTile(withLayers, tile, sampler, film);
+    return RenderTile(withLayers, tile, sampler, film, spread);
 }
 
 int Executor::DecideBlock(int i) {

@@ -33,6 +33,8 @@ class Executor {
     int DecideBlock(int block);
     // Spawns the tiles that are ready.
     void SpawnReady() { tasks.Spawn(schedule.ReadyTiles()); }
+    // With no task at work: if a round is over, learns from it, begins the next and returns true.
+    bool EndRound();
     // Lets no more tiles begin, and waits for those under way.
     void Quiesce();
     // Forgets the samples of passes that the time did not suffice for. Returns their blocks.

@@ -7,82 +7,36 @@
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/base/seconds_since.h"
-#include "renderer/render/guide_trial.h"
-#include "renderer/render/progress.h"
+#include "renderer/render/guide_learning_state.h"
 
 namespace lull {
 
 namespace {
 
-constexpr int kFirstRound = 4;  // samples per pixel; each round has twice the last one's
-constexpr int64_t kPathsEnough = 16 << 20;  // after so many, more do not make a better guide
+// Samples per pixel of the first two rounds of `on`; each of the others has twice the last one's.
+constexpr int kFirstRound = 4;
+// Learning ends when so many paths, or samples per pixel, were recorded: more do not make a better
+// guide. With a clock it ends earlier.
+constexpr int64_t kPathsEnough = 16 << 20;
+constexpr int kMost = 500, kMostWithClock = 60;
 
-uint64_t SeedOf(uint64_t seed, int round) {
-    uint64_t h = (seed + 1) * 0x9e3779b97f4a7c15ull + uint64_t(round + 2) * 0xbf58476d1ce4e5b9ull;
-    h = (h ^ (h >> 31)) * 0x94d049bb133111ebull;
-    return h ^ (h >> 29);
-}
-
-// Cells that the first round has to record in.
-constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
+// Of auto: how many paths a round has, in samples per pixel at least and at most; the rounds that
+// can go by before it begins; and the one after which it decides.
+constexpr int64_t kPathsOfRound = 1 << 20;
+constexpr int kShortest = 4, kLongest = 16, kLeadOfAuto = 16, kDecision = 3;
 
 // What a vertex costs with a guide over without (renderer/docs/guiding.md).
 constexpr double kVertexCost = 1.45;
 
-int RoundSamples(int round) { return kFirstRound << round; }
-int SamplesUntil(int round) { return kFirstRound * ((1 << round) - 1); }
+// Cells that the first round has to record in.
+constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
 
-// Returns the samples per pixel that learning may take. What auto finds not to pay costs little.
-int Budget(const LearningOptions& options) {
-    return options.mode == GuideMode::Auto ? std::min(options.cap / 32, 64)
-                                           : std::min(options.cap / 4, 512);
-}
-
-// Says whether there is to be another round after `round` of them.
-bool GoesOn(const LearningOptions& options, const PixelRect& region, int round) {
-    if (SamplesUntil(round) * region.Area() >= kPathsEnough) return false;
-    return SamplesUntil(round + 1) <= Budget(options) && !(options.isEnough && options.isEnough());
-}
-
-RenderOptions MakeRenderOptions(const LearningOptions& options, int round, int spp) {
-    RenderOptions render;
-    render.schedule.cap = render.schedule.passLength = spp;
-    render.sampler = options.sampler;
-    render.seed = SeedOf(options.seed, round);
-    render.threads = options.threads;
-    render.isCancelled = options.isCancelled;
-    return render;
-}
-
-// Returns the mean luminance of a sample; nothing where it was cancelled.
-std::optional<double> MeanLuminance(const Scene& scene, const PixelRect& region,
-                                    const LearningOptions& options) {
-    const RenderOptions render = MakeRenderOptions(options, -1, 1);
-    Film film(region, {.grid = GridOf(render.schedule)});
-    if (Render(SamplesOf(scene, Estimator::Combined), render, &film).cancelled) return {};
+double MeanLuminance(const Film& film) {
     double sum = 0;
     const std::vector<float> means = film.MeanImage();
     for (size_t i = 0; i < means.size(); i += 3)
         sum += double(Luminance({means[i], means[i + 1], means[i + 2]}));
-    return sum / double(std::max<int64_t>(1, region.Area()));
-}
-
-// Renders a round and records it. Returns false if it was cancelled.
-bool RunRound(const Scene& scene, const PixelRect& region, const LearningOptions& options,
-              Learning* learning) {
-    GuideState& state = learning->state;
-    PathOptions paths(state.guide);
-    paths.record = &state.record;
-    paths.usual = float(learning->usual);
-    const RenderOptions render =
-        MakeRenderOptions(options, learning->round, RoundSamples(learning->round));
-    Film film(region, {.grid = GridOf(render.schedule)});
-    return !Render(SamplesOf(scene, paths), render, &film).cancelled;
-}
-
-RefineOptions MakeRefineOptions(const LearningOptions& options, int round) {
-    // The old state and the new are there at the same time.
-    return {.maxBytes = (size_t(options.megabytes) << 20) / 2, .knowsFractions = round > 0};
+    return sum / double(std::max<int64_t>(1, film.Region().Area()));
 }
 
 // Adds what goes by until the end of its scope.
@@ -96,15 +50,6 @@ class Stopwatch {
     double* seconds;
     const Clock::time_point start = Clock::now();
 };
-
-bool Finish(bool isUsed, const std::string& why, Learning* learning) {
-    learning->figures.isUsed = isUsed;
-    learning->figures.why = why;
-    if (!isUsed) learning->guide = {};
-    learning->state = {};
-    learning->isDone = true;
-    return true;
-}
 
 }  // namespace
 
@@ -126,81 +71,138 @@ void CheckGuide(const GuideOptions& options, const Scene& scene, Estimator estim
             "--guide on: {}, and paths are not guided there; give --guide auto or off", *why));
 }
 
-Learning NotGuided(const std::string& why) {
-    Learning learning;
-    learning.isDone = true;
-    learning.figures.why = why;
-    return learning;
-}
-
 std::string TextOf(const GuideFigures& f, GuideMode mode) {
     std::string text = fmt::format("guide: {}: {}", f.isUsed ? "used" : "not used", f.why);
     if (f.rounds == 0) return text;
-    text += fmt::format("; learned from {} spp in {}, {:.1f} MB", f.samples,
-                        FormatDuration(f.seconds), double(f.bytes) / (1 << 20));
-    if (mode == GuideMode::Auto)
+    text += fmt::format("; learned from {} spp, from {} spp on, {:.1f} MB", f.samples, f.from,
+                        double(f.bytes) / (1 << 20));
+    if (mode == GuideMode::Auto && f.rounds >= kDecision)
         text += fmt::format("; variance {:.2f} +- {:.2f}, vertices {:.2f} of those without",
-                            f.variance, f.varianceError, f.vertices);
+                            f.comparison.variance, f.comparison.error, f.comparison.vertices);
     return text;
 }
 
-// A round takes as long as all before it and a bit more. When half of the time is gone
-// nevertheless, the render goes on without.
-void HeedClock(const std::function<double()>& clock, LearningOptions* options) {
-    constexpr double kStartsNoRound = 0.05, kGivesUp = 0.5;
-    const double all = clock();
-    options->isEnough = [=] { return all - clock() > kStartsNoRound * all; };
-    options->isCancelled = [=, isCancelled = options->isCancelled] {
-        return (isCancelled && isCancelled()) || all - clock() > kGivesUp * all;
-    };
+GuideLearner::GuideLearner(const Scene& scene, const LearningOptions& options, int64_t pixels)
+    : scene(scene),
+      options(options),
+      pace(int(
+          std::clamp<int64_t>(kPathsOfRound / std::max<int64_t>(1, pixels), kShortest, kLongest))) {
+    learning.figures.why = "no block took enough samples";
+    learning.end = RoundLength(0);
 }
 
-bool Learn(const Scene& scene, const PixelRect& region, const LearningOptions& options,
-           Learning* learning, const std::function<void(const Learning&)>& onRound) {
-    if (learning->isDone) return true;
-    const bool isAuto = options.mode == GuideMode::Auto;
-    const Stopwatch stopwatch(&learning->figures.seconds);
-    if (isAuto && Budget(options) < 2 * kFirstRound)
-        return Finish(false, "there are too few samples for learning to pay", learning);
-    if (learning->round == 0) {
-        const std::optional<double> usual = MeanLuminance(scene, region, options);
-        if (!usual) return false;
-        learning->figures.samples = 1;
-        if (!(*usual > 0 && *usual < double(kInfinity)))
-            return Finish(false, "the first samples found no light", learning);
-        learning->usual = *usual;
-        learning->state.guide = Guide(scene.shapes.bounds, kFirstDepth, kFirstQuadDepth);
-        learning->state.record = GuideRecord(learning->state.guide);
-    }
-    for (bool goesOn = true; goesOn;) {
-        if (!RunRound(scene, region, options, learning)) return false;
-        const RefineOptions refine = MakeRefineOptions(options, learning->round);
-        learning->figures.samples += RoundSamples(learning->round);
-        learning->figures.rounds = ++learning->round;
-        goesOn = GoesOn(options, region, learning->round);
-        if (goesOn)
-            learning->state = Refine(learning->state, refine);
-        else
-            learning->guide = FreezeGuide(learning->state, refine);
-        if (goesOn && onRound) onRound(*learning);
-    }
-    learning->figures.bytes = int64_t(learning->guide.Bytes());
-    learning->figures.leaves = int(learning->guide.leaves.size());
-    if (!isAuto) return Finish(true, "as asked for", learning);
+int GuideLearner::RoundLength(int round) const {
+    if (options.mode == GuideMode::On) return kFirstRound << std::max(0, round - 1);
+    if (round == 0) return options.isShort ? kFirstRound : kLeadOfAuto * pace;
+    return pace << std::max(0, round - kDecision);
+}
 
-    const auto trial =
-        TryGuide(scene, region, learning->guide, MakeRenderOptions(options, learning->round, 1));
-    if (!trial) return false;
-    learning->figures.samples += trial->samples;
-    learning->figures.variance = trial->variance;
-    learning->figures.varianceError = trial->error;
-    learning->figures.vertices = trial->vertices;
-    const double work = trial->vertices * kVertexCost;
-    const bool pays = (trial->variance + 2 * trial->error) * work < 1;
-    return Finish(pays,
-                  fmt::format("variance times work is {} what it is without",
-                              pays ? "below" : "not surely below"),
-                  learning);
+uint64_t GuideLearner::SeedFrom(uint64_t seed) const {
+    if (learning.round < 2 || !paths.guide) return seed;
+    uint64_t h =
+        (seed + 1) * 0x9e3779b97f4a7c15ull + uint64_t(learning.round) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 31)) * 0x94d049bb133111ebull;
+    return h ^ (h >> 29);
+}
+
+SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
+    const int round = learning.round;
+    if (options.mode != GuideMode::Auto || IsDone()) return nullptr;
+    if (round == 1) return &learning.tally.unguided[film.TileAt(tile.min)];
+    if (round == kDecision) return &learning.tally.guided[film.TileAt(tile.min)];
+    return nullptr;
+}
+
+void GuideLearner::EndRound(const Film& film) {
+    const Stopwatch stopwatch(&learning.figures.seconds);
+    const int64_t samples = film.SampleCount();
+    const int length = RoundLength(learning.round);
+    if (learning.round > 0) {
+        learning.paths += samples - learning.samples;
+        learning.figures.samples += length;
+        learning.figures.rounds = learning.round;
+    }
+    const bool goesOn = learning.round == 0 ? Begin(film) : Learn(film);
+    ++learning.round;
+    learning.samples = samples;
+    if (goesOn) learning.end += RoundLength(learning.round);
+    SetPaths();
+}
+
+// Returns false if learning is done; so does Learn().
+bool GuideLearner::Begin(const Film& film) {
+    learning.usual = MeanLuminance(film);
+    if (!(learning.usual > 0 && learning.usual < double(kInfinity)))
+        return Finish(false, "the first samples found no light");
+    learning.state.guide = Guide(scene.shapes.bounds, kFirstDepth, kFirstQuadDepth);
+    learning.state.record = GuideRecord(learning.state.guide);
+    learning.figures.from = learning.end;
+    if (options.mode == GuideMode::Auto)
+        learning.tally.unguided = learning.tally.guided =
+            std::vector<SampleSpread>(film.TileCount());
+    return true;
+}
+
+bool GuideLearner::Learn(const Film& film) {
+    const bool decides = options.mode == GuideMode::Auto && learning.round == kDecision;
+    GuideFigures& figures = learning.figures;
+    if (decides) {
+        const GuideComparison c = figures.comparison =
+            std::exchange(learning.tally, {}).Compare(film);
+        if (!((c.variance + 2 * c.error) * c.vertices * kVertexCost < 1))
+            return Finish(false, "variance times work is not surely below what it is without");
+    }
+    const int most = options.isShort ? kMostWithClock : kMost;
+    const bool isLast = (options.mode == GuideMode::On || learning.round >= kDecision) &&
+                        (learning.paths >= kPathsEnough || figures.samples >= most);
+    // The old state and the new are there at the same time. What shares of guided paths would have
+    // been worth is known of a guide that has been used.
+    const RefineOptions refine{.maxBytes = (size_t(options.megabytes) << 20) / 2,
+                               .knowsFractions = learning.round > 1};
+    if (isLast)
+        learning.guide = FreezeGuide(learning.state, refine);
+    else
+        learning.state = Refine(learning.state, refine);
+    const Guide& guide = isLast ? learning.guide : learning.state.guide;
+    figures.isUsed = options.mode == GuideMode::On || learning.round >= kDecision;
+    figures.bytes = int64_t(guide.Bytes());
+    figures.leaves = int(guide.leaves.size());
+    figures.why = options.mode == GuideMode::On ? "as asked for"
+                  : figures.isUsed              ? "variance times work is below what it is without"
+                                                : "too few samples to decide";
+    return !isLast || Finish(true, figures.why);
+}
+
+bool GuideLearner::Finish(bool isUsed, const std::string& why) {
+    learning.figures.isUsed = isUsed;
+    learning.figures.why = why;
+    learning.state = {};
+    learning.end = noRoundEnd;
+    return false;
+}
+
+void GuideLearner::SetPaths() {
+    paths = Estimator::Combined;
+    if (IsDone()) {
+        if (learning.figures.isUsed) paths = learning.guide;
+    } else if (learning.round > 0) {
+        paths = learning.state.guide;
+        paths.record = &learning.state.record;
+        paths.usual = float(learning.usual);
+    }
+}
+
+std::vector<std::byte> GuideLearner::Save() const { return SaveLearning(learning); }
+
+void GuideLearner::Take(std::span<const std::byte> bytes, const Film& film) {
+    Learning taken = RestoreLearning(bytes);
+    const bool compares =
+        options.mode == GuideMode::Auto && taken.round > 0 && taken.round <= kDecision;
+    const size_t tiles = compares && !taken.IsDone() ? film.TileCount() : 0;
+    if (taken.tally.unguided.size() != tiles || taken.tally.guided.size() != tiles)
+        throw std::runtime_error("its guide is of another image");
+    learning = std::move(taken);
+    SetPaths();
 }
 
 }  // namespace lull

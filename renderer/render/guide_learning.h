@@ -1,14 +1,25 @@
-// Learns where light comes from, in rounds over the whole image, before the image is rendered. The
-// samples of the rounds are not those of the image, so that what was learned is independent of it
-// and the mean stays what it is.
+// Learns where light comes from, from the image's own samples.
+//
+// A render is cut into rounds. No block begins a pass of the next round before all that go on have
+// come to the end of this one; then, with no thread at work, what the round has recorded becomes
+// the next guide. So sample k of a pixel is a function of seed, pixel, index and what was learned
+// from samples before k, and, given that, has the mean it always has: every sample counts, and the
+// mean of all of them stays what it is. A guide depends on which blocks had stopped at the ends of
+// rounds, and on nothing else: blocks stop by their own samples, and sums are integers.
+//
+// `on` records from 4 spp on, in rounds of 4, 8, 16, ... spp, the first of them without a guide.
+// `auto` begins late, so that what stops early does not pay for it, with three rounds: one without
+// a guide, two with. It goes on with the guide if the last round was enough less noisy than the
+// first for what it cost in vertices.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
 #include "renderer/guiding/guide_refine.h"
-#include "renderer/render/render.h"
+#include "renderer/render/guide_tally.h"
+#include "renderer/render/schedule.h"
+#include "renderer/transport/path_tracer.h"
 
 namespace lull {
 
@@ -20,14 +31,14 @@ std::string NameOf(GuideMode);
 // Says what was learned and decided, for reports.
 struct GuideFigures {
     bool isUsed = false;
-    std::string why;     // it is used, or not
-    int rounds = 0;      // of learning
-    int samples = 0;     // per pixel, for learning and for the decision
-    int64_t bytes = 0;   // of the guide
-    int leaves = 0;      // of its tree over space
-    double seconds = 0;  // elapsed, in the run that came to the end of it
-    // Of auto, guided over unguided, as guide_trial.h has them.
-    double variance = 1, varianceError = 0, vertices = 1;
+    std::string why;             // it is used, or not
+    int rounds = 0;              // that were recorded
+    int from = 0;                // samples per pixel, from which on paths were recorded
+    int samples = 0;             // per pixel, that were recorded
+    int64_t bytes = 0;           // of the guide
+    int leaves = 0;              // of its tree over space
+    double seconds = 0;          // elapsed, between rounds
+    GuideComparison comparison;  // of auto
 };
 
 // What a render is asked for.
@@ -39,27 +50,23 @@ struct GuideOptions {
 struct LearningOptions {
     GuideMode mode = GuideMode::On;
     int megabytes = 64;  // that trees and sums may take, > 0
-    SamplerKind sampler = SamplerKind::Sobol;
-    uint64_t seed = 0;
-    int threads = 0;  // 0: all
-    int cap = 10000;  // samples per pixel that the image has at most; learning takes a part of that
-    // Is asked before every tile; true ends learning. Can be empty.
-    std::function<bool()> isCancelled;
-    // Is asked before every round but the first; true: there shall be no more. Can be empty.
-    std::function<bool()> isEnough;
+    // Learning shall not take long: blocks of a render that has a clock do not wait for each other.
+    bool isShort = false;
 };
 
-// Lets learning take a part of the time, of which `clock` returns the seconds that are left.
-void HeedClock(const std::function<double()>& clock, LearningOptions*);
-
-// Holds all that is needed to go on learning after a round, to the same bits.
+// Holds all that is needed to go on learning, to the same bits.
 struct Learning {
-    int round = 0;     // the next one
-    double usual = 0;  // mean luminance of the image
-    GuideState state;  // empty before the first round and when learning is done
-    bool isDone = false;
-    Guide guide;  // when learning is done and it is to be used
+    int round = 0;        // 0: nothing was recorded yet
+    int end = 0;          // of the round, in samples per pixel; noRoundEnd: learning is done
+    double usual = 0;     // mean luminance of the image
+    int64_t paths = 0;    // that were recorded
+    int64_t samples = 0;  // of the film when the round began
+    GuideState state;     // empty while nothing is recorded
+    Guide guide;          // when learning is done and it is to be used
+    GuideTally tally;     // of auto, until it has decided
     GuideFigures figures;
+
+    bool IsDone() const { return end == noRoundEnd; }
 };
 
 // Says whether paths of the scene can be guided; if not, why.
@@ -68,17 +75,50 @@ std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
 // Throws Error where the scene cannot be guided but `--guide on` asks for it.
 void CheckGuide(const GuideOptions&, const Scene&, Estimator);
 
-// Returns what there is instead of learning where paths are not guided, for that reason.
-Learning NotGuided(const std::string& why);
-
 // Says what came of learning, in a line.
 std::string TextOf(const GuideFigures&, GuideMode);
 
-// Learns until that is done. `onRound` is called after each round but the last, with no thread at
-// work; it can be empty. Returns false if it was cancelled: `learning` is then not fit for use, and
-// what `onRound` was shown last is what to go on from. The result is the same bits for any number
-// of threads.
-bool Learn(const Scene&, const PixelRect& region, const LearningOptions&, Learning* learning,
-           const std::function<void(const Learning&)>& onRound = {});
+// Learns in the course of a render (RenderOptions::learner), and says how its paths are traced.
+class GuideLearner {
+  public:
+    // The scene, of which WhyNotGuided() says nothing, must outlive it.
+    GuideLearner(const Scene&, const LearningOptions&, int64_t pixels);
+    GuideLearner(const GuideLearner&) = delete;
+    GuideLearner& operator=(const GuideLearner&) = delete;
+
+    // Return how paths of this round are traced, and the spp at which it ends: no block goes beyond
+    // it before EndRound(). noRoundEnd: there are no more rounds.
+    const PathOptions& Paths() const { return paths; }
+    int RoundEnd() const { return learning.end; }
+    bool IsDone() const { return learning.IsDone(); }
+
+    // Returns the seed of this round's samples. Guided ones have seeds of their own: points of one
+    // Sobol sequence would depend on those from which the guide was learned.
+    uint64_t SeedFrom(uint64_t seed) const;
+    // Returns where the samples of this round are to be counted, by tiles of the film; null: nobody
+    // wants to know. Has to be asked once a pass, with no thread at work in that tile.
+    SampleSpread* SpreadOf(const Film&, const PixelRect& tile);
+    // With no thread at work: learns from the round, and begins the next.
+    void EndRound(const Film&);
+
+    const GuideFigures& Figures() const { return learning.figures; }
+    // Return and take up what has been learned, for a film with as many tiles. Take() throws
+    // std::runtime_error for what Save() has not made.
+    std::vector<std::byte> Save() const;
+    void Take(std::span<const std::byte>, const Film&);
+
+  private:
+    bool Begin(const Film&);
+    bool Learn(const Film&);
+    int RoundLength(int round) const;
+    bool Finish(bool isUsed, const std::string& why);
+    void SetPaths();
+
+    const Scene& scene;
+    const LearningOptions options;
+    const int pace;  // samples per pixel of a round of auto
+    Learning learning;
+    PathOptions paths = Estimator::Combined;
+};
 
 }  // namespace lull

@@ -8,7 +8,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t kTag = 0x31756c67;
+constexpr uint32_t kTag = 0x32756c67;
 
 constexpr const char* kDamaged = "its guide is damaged";
 
@@ -79,9 +79,10 @@ Guide GetGuide(StateReader* reader) {
 void PutFigures(const GuideFigures& f, StateWriter* writer) {
     writer->Put(uint8_t(f.isUsed));
     writer->PutVector(std::vector<char>(f.why.begin(), f.why.end()));
-    writer->Put(std::array<int32_t, 3>{f.rounds, f.samples, f.leaves});
+    writer->Put(std::array<int32_t, 4>{f.rounds, f.from, f.samples, f.leaves});
     writer->Put(f.bytes);
-    writer->Put(std::array<double, 4>{f.seconds, f.variance, f.varianceError, f.vertices});
+    writer->Put(f.seconds);
+    writer->Put(f.comparison);
 }
 
 GuideFigures GetFigures(StateReader* reader) {
@@ -89,16 +90,14 @@ GuideFigures GetFigures(StateReader* reader) {
     f.isUsed = reader->Get<uint8_t>() != 0;
     const auto why = reader->GetVector<char>(kDamaged);
     f.why.assign(why.begin(), why.end());
-    const auto counts = reader->Get<std::array<int32_t, 3>>();
+    const auto counts = reader->Get<std::array<int32_t, 4>>();
     f.rounds = counts[0];
-    f.samples = counts[1];
-    f.leaves = counts[2];
+    f.from = counts[1];
+    f.samples = counts[2];
+    f.leaves = counts[3];
     f.bytes = reader->Get<int64_t>();
-    const auto values = reader->Get<std::array<double, 4>>();
-    f.seconds = values[0];
-    f.variance = values[1];
-    f.varianceError = values[2];
-    f.vertices = values[3];
+    f.seconds = reader->Get<double>();
+    f.comparison = reader->Get<GuideComparison>();
     return f;
 }
 
@@ -107,14 +106,16 @@ GuideFigures GetFigures(StateReader* reader) {
 std::vector<std::byte> SaveLearning(const Learning& learning) {
     StateWriter writer;
     writer.Put(kTag);
-    writer.Put(int32_t(learning.round));
+    writer.Put(std::array<int32_t, 2>{learning.round, learning.end});
     writer.Put(learning.usual);
-    writer.Put(uint8_t(learning.isDone));
+    writer.Put(std::array<int64_t, 2>{learning.paths, learning.samples});
     PutFigures(learning.figures, &writer);
     PutGuide(learning.guide, &writer);
     PutGuide(learning.state.guide, &writer);
     writer.PutVector(learning.state.record.sums);
     writer.PutVector(learning.state.record.leaves);
+    writer.PutVector(learning.tally.unguided);
+    writer.PutVector(learning.tally.guided);
     return std::move(writer.bytes);
 }
 
@@ -122,23 +123,31 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     StateReader reader(bytes);
     Learning learning;
     if (reader.Get<uint32_t>() != kTag) Refuse();
-    learning.round = reader.Get<int32_t>();
+    const auto round = reader.Get<std::array<int32_t, 2>>();
+    learning.round = round[0];
+    learning.end = round[1];
     learning.usual = reader.Get<double>();
-    learning.isDone = reader.Get<uint8_t>() != 0;
+    const auto counts = reader.Get<std::array<int64_t, 2>>();
+    learning.paths = counts[0];
+    learning.samples = counts[1];
     learning.figures = GetFigures(&reader);
     learning.guide = GetGuide(&reader);
     GuideState& state = learning.state;
     state.guide = GetGuide(&reader);
     state.record.sums = reader.GetVector<uint64_t>(kDamaged);
     state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
+    learning.tally.unguided = reader.GetVector<SampleSpread>(kDamaged);
+    learning.tally.guided = reader.GetVector<SampleSpread>(kDamaged);
     reader.Finish();
-    const bool fits = state.record.sums.size() == 4 * state.guide.quads.size() &&
-                      state.record.leaves.size() == state.guide.leaves.size();
-    const bool isComplete = learning.isDone
-                                ? learning.figures.isUsed == !learning.guide.nodes.empty()
-                                : learning.round > 0 && learning.round < 24 && learning.usual > 0 &&
-                                      !state.guide.nodes.empty();
-    if (!fits || !isComplete) Refuse();
+    const bool records = !learning.IsDone() && learning.round > 0;
+    const bool fits =
+        state.record.sums.size() == 4 * state.guide.quads.size() &&
+        state.record.leaves.size() == state.guide.leaves.size() &&
+        records == !state.guide.nodes.empty() &&
+        (learning.IsDone() && learning.figures.isUsed) == !learning.guide.nodes.empty();
+    if (!fits || learning.round < 0 || learning.round >= 24 || learning.end <= 0 ||
+        (records && !(learning.usual > 0)))
+        Refuse();
     return learning;
 }
 

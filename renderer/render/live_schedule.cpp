@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "renderer/render/guide_learning.h"
+
 namespace lull {
 
 namespace {
@@ -9,6 +11,7 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(options.secondsLeft);
+    if (options.learner) schedule.roundEnd = options.learner->RoundEnd();
     return schedule;
 }
 
@@ -70,6 +73,16 @@ void LiveSchedule::CallTime() {
 bool LiveSchedule::IsOver() {
     std::lock_guard lock(mutex);
     return schedule.Done() || (timeCalled && !schedule.MustGoOn());
+}
+
+bool LiveSchedule::IsRoundOver() {
+    std::lock_guard lock(mutex);
+    return schedule.IsRoundOver();
+}
+
+void LiveSchedule::BeginRound(int end) {
+    std::lock_guard lock(mutex);
+    schedule.BeginRound(end);
 }
 
 std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(film, options.layers); }

@@ -36,6 +36,9 @@ class LiveSchedule {
     bool TimeCalled() const { return timeCalled; }
     // Says whether no tile will be ready any more.
     bool IsOver();
+    // Says whether the round is over; begins the next, with no task at work.
+    bool IsRoundOver();
+    void BeginRound(int end);
 
     // Calls look(schedule) while nothing changes.
     template <typename Look>

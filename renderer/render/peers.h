@@ -25,6 +25,9 @@
 // With Start, tiles go to where there is time: the sums of those that have another owner are sent
 // to it, and it adds to them as the one before would have.
 //
+// While a guide is learned from the image's samples, rank 0 has all tiles; then it tells the others
+// what it knows by Guide, and deals the tiles out to all.
+//
 // Rank 0 asks those it hears nothing of for a sign of life. Who gives none for long is given up:
 // its tiles go to the others, who take its samples again from where rank 0 has its sums.
 #pragma once

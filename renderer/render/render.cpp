@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "renderer/render/executor_internal.h"
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/ranks/rank.h"
 
 namespace lull {
@@ -53,10 +54,25 @@ SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
     };
 }
 
+SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner) {
+    return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return RenderSample(scene, learner.Paths(), sampler, pixel, index);
+    };
+}
+
 AovSource AovSamplesOf(const Scene& scene, PathOptions options, const AovSet& wanted) {
     options.throughSpecular = wanted.throughSpecular;
     return [&scene, options, asks = wanted.FirstHits()](Sampler& sampler, const Vec2i& pixel,
                                                         uint32_t index, FirstHit* firstHit) {
+        return RenderSample(scene, options, sampler, pixel, index, asks ? firstHit : nullptr);
+    };
+}
+
+AovSource AovSamplesOf(const Scene& scene, const GuideLearner& learner, const AovSet& wanted) {
+    return [&, through = wanted.throughSpecular, asks = wanted.FirstHits()](
+               Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
+        PathOptions options = learner.Paths();
+        options.throughSpecular = through;
         return RenderSample(scene, options, sampler, pixel, index, asks ? firstHit : nullptr);
     };
 }

@@ -34,6 +34,7 @@ struct RenderState {
     double seconds = 0;  // since the start of the first run
 };
 
+class GuideLearner;
 class Peers;
 
 struct RenderOptions {
@@ -81,6 +82,10 @@ struct RenderOptions {
     // Is told of a rank that was given up, and for how many seconds it was silent. Can be empty.
     std::function<void(int rank, double seconds)> onGivenUp;
 
+    // Learns from the samples, in rounds, of which the source heeds what it has learned
+    // (guide_learning.h). Null: nothing is learned.
+    GuideLearner* learner = nullptr;
+
     // What is collected beside the film, from the same samples; they are the same bits with it.
     Layers layers;
     // Is shown every tile when it has been rendered, and every block that stops. Null: none.
@@ -112,5 +117,8 @@ RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
 // source.
 SampleSource SamplesOf(const Scene&, const PathOptions&);
+// The same, traced as the learner says at the time, which must outlive it too.
+SampleSource SamplesOf(const Scene&, const GuideLearner&);
+AovSource AovSamplesOf(const Scene&, const GuideLearner&, const AovSet& wanted);
 
 }  // namespace lull

@@ -50,6 +50,7 @@ int PassEndAfter(int spp, const ScheduleOptions& options) {
     int end = (spp / pass + 1) * pass;
     // A step that would leave less than itself to the pass is all that is left of it.
     if (const int step = std::max(1, 2 * spp); options.worstFirst && 2 * step <= pass) end = step;
+    if (spp < options.roundEnd) end = std::min(end, options.roundEnd);
     return std::min(end, options.cap);
 }
 
@@ -81,14 +82,27 @@ Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
         if (blocks[i].leader >= 0)
             progress[blocks[i].leader].followers.push_back(i);
         else if (!blocks[i].stopped)
-            StartPass(i, progress[i].mustEnd ? starts[size_t(i)].passEnd
-                                             : PassEndAfter(blocks[i].spp, options));
+            GoOn(i, progress[i].mustEnd ? starts[size_t(i)].passEnd
+                                        : PassEndAfter(blocks[i].spp, options));
     for (int i = 0; i < int(blocks.size()); ++i)
         if (blocks[i].leader >= 0) CatchUp(i);
 }
 
-// Starts the next pass of a block that nobody leads.
-void Schedule::GoOn(int i) { StartPass(i, PassEndAfter(blocks[i].spp, options)); }
+// Starts the next pass of a block that nobody leads, unless it has to wait for the next round.
+void Schedule::GoOn(int block, int target) {
+    if (blocks[block].spp < options.roundEnd) StartPass(block, std::min(target, options.roundEnd));
+}
+
+bool Schedule::IsRoundOver() const {
+    return !Done() && std::ranges::none_of(progress, &Progress::underWay);
+}
+
+void Schedule::BeginRound(int end) {
+    options.roundEnd = end;
+    for (int i = 0; i < int(blocks.size()); ++i)
+        if (blocks[i].leader < 0 && !blocks[i].stopped && !progress[i].underWay)
+            GoOn(i, PassEndAfter(blocks[i].spp, options));
+}
 
 void Schedule::StartPass(int block, int target) {
     Progress& pass = progress[block];
@@ -178,7 +192,7 @@ void Schedule::Decide(int i, bool stop, double noise) {
     if (stop || block.spp >= options.cap)
         Stop(i, stop);
     else
-        GoOn(i);
+        GoOn(i, PassEndAfter(block.spp, options));
     for (const int follower : progress[i].followers) CatchUp(follower);
 }
 

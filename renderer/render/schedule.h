@@ -13,6 +13,9 @@
 
 namespace lull {
 
+// The end of a round, in spp, that never comes.
+inline constexpr int noRoundEnd = std::numeric_limits<int>::max();
+
 struct ScheduleOptions {
     int blockSize = 200;  // pixels a side, > 0; blocks at the right and bottom can be smaller
     int passLength = 20;  // samples per pixel and pass, > 0
@@ -25,11 +28,13 @@ struct ScheduleOptions {
     // noise, so that at any moment the worst block is as good as it can be, after a first pass in
     // steps.
     bool worstFirst = false;
+    // Samples per pixel that no block exceeds before the next round has begun.
+    int roundEnd = noRoundEnd;
 };
 
 // Returns the spp at the end of the pass that begins at `spp`, a multiple of the length of passes
-// or the cap. With a clock the first pass is done in steps of 1, 2, 4, ... spp, in case that there
-// is no time for all of it.
+// the end of the round, or the cap. With a clock the first pass is done in steps of 1, 2, 4, ...
+// spp, in case that there is no time for all of it.
 int PassEndAfter(int spp, const ScheduleOptions&);
 // Says whether a pass, or the first as a whole, ends at `spp`.
 bool IsPassEnd(int spp, const ScheduleOptions&);
@@ -137,6 +142,11 @@ class Schedule {
     // schedule was.
     void CallTime();
 
+    // Says whether all blocks that have not stopped have come to the end of the round.
+    bool IsRoundOver() const;
+    // Begins a round: makes the passes of these blocks ready.
+    void BeginRound(int end);
+
     bool Done() const { return stoppedBlocks == int(blocks.size()); }
     int StoppedBlocks() const { return stoppedBlocks; }
     int BlocksAtCap() const { return blocksAtCap; }  // of those, not stopped by a vote
@@ -162,7 +172,7 @@ class Schedule {
     void StartPass(int block, int target);
     void MakeReady(int block);
     void MakeUnready(int block);
-    void GoOn(int block);
+    void GoOn(int block, int target);
     void Stop(int block, bool byVote);
     void CatchUp(int follower);
 

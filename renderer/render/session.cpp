@@ -8,7 +8,6 @@
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/files/file_io.h"
-#include "renderer/render/guide_learning_state.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
 
@@ -65,6 +64,14 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         options.render.layers.features = &*features;
         options.identity["features"] = "yes";
     }
+    CheckGuide(options.guide, scene, options.estimator);
+    if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
+    learner.emplace(scene,
+                    LearningOptions{.mode = options.guide.mode,
+                                    .megabytes = options.guide.megabytes,
+                                    .isShort = bool(options.clock)},
+                    region.Area());
+    options.render.learner = &*learner;
 }
 
 void Session::DropFeatures() {
@@ -81,58 +88,23 @@ void Session::Resume() {
         Tell(options.onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }
-    RenderState state = ReadCheckpoint(checkpoint.file, options.identity, &film,
-                                       options.render.layers, &guide, checkpoint.mayDiffer);
-    Tell(options.onResume, "going on from {}{}", checkpoint.file,
-         state.criteria.empty() && !state.blocks.empty() ? ", with another rule" : "");
-    if (!state.blocks.empty()) interrupted = std::move(state);  // else it was learning
-}
-
-LearningOptions Session::MakeLearningOptions() const {
-    const RenderOptions& render = options.render;
-    LearningOptions learn{.mode = options.guide.mode,
-                          .megabytes = options.guide.megabytes,
-                          .sampler = render.sampler,
-                          .seed = render.seed,
-                          .threads = render.threads,
-                          .cap = render.schedule.cap,
-                          .isCancelled = render.isCancelled,
-                          .isEnough = {}};
-    // Several ranks have to come to the same.
-    if (render.peers && render.peers->Count() > 1)
-        learn.isCancelled = {};
-    else if (options.clock)
-        HeedClock(options.clock, &learn);
-    return learn;
-}
-
-bool Session::Learn() {
-    if (options.guide.mode == GuideMode::Off) return true;
-    CheckGuide(options.guide, scene, options.estimator);
-    if (const auto why = WhyNotGuided(scene, options.estimator)) {
-        learning = NotGuided(*why);
-    } else {
-        const LearningOptions learn = MakeLearningOptions();
-        if (KeepsGuide() && !guide.empty()) try {
-                learning = RestoreLearning(guide);
-            } catch (const std::runtime_error& e) {
-                throw Error(options.checkpoint.file + ": " + e.what());
-            }
-        const bool isNew = !learning.isDone;
-        if (isNew) Tell(options.onLearning, "learning where light comes from");
-        const auto onRound = [&](const Learning& l) {
-            if (!KeepsGuide() || !Leads()) return;
-            guide = SaveLearning(l);
-            TryToWrite({}, Film(PixelRect()), {}, "");
-        };
-        if (!lull::Learn(scene, region, learn, &learning, onRound)) {
-            if (options.render.isCancelled && options.render.isCancelled()) return false;
-            learning = NotGuided("the time did not suffice for learning");
+    std::vector<std::byte> guide;
+    interrupted = ReadCheckpoint(checkpoint.file, options.identity, &film, options.render.layers,
+                                 &guide, checkpoint.mayDiffer);
+    if (learner) try {
+            learner->Take(guide, film);
+        } catch (const std::runtime_error& e) {
+            throw Error(checkpoint.file + ": " + e.what());
         }
-        if (isNew) Tell(options.onLearning, "{}", TextOf(learning.figures, options.guide.mode));
-    }
-    if (KeepsGuide()) guide = SaveLearning(learning);
-    return true;
+    Tell(options.onResume, "going on from {}{}", checkpoint.file,
+         interrupted->criteria.empty() ? ", with another rule" : "");
+}
+
+GuideFigures Session::Guidance() const {
+    if (learner) return learner->Figures();
+    GuideFigures figures;
+    figures.why = WhyNotGuided(scene, options.estimator).value_or("nobody asked for it");
+    return figures;
 }
 
 RenderResult Session::Run(const RenderFunction& render) {
@@ -148,6 +120,8 @@ RenderResult Session::Run(const RenderFunction& render) {
     if (o.display && interrupted) o.display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
     RenderResult result = render(source, o, &film, interrupted ? &*interrupted : nullptr);
+    if (options.guide.mode != GuideMode::Off)
+        Tell(options.onLearning, "{}", TextOf(Guidance(), options.guide.mode));
     if (o.display) o.display->Show(region, film);  // some may have been undone
     return result;
 }
@@ -161,9 +135,9 @@ void Session::SetSources() {
         if (!options.aovs.Any()) wanted.throughSpecular = true;
         wanted.albedo = wanted.normal = wanted.depth = true;
     }
-    if (learning.figures.isUsed) {
-        source = SamplesOf(scene, learning.guide);
-        if (layers) layers.source = AovSamplesOf(scene, learning.guide, wanted);
+    if (learner) {
+        source = SamplesOf(scene, *learner);
+        if (layers) layers.source = AovSamplesOf(scene, *learner, wanted);
     } else {
         source = SamplesOf(scene, options.estimator);
         if (layers) layers.source = AovSamplesOf(scene, options.estimator, wanted);
@@ -177,15 +151,15 @@ void Session::KeepCheckpoints() {
     options.render.checkpointInterval = options.checkpoint.interval;
     if (options.checkpoint.isKept) options.render.checkpointAtEnd = true;
     options.render.onCheckpoint = [this, said = std::string()](const RenderState& state) mutable {
-        said = TryToWrite(state, film, options.render.layers, said);
+        said = TryToWrite(state, said);
     };
 }
 
 // Warns of a checkpoint that could not be written, and returns of what; "" if it was. What `said`
 // holds is not said again: a disk stays full for more than one attempt.
-std::string Session::TryToWrite(const RenderState& state, const Film& pixels, const Layers& layers,
-                                const std::string& said) try {
-    WriteCheckpoint(options.checkpoint.file, options.identity, state, pixels, layers, guide);
+std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
+    WriteCheckpoint(options.checkpoint.file, options.identity, state, film, options.render.layers,
+                    learner ? learner->Save() : std::vector<std::byte>());
     return "";
 } catch (const Error& e) {
     if (e.what() != said) Tell(options.onWarning, "no checkpoint: {}", e.what());

@@ -3,21 +3,20 @@
 //
 //     Session session(scene, region, options);
 //     session.Resume();
-//     if (!session.Learn()) ...  // interrupted
 //     const RenderResult result = session.Run();
 #pragma once
 
 #include "renderer/render/checkpoint.h"
+#include "renderer/render/guide_learning.h"
 
 namespace lull {
 
 // Says where a render keeps what it takes to go on after an interruption.
 struct CheckpointOptions {
-    std::string file;        // empty: none
-    double interval = 60;    // seconds
-    bool resume = false;     // goes on from the file, if it is there
-    bool keepsGuide = true;  // else what was learned is learned anew, to the same bits
-    bool isKept = false;     // also when every block has stopped
+    std::string file;      // empty: none
+    double interval = 60;  // seconds
+    bool resume = false;   // goes on from the file, if it is there
+    bool isKept = false;   // also when every block has stopped
     MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
@@ -32,7 +31,8 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
 
 struct SessionOptions {
-    // The session itself sets `layers`, `secondsLeft`, `onCheckpoint` and `checkpointInterval`.
+    // The session itself sets `layers`, `learner`, `secondsLeft`, `onCheckpoint` and
+    // `checkpointInterval`.
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
@@ -59,17 +59,13 @@ using RenderFunction = std::function<RenderResult(const SampleSource&, const Ren
 
 class Session {
   public:
-    // The scene must outlive it.
+    // The scene must outlive it. Throws as CheckGuide().
     Session(const Scene&, const PixelRect& region, SessionOptions);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
     // Takes up what the checkpoint has, where it is to be resumed from. Throws as ReadCheckpoint().
     void Resume();
-    // Learns, where paths are to be guided; goes on from where the checkpoint was. Returns false if
-    // it was interrupted. Each of several ranks learns all, to the same bits. Throws as
-    // CheckGuide().
-    bool Learn();
     // Renders, once. Of several ranks, the first has the image. Throws as Render() does.
     RenderResult Run(const RenderFunction& render = Render);
 
@@ -81,18 +77,17 @@ class Session {
     const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
     // Frees them, once the render is done and nobody asks for them.
     void DropFeatures();
-    const GuideFigures& Guidance() const { return learning.figures; }
+    // Returns what was learned so far, or why nothing is; nothing where no guide was asked for.
+    GuideFigures Guidance() const;
     // Return what was rendered, and how.
     const SampleSource& Source() const { return source; }
     const RenderOptions& Options() const { return options.render; }
 
   private:
-    LearningOptions MakeLearningOptions() const;
     void SetSources();
     void KeepCheckpoints();
-    std::string TryToWrite(const RenderState&, const Film&, const Layers&, const std::string& said);
+    std::string TryToWrite(const RenderState&, const std::string& said);
     bool HasCheckpoint() const { return !options.checkpoint.file.empty(); }
-    bool KeepsGuide() const { return HasCheckpoint() && options.checkpoint.keepsGuide; }
 
     const Scene& scene;
     const PixelRect region;
@@ -102,8 +97,7 @@ class Session {
     std::optional<FeatureFilm> features;
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
-    Learning learning;
-    std::vector<std::byte> guide;  // what was learned, for checkpoints
+    std::optional<GuideLearner> learner;
     SampleSource source;
 };
 

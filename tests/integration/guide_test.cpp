@@ -38,7 +38,7 @@ TEST(GuideOption, KilledWhileLearningComesToTheSameBits) {
     ASSERT_EQ(RunShell(directory, render + "-o whole.exr --threads 1").exitCode, 0);
     const std::string parts =
         render + "-o parts.exr --threads 2 --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
-    // Right after the first round, and then at several moments.
+    // After the first checkpoint, and then at several moments.
     Outcome outcome = RunAndSignal(directory, parts, SIGKILL, "c.h5");
     EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
     for (int kill = 0; kill < 3 && outcome.exitCode == 137; ++kill)
@@ -64,7 +64,9 @@ TEST(GuideOption, ReportSaysWhatWasDecided) {
     EXPECT_EQ(on["mode"], "on");
     EXPECT_EQ(on["used"], true);
     EXPECT_EQ(on["memory"], 8);
-    EXPECT_EQ(on["rounds"], 1);
+    EXPECT_EQ(on["from"], 4);
+    EXPECT_EQ(on["spp"], 12);
+    EXPECT_EQ(on["rounds"], 2);
     EXPECT_LE(on["bytes"], 4 << 20);
     EXPECT_FALSE(on.contains("variance"));
     // A render of few samples is not worth learning for.

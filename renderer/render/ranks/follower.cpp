@@ -1,4 +1,5 @@
 // All ranks but the first: render their tiles, and do as they are told.
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/ranks/rank.h"
 
 namespace lull {
@@ -45,6 +46,8 @@ class Follower {
             needs.at(size_t(answer.block)) = answer.need;
             const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
             if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
+        } else if (word == RankWord::Guide) {
+            options.learner->Take(GetGuide(reader), *film);
         } else if (word == RankWord::Start) {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <numeric>
 
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -35,12 +36,17 @@ class Leader {
 
   private:
     RenderResult RunAll() {
+        TellGuide();
         SendStart({});
         executor.nextCheckpoint = Seconds() + options.checkpointInterval;
         for (;;) {
             executor.pausing = false;
             rank.EnqueueReady();
             RunUntilPause();
+            if (schedule.IsRoundOver() && !executor.IsCancelled()) {
+                EndRound();
+                continue;
+            }
             const double pause = Seconds();
             const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
             Gather(undo);
@@ -66,6 +72,22 @@ class Leader {
             result.shares.push_back(double(std::ranges::count(dealt, other)) /
                                     double(dealt.size()));
         return result;
+    }
+
+    void EndRound() {
+        executor.Quiesce();
+        executor.EndRound();
+        if (IsLearning(options)) return;
+        TellGuide();
+        deal = FirstDeal(options);
+        std::erase_if(deal, [&](int other) { return channel.HasGivenUp(other); });
+        Deal();
+    }
+
+    // The learner of the others, who have no tiles before that, is to know what this one does.
+    void TellGuide() {
+        if (options.learner && !IsLearning(options))
+            channel.PostToAll(PackGuide(options.learner->Save()));
     }
 
     double Seconds() const { return executor.ledger.Seconds(); }
@@ -184,7 +206,7 @@ class Leader {
     bool IsOver() { return executor.IsCancelled() || schedule.IsOver(); }
 
     void RunUntilPause() {
-        while (!executor.pausing && !IsOver()) {
+        while (!executor.pausing && !IsOver() && !schedule.IsRoundOver()) {
             Exchange();
             WatchOthers();
             if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
@@ -309,6 +331,7 @@ class Leader {
     }
 
     void TellAnswer(int block, const BlockAnswer& answer) {
+        if (IsLearning(options)) return;  // by Start, where there are tiles for others
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
         const ViewNeed need = answer.stop ? ViewNeed::Nothing : executor.judge.NeedAt(block, next);

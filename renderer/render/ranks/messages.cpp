@@ -65,6 +65,12 @@ std::vector<std::byte> PackCollect(bool undo) {
     return std::move(writer.bytes);
 }
 
+std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned) {
+    StateWriter writer = Begin(RankWord::Guide);
+    writer.PutVector(learned);
+    return std::move(writer.bytes);
+}
+
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
                                   const Layers& layers) {
     StateWriter writer = Begin(RankWord::Pixels);
@@ -101,6 +107,10 @@ StartMessage GetStart(StateReader& reader) {
         message.needs.push_back(reader.Get<ViewNeed>());
     }
     return message;
+}
+
+std::vector<std::byte> GetGuide(StateReader& reader) {
+    return reader.GetVector<std::byte>("a message of a rank is damaged");
 }
 
 AnswerMessage GetAnswer(StateReader& reader) { return reader.Get<AnswerMessage>(); }

@@ -12,6 +12,7 @@ enum class RankWord : uint8_t {
     // From rank 0.
     Start,    // StartMessage; then come the sums of tiles that the rank did not own
     Begin,    // all of them have been sent
+    Guide,    // what was learned, before Start
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
@@ -60,11 +61,13 @@ std::vector<std::byte> Pack(const StartMessage&);
 std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
+std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&,
                                   const Layers&);
 
 // Read what follows on the word. Throw std::runtime_error for what was not packed so.
 StartMessage GetStart(StateReader&);
+std::vector<std::byte> GetGuide(StateReader&);
 AnswerMessage GetAnswer(StateReader&);
 PartMessage GetPart(StateReader&);
 // Reads the number of a block, below `blocks`.

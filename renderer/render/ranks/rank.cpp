@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -22,11 +23,18 @@ RankHooks WithFailures(RankHooks hooks, Rank* rank) {
 
 }  // namespace
 
+bool IsLearning(const RenderOptions& options) {
+    return options.learner && !options.learner->IsDone();
+}
+
+std::vector<int> FirstDeal(const RenderOptions& options) {
+    return IsLearning(options) ? std::vector{0} : EvenDeal(options.peers->Count());
+}
+
 Rank::Rank(const SampleSource& source, const RenderOptions& options, Film* film,
            const RenderState* interrupted, tbb::task_arena* arena, RankHooks hooks)
     : executor(source, options, film, interrupted, StartsOf(interrupted, options, *film),
-               {options.peers->Rank(), EvenDeal(options.peers->Count())},
-               WithFailures(std::move(hooks), this)),
+               {options.peers->Rank(), FirstDeal(options)}, WithFailures(std::move(hooks), this)),
       channel(options.peers, options.onSilence),
       tileSize(options.schedule.tileSize),
       arena(arena) {}

@@ -41,6 +41,12 @@ class Rank {
     tbb::task_arena* arena;
 };
 
+// Says whether a guide is being learned: rank 0 then has all tiles.
+bool IsLearning(const RenderOptions&);
+
+// Returns how tiles are dealt out as long as nobody knows how fast ranks are.
+std::vector<int> FirstDeal(const RenderOptions&);
+
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
 // There is no display.
 RenderResult LeadRanks(const SampleSource&, const RenderOptions&, Film*,

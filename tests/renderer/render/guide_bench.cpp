@@ -1,9 +1,9 @@
 // Measures what guiding paths does, scene by scene, in runs that alternate: "noise" is the mean
 // squared error in lightness of images of 16 spp, guided over unguided; "seconds" is what a sample
-// takes of a processor; "cost" is the product, the time to the same noise. "trial" and "vertices"
-// are what --guide auto sees, "learned" the spp that went into that. The scenes are those of
-// LULL_BENCH_SCENES (files, separated by colons), or our own, with LULL_BENCH_SIDE (64) pixels a
-// side; learning may take a quarter of LULL_BENCH_CAP (1000) spp.
+// takes of a processor; "cost" is the product, the time to the same noise. "recording" is what a
+// sample takes of which paths are guided and recorded, over one that is guided alone. The scenes
+// are those of LULL_BENCH_SCENES (files, separated by colons), or our own, with LULL_BENCH_SIDE
+// (64) pixels a side; the guide has learned from an image of LULL_BENCH_SPP (252) spp.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -13,7 +13,7 @@
 #include "renderer/base/thread_clock.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/render/guide_learning.h"
-#include "renderer/render/guide_trial.h"
+#include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bench_scenes.h"
 
@@ -67,28 +67,29 @@ void BenchGuide(benchmark::State& state, const std::string& file) {
     const auto scene = Compile(ParsePbrt(file, warnings), options, warnings);
     if (const auto why = WhyNotGuided(*scene, Estimator::Combined))
         return state.SkipWithError(why->c_str());
-    LearningOptions learningOptions;
-    learningOptions.sampler = SamplerKind::Random;
-    learningOptions.cap = FromEnvironment("LULL_BENCH_CAP", 1000);
-    learningOptions.megabytes = FromEnvironment("LULL_BENCH_MEMORY", learningOptions.megabytes);
+    const PixelRect region{{0, 0}, {side, side}};
     for (auto _ : state) {
-        Learning learning;
-        const PixelRect region{{0, 0}, {side, side}};
-        Learn(*scene, region, learningOptions, &learning);
-        Images plain, guided;
+        GuideLearner learner(*scene, {.megabytes = FromEnvironment("LULL_BENCH_MEMORY", 64)},
+                             region.Area());
+        RenderOptions render;
+        render.schedule.cap = FromEnvironment("LULL_BENCH_SPP", 252);
+        render.sampler = SamplerKind::Random;
+        render.learner = &learner;
+        Film film(region, {.grid = GridOf(render.schedule)});
+        Render(SamplesOf(*scene, learner), render, &film);
+        Images plain, guided, recorded;
+        const PathOptions records = learner.Paths();
         for (uint64_t i = 0; i < kImages; ++i) {
             plain.Add(SamplesOf(*scene, Estimator::Combined), side, 1 + i);
-            guided.Add(SamplesOf(*scene, learning.guide), side, 1 + i);
+            guided.Add(SamplesOf(*scene, *records.guide), side, 1 + i);
+            recorded.Add(SamplesOf(*scene, records), side, 1 + i);
         }
-        const auto trial = TryGuide(*scene, region, learning.guide, {});
         const double noise = guided.Noise() / plain.Noise(),
                      seconds = guided.seconds / plain.seconds;
         state.counters["noise"] = noise;
         state.counters["seconds"] = seconds;
         state.counters["cost"] = noise * seconds;
-        state.counters["trial"] = trial->variance;
-        state.counters["vertices"] = trial->vertices;
-        state.counters["learned"] = learning.figures.samples;
+        state.counters["recording"] = recorded.seconds / guided.seconds;
     }
 }
 

@@ -1,4 +1,4 @@
-// Checks learning and guided rendering as a whole: the same mean, less variance, the same bits.
+// Checks renders that learn a guide as they go on: the same mean, less variance, the same bits.
 #include "renderer/render/guide_learning.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
 namespace {
@@ -62,23 +63,44 @@ AttributeEnd
 
 PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
 
-LearningOptions OptionsFor(GuideMode mode, int cap = 500) {
-    LearningOptions options;
-    options.mode = mode;
+RenderOptions RenderFor(int cap, uint64_t seed = 0, int threads = 2) {
+    RenderOptions options;
+    options.schedule = {.blockSize = 200, .passLength = 20, .cap = cap};
     options.sampler = SamplerKind::Random;
-    options.threads = 2;
-    options.cap = cap;
+    options.seed = seed;
+    options.threads = threads;
     return options;
 }
 
-Learning LearnAll(const Scene& scene, const LearningOptions& options) {
-    Learning learning;
-    EXPECT_TRUE(Learn(scene, RegionOf(scene), options, &learning));
-    return learning;
-}
+// A render that learns, and what it has learned.
+struct LearningRender {
+    LearningRender(const Scene& scene, RenderOptions given, LearningOptions how = {})
+        : scene(scene),
+          options(std::move(given)),
+          learner(scene, how, RegionOf(scene).Area()),
+          film(RegionOf(scene), {.grid = GridOf(options.schedule)}) {
+        options.learner = &learner;
+    }
+    RenderResult Run(const RenderState* interrupted = nullptr) {
+        return Render(SamplesOf(scene, learner), options, &film, interrupted);
+    }
+    const Guide& TheGuide() const { return *learner.Paths().guide; }
+    double Mean() const {
+        double sum = 0;
+        const std::vector<float> means = film.MeanImage();
+        for (size_t i = 1; i < means.size(); i += 3) sum += double(means[i]);
+        return sum / double(film.Region().Area());
+    }
+
+    const Scene& scene;
+    RenderOptions options;
+    GuideLearner learner;
+    Film film;
+};
 
 // Returns all but the time it took.
-std::vector<std::byte> BytesOf(Learning learning) {
+std::vector<std::byte> BytesOf(const GuideLearner& learner) {
+    Learning learning = RestoreLearning(learner.Save());
     learning.figures.seconds = 0;
     return SaveLearning(learning);
 }
@@ -128,14 +150,36 @@ TEST(Learning, WithoutAnythingToSayPathsAreThoseWithout) {
 
 TEST(Learning, KeepsTheMeanAndLowersTheVariance) {
     const auto scene = MakeScene(kRoom, 32);
-    const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 1100));
-    ASSERT_TRUE(learning.figures.isUsed);
-    EXPECT_EQ(learning.figures.rounds, 6);  // 4 + 8 + ... + 128 of at most 1100 / 4 spp
+    LearningRender render(*scene, RenderFor(300));
+    render.Run();
+    ASSERT_TRUE(render.learner.Figures().isUsed);
+    EXPECT_EQ(render.learner.RoundEnd(), 512);
+    EXPECT_EQ(render.learner.Figures().rounds, 6);  // of 4, 4 + 4, ..., up to 256 spp
+    EXPECT_EQ(render.learner.Figures().samples, 252);
     const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 60, 5);
-    const Estimate guided = Measure(*scene, SamplesOf(*scene, learning.guide), 60, 6);
+    const Estimate guided = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 60, 6);
     EXPECT_EQ(guided.rejected, 0);
     EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
     EXPECT_LT(guided.variance, 0.8 * plain.variance);
+}
+
+// All samples count, those of the first rounds too: the mean of images that each learned by itself
+// is that of images that did not.
+TEST(Learning, KeepsTheMeanOfTheWholeImage) {
+    const auto scene = MakeScene(kRoom, 12);
+    constexpr int kImages = 100, kSpp = 68;
+    double sum = 0, squares = 0;
+    for (uint64_t seed = 0; seed < kImages; ++seed) {
+        LearningRender render(*scene, RenderFor(kSpp, seed));
+        render.Run();
+        sum += render.Mean();
+        squares += Sqr(render.Mean());
+    }
+    const double mean = sum / kImages,
+                 error = std::sqrt((squares / kImages - Sqr(mean)) / (kImages - 1));
+    const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 4000, 1234);
+    EXPECT_NEAR(mean, plain.mean, 3.5 * std::hypot(error, plain.error));
+    EXPECT_LT(error, 0.01 * mean);
 }
 
 // A ball of fog in that room, and fog about the camera.
@@ -153,10 +197,11 @@ TEST(Learning, KeepsTheMeanInMedia) {
     for (const Scene* scene : {inside.get(), outside.get()}) {
         ASSERT_TRUE(scene->isVolumetric);
         ASSERT_FALSE(WhyNotGuided(*scene, Estimator::Combined));
-        const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 500));
+        LearningRender render(*scene, RenderFor(130));
+        render.Run();
         const Estimate pbrt = Measure(*scene, SamplesOf(*scene, Estimator::PbrtV3), 200, 4);
         const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 120, 5);
-        const Estimate guided = Measure(*scene, SamplesOf(*scene, learning.guide), 120, 6);
+        const Estimate guided = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 120, 6);
         EXPECT_EQ(guided.rejected, 0);
         EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
         EXPECT_NEAR(guided.mean, pbrt.mean, 4 * std::hypot(pbrt.error, guided.error));
@@ -167,18 +212,19 @@ TEST(Learning, KeepsTheMeanInMedia) {
 // in mirrors and through glass neither.
 TEST(Learning, LayersAreThoseWithout) {
     const auto scene = MakeScene(kRoom);
-    const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 250));
-    ASSERT_TRUE(learning.figures.isUsed);
+    LearningRender render(*scene, RenderFor(64));
+    render.Run();
+    const Guide guide = render.TheGuide();
     for (const bool throughSpecular : {false, true}) {
         const AovSet wanted{.depth = true, .throughSpecular = throughSpecular};
-        const AovSource guided = AovSamplesOf(*scene, learning.guide, wanted),
+        const AovSource guided = AovSamplesOf(*scene, guide, wanted),
                         plain = AovSamplesOf(*scene, Estimator::Combined, wanted);
         Sampler a(SamplerKind::Sobol, 1), b = a, c = a;
         for (uint32_t k = 0; k < 1000; ++k) {
             const Vec2i pixel(int(k % 16), int(k / 16 % 16));
             FirstHit hit, usual;
             const Rgb with = guided(a, pixel, k, &hit).radiance,
-                      without = SamplesOf(*scene, learning.guide)(b, pixel, k).radiance;
+                      without = SamplesOf(*scene, guide)(b, pixel, k).radiance;
             for (int channel = 0; channel < 3; ++channel)
                 ASSERT_EQ(with[channel], without[channel]);
             plain(c, pixel, k, &usual);
@@ -192,10 +238,10 @@ TEST(Learning, LayersAreThoseWithout) {
     }
     // Noise needs no first hits.
     Sampler a(SamplerKind::Sobol, 1), b = a;
-    const AovSource noise = AovSamplesOf(*scene, learning.guide, {.noise = true});
+    const AovSource noise = AovSamplesOf(*scene, guide, {.noise = true});
     FirstHit hit;
     EXPECT_EQ(noise(a, {3, 4}, 5, &hit).radiance.x(),
-              SamplesOf(*scene, learning.guide)(b, {3, 4}, 5).radiance.x());
+              SamplesOf(*scene, guide)(b, {3, 4}, 5).radiance.x());
     EXPECT_FALSE(hit.found);
 }
 
@@ -207,9 +253,11 @@ TEST(Learning, Furnace) {
             MakeScene(std::string("AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nMaterial ") +
                           material + "\nReverseOrientation\nShape \"sphere\" \"float radius\" [2]",
                       8, "0.3 0.2 -1  0 0 0  0 1 0", 1000);
-        const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On));
-        const Estimate e = Measure(*scene, SamplesOf(*scene, learning.guide), 400, 3);
+        LearningRender render(*scene, RenderFor(64));
+        render.Run();
+        const Estimate e = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 400, 3);
         EXPECT_NEAR(e.mean, 5, 4.5 * e.error + 1e-3) << material;
+        EXPECT_NEAR(render.Mean(), 5, 4.5 * e.error * std::sqrt(400. / 64) + 1e-3) << material;
         EXPECT_EQ(e.rejected, 0);
     }
 }
@@ -222,62 +270,105 @@ AttributeBegin
   Translate -.5 .2 .5
   Shape "sphere" "float radius" [1e-5]
 AttributeEnd)");
-    const Learning learning = LearnAll(*scene, OptionsFor(GuideMode::On, 100));
-    ASSERT_TRUE(learning.figures.isUsed);
-    const Estimate e = Measure(*scene, SamplesOf(*scene, learning.guide), 20, 2);
+    LearningRender render(*scene, RenderFor(32));
+    render.Run();
+    EXPECT_EQ(render.film.RejectedCount(), 0);
+    const Estimate e = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 20, 2);
     EXPECT_EQ(e.rejected, 0);
     EXPECT_TRUE(std::isfinite(e.mean) && std::isfinite(e.variance));
+}
+
+// Four blocks, which stop at different times, one of them within the first rounds.
+RenderOptions BlocksThatStop(int threads) {
+    RenderOptions options = RenderFor(400, 0, threads);
+    options.schedule.blockSize = 12;
+    options.makeCriterion = [](const BlockInfo& block) {
+        return std::make_unique<ScriptedCriterion>(20 + 40 * block.index * block.index);
+    };
+    return options;
 }
 
 TEST(Learning, IsTheSameOnAnyNumberOfThreads) {
     const auto scene = MakeScene(kRoom, 24);
     for (const GuideMode mode : {GuideMode::On, GuideMode::Auto}) {
-        LearningOptions options = OptionsFor(mode, mode == GuideMode::On ? 120 : 1000);
-        std::vector<std::byte> expected;
+        std::optional<Film> film;
+        std::vector<std::byte> learned;
         for (const int threads : {1, 2, 4}) {
-            options.threads = threads;
-            const auto bytes = BytesOf(LearnAll(*scene, options));
-            if (expected.empty()) expected = bytes;
-            EXPECT_TRUE(bytes == expected) << threads;
+            LearningRender render(*scene, BlocksThatStop(threads), {.mode = mode});
+            const RenderResult result = render.Run();
+            EXPECT_EQ(result.progress.stoppedBlocks, 4);
+            EXPECT_EQ(result.blocks[2].block.spp, 180);
+            if (!film) {
+                film = render.film;
+                learned = BytesOf(render.learner);
+                EXPECT_EQ(render.learner.Figures().rounds, mode == GuideMode::On ? 6 : 3);
+            }
+            EXPECT_TRUE(SamePixels(render.film, *film)) << threads;
+            EXPECT_TRUE(BytesOf(render.learner) == learned) << threads;
         }
+    }
+}
+
+// Nothing but the ends of rounds decides what a sample is, passes of any length end there too.
+TEST(Learning, DoesNotDependOnPasses) {
+    const auto scene = MakeScene(kRoom);
+    LearningRender render(*scene, RenderFor(70));
+    render.Run();
+    for (const int passLength : {1, 7, 70}) {
+        RenderOptions options = RenderFor(70);
+        options.schedule.passLength = passLength;
+        options.schedule.blockSize = 8;
+        LearningRender other(*scene, options);
+        other.Run();
+        EXPECT_TRUE(SamePixels(render.film, other.film)) << passLength;
     }
 }
 
 TEST(Learning, GoesOnToTheSameBits) {
-    const auto scene = MakeScene(kRoom);
-    LearningOptions options = OptionsFor(GuideMode::On, 250);
-    const auto expected = BytesOf(LearnAll(*scene, options));
-    // Interrupted in every round, after some tiles.
-    std::vector<std::byte> kept;
-    int interruptions = 0;
-    for (bool isDone = false; !isDone;) {
-        Learning learning;
-        if (!kept.empty()) learning = RestoreLearning(kept);
-        std::atomic<int> rounds = 0, asked = 0;
-        options.isCancelled = [&] { return rounds > 0 && ++asked > 2; };
-        isDone = Learn(*scene, RegionOf(*scene), options, &learning, [&](const Learning& l) {
-            ++rounds;
-            kept = SaveLearning(l);
-        });
-        if (isDone) {
-            EXPECT_TRUE(BytesOf(learning) == expected);
-        } else {
+    const auto scene = MakeScene(kRoom, 24);
+    for (const GuideMode mode : {GuideMode::On, GuideMode::Auto}) {
+        LearningRender whole(*scene, BlocksThatStop(1), {.mode = mode});
+        whole.Run();
+        // Interrupted over and over, after some tiles.
+        RenderState state;
+        std::optional<Film> film;
+        std::vector<std::byte> kept;
+        int interruptions = 0, rounds = 0;
+        for (bool isDone = false; !isDone;) {
+            LearningRender part(*scene, BlocksThatStop(2), {.mode = mode});
+            if (film) {
+                part.film = *film;
+                part.learner.Take(kept, part.film);
+            }
+            std::atomic<int> asked = 0;
+            part.options.isCancelled = [&] { return ++asked > 23; };
+            part.options.onCheckpoint = [&](const RenderState& s) { state = s; };
+            isDone = !part.Run(film ? &state : nullptr).cancelled;
+            film = part.film;
+            kept = part.learner.Save();
+            rounds = std::max(rounds, part.learner.Figures().rounds);
             ++interruptions;
+            if (isDone) {
+                EXPECT_TRUE(SamePixels(part.film, whole.film));
+                EXPECT_TRUE(BytesOf(part.learner) == BytesOf(whole.learner));
+            }
         }
+        EXPECT_GT(interruptions, 5);
+        EXPECT_EQ(rounds, mode == GuideMode::On ? 6 : 3);
     }
-    EXPECT_EQ(interruptions, 3);  // of 4 rounds, all but the last
 }
 
 TEST(Learning, SavedStateIsChecked) {
     const auto scene = MakeScene(kRoom);
-    std::vector<std::byte> bytes;
-    Learning learning;
-    Learn(*scene, RegionOf(*scene), OptionsFor(GuideMode::On, 60), &learning,
-          [&](const Learning& l) { bytes = SaveLearning(l); });
-    ASSERT_FALSE(bytes.empty());
+    LearningRender render(*scene, RenderFor(12));
+    render.Run();
+    const std::vector<std::byte> bytes = render.learner.Save();
     EXPECT_NO_THROW(RestoreLearning(bytes));
     for (const size_t size : {size_t(0), size_t(3), size_t(40), bytes.size() / 2, bytes.size() - 1})
         EXPECT_THROW(RestoreLearning(std::span(bytes).first(size)), std::runtime_error) << size;
+    // A learner that compares has as many tiles as the film.
+    LearningRender other(*scene, RenderFor(12), {.mode = GuideMode::Auto});
+    EXPECT_THROW(other.learner.Take(bytes, other.film), std::runtime_error);
     // What is taken nevertheless can be walked through.
     uint64_t state = 1;
     int refused = 0;
@@ -289,7 +380,7 @@ TEST(Learning, SavedStateIsChecked) {
         }
         try {
             const Guide guide = RestoreLearning(damaged).state.guide;
-            for (int k = 0; k < 50; ++k) {
+            for (int k = 0; k < 50 && !guide.nodes.empty(); ++k) {
                 const float u = float(k) / 50;
                 const GuideLeaf& leaf = guide.Leaf(guide.Find({u, -u, u}));
                 float pdf;
@@ -305,14 +396,26 @@ TEST(Learning, SavedStateIsChecked) {
 
 TEST(Learning, KeepsToItsMemory) {
     const auto scene = MakeScene(kRoom, 64);
-    LearningOptions options = OptionsFor(GuideMode::On, 250);
-    options.megabytes = 2;
-    Learning learning;
-    EXPECT_TRUE(Learn(*scene, RegionOf(*scene), options, &learning, [](const Learning& l) {
-        EXPECT_LE(l.state.guide.Bytes() + l.state.record.Bytes(), 1u << 20);
-    }));
-    EXPECT_LE(learning.guide.Bytes(), 1u << 20);
-    EXPECT_TRUE(learning.figures.isUsed);
+    for (const int spp : {40, 140}) {
+        LearningRender render(*scene, RenderFor(spp), {.megabytes = 2});
+        render.Run();
+        EXPECT_LE(render.learner.Save().size(), (1u << 20) + 1000);
+        EXPECT_TRUE(render.learner.Figures().isUsed);
+    }
+}
+
+// Learning ends, and the guide stays what it is.
+TEST(Learning, Ends) {
+    const auto scene = MakeScene(kRoom, 8);
+    LearningRender render(*scene, RenderFor(700));
+    render.Run();
+    EXPECT_TRUE(render.learner.IsDone());
+    EXPECT_EQ(render.learner.Figures().samples, 508);
+    EXPECT_EQ(render.learner.Paths().record, nullptr);
+    LearningRender brief(*scene, RenderFor(700), {.isShort = true});
+    brief.Run();
+    EXPECT_TRUE(brief.learner.IsDone());
+    EXPECT_EQ(brief.learner.Figures().samples, 60);
 }
 
 TEST(Learning, AutoGuidesWhereThatPays) {
@@ -321,19 +424,29 @@ TEST(Learning, AutoGuidesWhereThatPays) {
         "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"matte\"\n"
         "Shape \"disk\" \"float radius\" [10]",
         64, "0 0 2  0.1 0 0  0 0 1");
-    const Learning plain = LearnAll(*floor, OptionsFor(GuideMode::Auto, 10000));
-    EXPECT_FALSE(plain.figures.isUsed);
-    EXPECT_GT(plain.figures.rounds, 0);
-    EXPECT_TRUE(plain.guide.nodes.empty());
+    LearningRender plain(*floor, RenderFor(320), {.mode = GuideMode::Auto});
+    plain.Run();
+    EXPECT_TRUE(plain.learner.IsDone());
+    EXPECT_FALSE(plain.learner.Figures().isUsed);
+    EXPECT_EQ(plain.learner.Figures().rounds, 3);
+    EXPECT_EQ(plain.learner.Paths().guide, nullptr);
 
     const auto room = MakeScene(kRoom, 64);
-    const Learning learning = LearnAll(*room, OptionsFor(GuideMode::Auto, 10000));
-    EXPECT_TRUE(learning.figures.isUsed) << learning.figures.variance;
-    EXPECT_LT(learning.figures.variance + 2 * learning.figures.varianceError, 0.9);
+    LearningRender guided(*room, RenderFor(320), {.mode = GuideMode::Auto});
+    guided.Run();
+    const GuideComparison c = guided.learner.Figures().comparison;
+    EXPECT_TRUE(guided.learner.Figures().isUsed) << c.variance;
+    EXPECT_LT(c.variance + 2 * c.error, 0.9);
+    EXPECT_NEAR(c.vertices, 1, 0.2);
 
-    const Learning few = LearnAll(*room, OptionsFor(GuideMode::Auto, 64));
-    EXPECT_FALSE(few.figures.isUsed);
-    EXPECT_EQ(few.figures.samples, 0);
+    // What stops early is what it is without.
+    LearningRender few(*room, RenderFor(200), {.mode = GuideMode::Auto});
+    few.Run();
+    EXPECT_FALSE(few.learner.Figures().isUsed);
+    EXPECT_EQ(few.learner.Figures().samples, 0);
+    Film without(RegionOf(*room), {.grid = GridOf(few.options.schedule)});
+    Render(SamplesOf(*room, Estimator::Combined), RenderFor(200), &without);
+    EXPECT_TRUE(SamePixels(few.film, without));
 }
 
 TEST(Learning, SaysWhereItCannotGuide) {
@@ -347,9 +460,10 @@ TEST(Learning, SaysWhereItCannotGuide) {
     const auto dark = MakeScene(
         "LightSource \"point\" \"rgb I\" [0 0 0]\nMaterial \"matte\"\n"
         "Shape \"sphere\"");
-    const Learning learning = LearnAll(*dark, OptionsFor(GuideMode::On));
-    EXPECT_FALSE(learning.figures.isUsed);
-    EXPECT_FALSE(learning.figures.why.empty());
+    LearningRender render(*dark, RenderFor(40));
+    render.Run();
+    EXPECT_FALSE(render.learner.Figures().isUsed);
+    EXPECT_FALSE(render.learner.Figures().why.empty());
 }
 
 }  // namespace

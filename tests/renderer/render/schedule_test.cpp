@@ -155,6 +155,29 @@ TEST(Schedule, LetsNoBlockWaitForAnother) {
     EXPECT_TRUE(schedule.Done());
 }
 
+// Blocks wait for each other at the ends of rounds, those that have stopped for nobody.
+TEST(Schedule, WaitsForTheEndOfARound) {
+    const ScheduleOptions options{.blockSize = 20, .cap = 100, .smallestSide = 10, .roundEnd = 8};
+    Schedule schedule({{0, 0}, {45, 20}}, options);  // the third block follows the second
+    std::vector<int> ends;
+    const auto stop = [&](int block, int spp) {
+        if (block == 1) ends.push_back(spp);
+        return block == 0 && spp == 20;
+    };
+    EXPECT_FALSE(schedule.IsRoundOver());
+    for (const int end : {8, 16, 50, noRoundEnd}) {
+        schedule.BeginRound(end);
+        for (const Tile& tile : RunAll(schedule, stop)) EXPECT_LE(tile.first + tile.count, end);
+        EXPECT_EQ(schedule.IsRoundOver(), end != noRoundEnd);
+        if (end == noRoundEnd) continue;
+        EXPECT_EQ(schedule.Blocks()[1].spp, end);
+        EXPECT_EQ(schedule.Blocks()[2].spp, end);
+    }
+    EXPECT_TRUE(schedule.Done());
+    EXPECT_EQ(schedule.Blocks()[0].spp, 20);
+    EXPECT_EQ(ends, (std::vector{8, 16, 20, 40, 50, 60, 80, 100}));
+}
+
 TEST(Schedule, PrefersTheBlockWithTheFewestSamples) {
     Schedule schedule({{0, 0}, {24, 8}}, {.blockSize = 8, .cap = 60});
     std::vector<int> spp;

@@ -8,10 +8,14 @@
 #include <thread>
 #include <utility>
 
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/messages.h"
+#include "renderer/scene/compile.h"
 #include "stopping/rules/lnoise.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
@@ -492,6 +496,68 @@ TEST(Ranks, UndoLayers) {
         EXPECT_TRUE(SameLayers(*timed.layers, *again.layers));
     }
     EXPECT_TRUE(undone);
+}
+
+// A lamp that shines at the top of the sphere around it.
+std::unique_ptr<const Scene> MakeSphere() {
+    const TemporaryDirectory directory;
+    Warnings warnings;
+    CompileOptions options;
+    options.threads = 1;
+    return Compile(ParsePbrt(directory.Write("sphere.pbrt", R"(
+Camera "perspective" "float fov" [80]
+Film "image" "integer xresolution" [80] "integer yresolution" [60]
+WorldBegin
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [90 80 60]
+  Rotate -90 1 0 0
+  Shape "disk" "float radius" [.1] "float height" [.5]
+AttributeEnd
+ReverseOrientation
+Shape "sphere" "float radius" [1]
+WorldEnd
+)"),
+                             warnings),
+                   options, warnings);
+}
+
+// The first learns alone and tells the others, who take part from then on; also where one of them
+// has been given up before, and where the first went on from a checkpoint.
+TEST(Ranks, LearnTheSame) {
+    const auto scene = MakeSphere();
+    const auto render = [&](int ranks, const Shared* before, std::vector<std::byte>* learned,
+                            const Habits& how = {}, int64_t tilesOfFirst = 1 << 30) {
+        std::vector<std::unique_ptr<GuideLearner>> learners;
+        for (int rank = 0; rank < std::max(1, ranks); ++rank)
+            learners.push_back(std::make_unique<GuideLearner>(
+                *scene, LearningOptions{.isShort = true}, kImage.Area()));
+        if (before) learners[0]->Take(*learned, *before->film);
+        std::atomic<int64_t> left = tilesOfFirst;
+        const auto change = [&](RenderOptions* o, int rank) {
+            o->learner = learners[size_t(rank)].get();
+            o->rankPatience = 1;
+            o->schedule.cap = 120;
+            if (rank == 0) o->isCancelled = [&] { return --left < 0; };
+        };
+        Shared shared = RenderShared(
+            ranks, change, before,
+            [&](int rank) { return SamplesOf(*scene, *learners[size_t(rank)]); }, how);
+        if (learned) *learned = learners[0]->Save();
+        return shared;
+    };
+    const Shared reference = render(0, nullptr, nullptr);
+    ASSERT_FALSE(reference.result.cancelled);
+    for (const int ranks : {1, 2, 3})
+        EXPECT_TRUE(SamePixels(*render(ranks, nullptr, nullptr).film, *reference.film)) << ranks;
+    const Shared fewer = render(3, nullptr, nullptr, {.sleeper = 1, .messagesBefore = 0});
+    EXPECT_TRUE(SamePixels(*fewer.film, *reference.film));
+
+    std::vector<std::byte> learned;
+    Shared part = render(0, nullptr, &learned, {}, 300);
+    EXPECT_TRUE(part.result.cancelled);
+    const Shared rest = render(3, &part, &learned);
+    EXPECT_FALSE(rest.result.cancelled);
+    EXPECT_TRUE(SamePixels(*rest.film, *reference.film));
 }
 
 }  // namespace
