@@ -109,10 +109,9 @@ void Executor::RunTile() {
 }
 
 int64_t Executor::TakeSamples(const Tile& tile) {
-    GuideLearner* learner = options.learner;
-    const Sampler sampler(options.sampler,
-                          learner ? learner->SeedFrom(options.seed) : options.seed);
-    SampleSpread* spread = learner ? learner->SpreadOf(*film, tile.pixels) : nullptr;
+    const Sampler sampler(options.sampler, options.seed);
+    SampleSpread* spread =
+        options.learner ? options.learner->SpreadOf(*film, tile.pixels) : nullptr;
     if (!options.layers) return RenderTile(source, tile, sampler, film, spread);
     const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
         return options.layers.Take(s, pixel, index);

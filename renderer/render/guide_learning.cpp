@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
@@ -95,14 +96,6 @@ int GuideLearner::RoundLength(int round) const {
     if (options.mode == GuideMode::On) return kFirstRound << std::max(0, round - 1);
     if (round == 0) return options.isShort ? kFirstRound : kLeadOfAuto * pace;
     return pace << std::max(0, round - kDecision);
-}
-
-uint64_t GuideLearner::SeedFrom(uint64_t seed) const {
-    if (learning.round < 2 || !paths.guide) return seed;
-    uint64_t h =
-        (seed + 1) * 0x9e3779b97f4a7c15ull + uint64_t(learning.round) * 0xbf58476d1ce4e5b9ull;
-    h = (h ^ (h >> 31)) * 0x94d049bb133111ebull;
-    return h ^ (h >> 29);
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {

@@ -92,9 +92,6 @@ class GuideLearner {
     int RoundEnd() const { return learning.end; }
     bool IsDone() const { return learning.IsDone(); }
 
-    // Returns the seed of this round's samples. Guided ones have seeds of their own: points of one
-    // Sobol sequence would depend on those from which the guide was learned.
-    uint64_t SeedFrom(uint64_t seed) const;
     // Returns where the samples of this round are to be counted, by tiles of the film; null: nobody
     // wants to know. Has to be asked once a pass, with no thread at work in that tile.
     SampleSpread* SpreadOf(const Film&, const PixelRect& tile);

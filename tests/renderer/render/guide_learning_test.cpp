@@ -168,18 +168,22 @@ TEST(Learning, KeepsTheMeanAndLowersTheVariance) {
 TEST(Learning, KeepsTheMeanOfTheWholeImage) {
     const auto scene = MakeScene(kRoom, 12);
     constexpr int kImages = 100, kSpp = 68;
-    double sum = 0, squares = 0;
-    for (uint64_t seed = 0; seed < kImages; ++seed) {
-        LearningRender render(*scene, RenderFor(kSpp, seed));
-        render.Run();
-        sum += render.Mean();
-        squares += Sqr(render.Mean());
-    }
-    const double mean = sum / kImages,
-                 error = std::sqrt((squares / kImages - Sqr(mean)) / (kImages - 1));
     const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 4000, 1234);
-    EXPECT_NEAR(mean, plain.mean, 3.5 * std::hypot(error, plain.error));
-    EXPECT_LT(error, 0.01 * mean);
+    for (const SamplerKind sampler : {SamplerKind::Random, SamplerKind::Sobol}) {
+        double sum = 0, squares = 0;
+        for (uint64_t seed = 0; seed < kImages; ++seed) {
+            RenderOptions options = RenderFor(kSpp, seed);
+            options.sampler = sampler;
+            LearningRender render(*scene, options);
+            render.Run();
+            sum += render.Mean();
+            squares += Sqr(render.Mean());
+        }
+        const double mean = sum / kImages,
+                     error = std::sqrt((squares / kImages - Sqr(mean)) / (kImages - 1));
+        EXPECT_NEAR(mean, plain.mean, 3.5 * std::hypot(error, plain.error));
+        EXPECT_LT(error, 0.01 * mean);
+    }
 }
 
 // A ball of fog in that room, and fog about the camera.
