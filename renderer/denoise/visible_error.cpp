@@ -20,6 +20,9 @@ constexpr double kLeastDoubt = 0.01;  // of the mean doubt
 // nine scenes (tests/measurements/denoising.md).
 constexpr double kUsual = 1.35;
 constexpr double kUsualDoubt = 0.25;
+// The bound is not below this share of what the samples by themselves allow, for what is hidden
+// under the noise of unusual pictures.
+constexpr double kTrust = 0.7;
 
 template <typename T>
 T Square(T x) {
@@ -148,9 +151,9 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    const Belief belief = Together(FromSamples(all), Usual(result.least));
+    const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
     result.estimate = std::max(belief.Root(0), result.least);
-    result.upper = std::max(belief.Root(kUpper), result.estimate);
+    result.upper = std::max({belief.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
     return result;
 }
 
