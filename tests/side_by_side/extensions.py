@@ -73,8 +73,9 @@ class Glb:
     def mesh(self, points, normals, uvs, triangles, material, attributes={}, **more):
         positions = self.accessor(points, 'VEC3', min=[min(c) for c in zip(*points)],
                                   max=[max(c) for c in zip(*points)])
-        attributes = dict(attributes, POSITION=positions, NORMAL=self.accessor(normals, 'VEC3'),
-                          TEXCOORD_0=self.accessor(uvs, 'VEC2'))
+        attributes = dict(attributes, POSITION=positions, TEXCOORD_0=self.accessor(uvs, 'VEC2'))
+        if normals:
+            attributes['NORMAL'] = self.accessor(normals, 'VEC3')
         indices = self.accessor([(i,) for t in triangles for i in t], 'SCALAR', 'H')
         self.root['meshes'].append({'primitives': [dict(attributes=attributes, indices=indices,
                                                         material=material, **more)]})
@@ -99,6 +100,7 @@ class Glb:
                     normals.append(tuple(side * (i == axis) for i in range(3)))
                     uvs.append(((u + 1) / 2, (v + 1) / 2))
                 triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
+        self.corners = points
         return self.mesh(points, normals, uvs, triangles, material)
 
     def sphere(self, material, columns=64, rows=32):
@@ -211,7 +213,7 @@ def variants():
 
 
 def pose():
-    """A strip that two joints bend, and a sphere that swells: both move until 1 s."""
+    """A strip that two joints bend, and a box that grows at a slant: both move until 1 s."""
     glb = Glb()
     red = glb.material('red', (.7, .2, .1), matte=True)
     blue = glb.material('blue', (.1, .3, .7), matte=True, doubleSided=True)
@@ -225,9 +227,10 @@ def pose():
             weights.append((1 - bend, bend, 0, 0))
             joints.append((0, 1, 0, 0))
     triangles = [t for i in range(0, 2 * steps, 2) for t in ((i, i + 1, i + 3), (i, i + 3, i + 2))]
-    strip = glb.mesh(points, [(0, 0, 1)] * len(points), [(p[0], p[1]) for p in points], triangles,
-                     blue, {'JOINTS_0': glb.accessor(joints, 'VEC4', 'B'),
-                            'WEIGHTS_0': glb.accessor(weights, 'VEC4')})
+    # Without normals: Blender makes new ones of what has been posed, others pose those of the file.
+    strip = glb.mesh(points, None, [(p[0], p[1]) for p in points], triangles, blue,
+                     {'JOINTS_0': glb.accessor(joints, 'VEC4', 'B'),
+                      'WEIGHTS_0': glb.accessor(weights, 'VEC4')})
     lower = glb.node(translation=(-1.2, 0, .3))
     upper = glb.node(root=False, translation=(0, 1, 0))
     glb.root['nodes'][lower]['children'] = [upper]
@@ -236,19 +239,18 @@ def pose():
     glb.root['skins'] = [{'joints': [lower, upper], 'inverseBindMatrices': bind}]
     glb.node(mesh=strip, skin=0)
 
-    ball = glb.sphere(red)
-    primitive = glb.root['meshes'][ball]['primitives'][0]
-    count = glb.root['accessors'][primitive['attributes']['POSITION']]['count']
-    rows = 33
-    pull = [(0, .8 * max(0, math.cos(math.pi * (i // (count // rows)) / (rows - 1))), 0)
-            for i in range(count)]
+    block = glb.box(red)
+    primitive = glb.root['meshes'][block]['primitives'][0]
+    del primitive['attributes']['NORMAL']
+    pull = [(0, 1.2 * (y > 0) + .3 * x * (y > 0), 0) for x, y, _ in glb.corners]
     primitive['targets'] = [{'POSITION': glb.accessor(pull, 'VEC3', min=[0, 0, 0],
-                                                      max=[0, .8, 0])}]
-    glb.root['meshes'][ball]['weights'] = [0]
-    swelling = glb.node(mesh=ball, scale=(.8, .8, .8), translation=(1.2, .81, 0))
+                                                      max=[0, 1.5, 0])}]
+    glb.root['meshes'][block]['weights'] = [0]
+    growing = glb.node(mesh=block, scale=(.6, .6, .6), translation=(1.2, .61, 0),
+                       rotation=turn((0, 1, 0), 25))
     glb.animate((upper, 'rotation', (0, 1), (turn((1, 0, 0), 0), turn((1, 0, 0), 70))),
                 (lower, 'rotation', (0, 1), (turn((0, 0, 1), 0), turn((0, 0, 1), -15))),
-                (swelling, 'weights', (0, 1), ((0,), (1,))))
+                (growing, 'weights', (0, 1), ((0,), (1,))))
     return glb
 
 
