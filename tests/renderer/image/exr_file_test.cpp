@@ -118,6 +118,8 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     ASSERT_NE(at, std::string::npos);
     EXPECT_EQ(ReadExr(file.path).Find("Y")->values, file.values);
     const std::string start = bytes.substr(0, at + before.size());
+    std::string channels = bytes;
+    channels.replace(channels.find("chlist"), 12, std::string("chlist\0\x14\0\0\0Y", 12));
     bytes.replace(at + 12, 4, "\xff\xff\xff\x7f");
     file.directory.Write("a.exr", bytes);
     const std::string tooLong = ErrorOf([&] { ReadExr(file.path); });
@@ -127,6 +129,10 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     file.directory.Write("a.exr", start);
     const std::string cut = ErrorOf([&] { ReadExr(file.path); });
     EXPECT_TRUE(Contains(cut, "cut short")) << cut;
+
+    file.directory.Write("a.exr", channels);
+    const std::string damaged = ErrorOf([&] { ReadExr(file.path); });
+    EXPECT_TRUE(Contains(damaged, "its list of channels is damaged")) << damaged;
 }
 
 }  // namespace
