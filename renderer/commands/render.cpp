@@ -319,6 +319,7 @@ ExitCode RunRender(Options options, Job* job) {
     how.checkpoint = settings.checkpoint;
     how.identity = IdentityFor(options, provenance, input.description, *job);
     how.clock = clock;
+    if (clock) job->SetClock(clock);
     Session session(*scene, region, how);
     if (denoiser) denoiser->Show(&session.TheFilm(), session.Features());
     if (denoiser && display)

@@ -180,6 +180,23 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
     EXPECT_EQ(Texels("parts"), Texels("again"));
 }
 
+// Nobody waits for it, for longer than the clock allows.
+TEST_F(RanksTest, GoOnWithoutOneThatIsStoppedWhileItLoadsTheScene) {
+    const std::string render = std::string(kRender) + "--stop fixed:100000 --time 9s -o parts.exr ";
+    const Outcome stopped =
+        Run(fmt::format("timeout -s KILL 120 {}{}: -n 1 env LD_PRELOAD='{}' OPENED_FILE=scene.pbrt "
+                        "OPENED_SIGNAL={} {}",
+                        Ranks(2), render, SIGNAL_AT_OPEN, SIGSTOP, render));
+    ASSERT_EQ(stopped.exitCode, 0) << stopped.err;
+    const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
+    EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
+    ASSERT_EQ(Run(std::string(kRender) +
+                  "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr")
+                  .exitCode,
+              0);
+    EXPECT_EQ(Texels("parts"), Texels("again"));
+}
+
 TEST_F(RanksTest, CompareBenchAndRecord) {
     const std::string size = " scene.pbrt --resolution 60x45 --quiet --cap 60 --threads 1 ";
     const auto runBoth = [&](const std::string& command) {
