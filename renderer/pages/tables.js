@@ -70,7 +70,7 @@ function showSummary(data) {
   const add = (label, text) => { const cells = images.map(i => text(i) || "\u2013"); if (cells.some(c => c !== "\u2013")) rows.push([label, ...cells]); };
   const roughly = (isEstimated, text) => (isEstimated && text !== "\u2013" ? "~" : "") + text;
   const saved = i => i.name !== data.reference && i.saved;
-  add("rule", i => i.rule);
+  add("rule", i => i.rule && i.rule.replace(/[:/]/g, "$&\u200b"));  // it can break there
   add("mean spp", i => i.cost && show(i.cost.samples / (data.width * data.height), 4));
   add("samples", i => i.cost && showCount(i.cost.samples));
   add("samples saved", i => saved(i) && showShare(i.saved.samples));

@@ -155,11 +155,14 @@ def check_blocks(browser, name, charts):
 
 
 def check_widths(browser, name):
-    """Nothing of the page is beside a window of these widths."""
+    """Nothing of the page is beside a window of these widths, and a picture is large."""
     for width in (1400, 700, 400):
         browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-        over = browser.evaluate("(e => [e.scrollWidth, e.clientWidth])(document.documentElement)")
-        check(over[0] <= over[1], f"{name}: as wide as a window of {width} pixels, {over}")
+        fits = "(e => e.scrollWidth <= e.clientWidth)(document.documentElement)"
+        browser.wait_for(f"innerWidth === {width} && {fits}")  # once it has heard of its width
+        print(f"ok: {name}: as wide as a window of {width} pixels")
+        share = browser.evaluate("(c => c ? c.clientWidth / document.documentElement.clientWidth : 1)(document.querySelector('.canvas'))")
+        check(share > 0.4, f"{name}: the picture takes {share:.2f} of that")
     browser.call("Emulation.clearDeviceMetricsOverride")
 
 
