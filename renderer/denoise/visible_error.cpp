@@ -16,7 +16,7 @@ constexpr int kSide = 10;             // sub-blocks a side
 constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = 5;      // pixels
 constexpr double kLeastDoubt = 0.01;  // of the mean doubt
-// The visible error over what of it still changes, and how much that varies, over 55 pictures of
+// The visible error over what of it still changes, and how much that varies, over 53 pictures of
 // nine scenes (tests/measurements/denoising.md).
 constexpr double kUsual = 1.35;
 constexpr double kUsualDoubt = 0.25;

@@ -103,6 +103,7 @@ class Scene:
         if o.stop:
             self.lull('lull-stop', '--cap', str(o.cap))
             self.lull('lull-denoised', '--denoise', '--cap', str(o.cap))
+            self.lull('lull-cautious', '--denoise', '--caution', '2', '--cap', str(o.cap))
             self.cycles([('cycles-stop', o.cap, 1, 0.01, 'specification')])
 
     def reference(self, program):
@@ -185,11 +186,11 @@ def print_speed(scenes, o):
 
 
 def print_stops(scenes, o):
-    print("\nEach one's own stopping rule, lull's default, plain and denoised, and Cycles' threshold of 0.01:\n")
+    print("\nEach one's own stopping rule, lull's default, plain, denoised and with half the error, and Cycles' threshold of 0.01:\n")
     print('| scene | program | mean spp | seconds | RMSE of L | worst block | FLIP |')
     print('|---|---|---|---|---|---|---|')
     for s in scenes:
-        for name in 'lull-stop', 'lull-denoised', 'cycles-stop':
+        for name in 'lull-stop', 'lull-denoised', 'lull-cautious', 'cycles-stop':
             program = name.split('-')[0]
             rgb, spp = read(s.file(name))
             mean = spp.mean() * (o.cap if program == 'cycles' else 1)
