@@ -113,7 +113,8 @@ TEST_F(RanksTest, ShareLayers) {
 
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, DenoiseTheSame) {
-    const std::string render = std::string(kRender) + "--denoise --cap 300 --report ";
+    const std::string render =
+        std::string(kRender) + "--denoise --stop denoised:0.1 --cap 300 --report ";
     ASSERT_EQ(Run(render + "one.html -o one.exr").exitCode, 0);
     const Outcome outcome = Run(Ranks(3) + render + "some.html -o some.exr");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -124,7 +125,8 @@ TEST_F(RanksTest, DenoiseTheSame) {
         EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
 
     const std::string parts =
-        std::string(kRender) + "--denoise --cap 300 -o parts.exr --checkpoint c.h5 --resume ";
+        std::string(kRender) +
+        "--denoise --stop denoised:0.1 --cap 300 -o parts.exr --checkpoint c.h5 --resume ";
     const Outcome interrupted =
         RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
     EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
