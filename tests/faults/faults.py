@@ -320,7 +320,7 @@ def main():
     parser.add_argument("--cases", type=int, default=500, help="of each reader")
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", help="one reader")
+    parser.add_argument("--only", help="one reader", choices=[r.name for r in READERS])
     parser.add_argument("--keep", default="faults-found")
     parser.add_argument("--write", help="a folder for the damaged files; none is tried")
     args = parser.parse_args()
