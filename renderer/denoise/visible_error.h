@@ -21,8 +21,8 @@ EstimatedError MeasureError(const DenoisedPicture&);
 Planes AsSeen(Planes difference);
 
 // Holds the visible error of a block: the mean over its 10 x 10 sub-blocks of the root mean square
-// of the error in lightness, times what an observer sees of a difference there (NoiseVisibility:
-// flare and detail).
+// of the error in lightness, as it is seen, times what an observer sees of a difference there
+// (NoiseVisibility: flare and detail).
 struct VisibleError {
     double estimate = 0;
     double upper = 0;  // not exceeded in 95 of 100 blocks
