@@ -16,13 +16,19 @@ constexpr int kSide = 10;             // sub-blocks a side
 constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = 5;      // pixels
 constexpr double kLeastDoubt = 0.01;  // of the mean doubt
+// Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
+// 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
+// well as noise that changes from pixel to pixel. With these they count 1.5, 1.8, 1.9 times.
+constexpr int kCoarseRadius = 3;  // pixels
+constexpr float kCoarseGain = 1;
+constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of products of noise
 // The visible error over what of it still changes, and how much that varies, over 53 pictures of
 // nine scenes (tests/measurements/denoising.md).
-constexpr double kUsual = 1.35;
+constexpr double kUsual = 1.27;
 constexpr double kUsualDoubt = 0.25;
 // The bound is not below this share of what the samples by themselves allow, for what is hidden
 // under the noise of unusual pictures.
-constexpr double kTrust = 0.7;
+constexpr double kTrust = 0.8;
 
 template <typename T>
 T Square(T x) {
@@ -115,28 +121,64 @@ Belief Together(const Belief& samples, Belief usual) {
 
 }  // namespace
 
-EstimatedError MeasureError(const DenoisedPicture& denoised) {
+namespace {
+
+// Returns slope * (a - b) of the luminances of two pictures, in lightness.
+Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
+    Planes difference(a.width, a.height, 1);
+    for (size_t i = 0; i < difference.Area(); ++i)
+        difference.values[i] = std::clamp(slope.values[i] * (LuminanceOf(a, i) - LuminanceOf(b, i)),
+                                          -kLargest, kLargest);
+    return difference;
+}
+
+// Adds `share` times the square of the difference of two pictures, as it is seen.
+void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float share, bool asSeen,
+               Planes* sum) {
+    Planes difference = Difference(a, b, slope);
+    if (asSeen) difference = AsSeen(std::move(difference));
+    for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Square(difference.values[i]);
+}
+
+EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
     error.squared = error.deviation = error.least = error.lightness;
+    Planes slope = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
         const LightnessSlope<float> at = DisplayedLightness(LuminanceOf(denoised.picture, i));
-        const float a = LuminanceOf(denoised.noisy.a, i), b = LuminanceOf(denoised.noisy.b, i);
-        const float x = LuminanceOf(denoised.halves.a, i), y = LuminanceOf(denoised.halves.b, i);
-        const float scale = Square(at.slope);
-        // The noise of both halves, and of what is made of them, is in it as products of the two.
-        const float squared = (Square(x - b) + Square(y - a) - Square(a - b)) / 2;
         Rgb deviations;
         for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
         const float deviation = Luminance(deviations);  // the colours of a path go together
         error.lightness.values[i] = at.lightness;
-        error.least.values[i] = scale * Square(x - y) / 4;
-        error.squared.values[i] = scale * (squared - Square(x - y) / 4);
-        error.deviation.values[i] = scale * Square(deviation);
+        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Square(at.slope * deviation);
+        slope.values[i] = at.slope;
     }
+    const auto add = [&](const Planes& a, const Planes& b, float share, Planes* sum) {
+        AddSquare(a, b, slope, share, asSeen, sum);
+    };
+    const Halves &halves = denoised.halves, &noisy = denoised.noisy;
+    add(halves.a, halves.b, 0.25f, &error.least);
+    // The noise of both halves, and of what is made of them, is in it as products of the two.
+    add(halves.a, noisy.b, 0.5f, &error.squared);
+    add(halves.b, noisy.a, 0.5f, &error.squared);
+    add(noisy.a, noisy.b, -0.5f, &error.squared);
+    for (size_t i = 0; i < error.squared.Area(); ++i)
+        error.squared.values[i] -= error.least.values[i];
     // The variance of a few samples is itself noisy, which would count twice in its square.
     error.deviation = BoxMean(std::move(error.deviation), kSmoothRadius);
     return error;
 }
+
+}  // namespace
+
+Planes AsSeen(Planes difference) {
+    const Planes coarse = BoxMean(difference, kCoarseRadius);
+    for (size_t i = 0; i < difference.values.size(); ++i)
+        difference.values[i] += kCoarseGain * coarse.values[i];
+    return difference;
+}
+
+EstimatedError MeasureError(const DenoisedPicture& denoised) { return Measure(denoised, true); }
 
 VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, int x1, int y1) {
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
@@ -157,7 +199,8 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
     return result;
 }
 
-Planes StandardError(const EstimatedError& error) {
+Planes StandardError(const DenoisedPicture& denoised) {
+    const EstimatedError error = Measure(denoised, false);
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)
