@@ -119,10 +119,6 @@ Belief Together(const Belief& samples, Belief usual) {
     return {share * samples.mean + (1 - share) * usual.mean, share * samples.variance};
 }
 
-}  // namespace
-
-namespace {
-
 // Returns slope * (a - b) of the luminances of two pictures, in lightness.
 Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
     Planes difference(a.width, a.height, 1);
