@@ -6,10 +6,12 @@ set(lull_data ${CMAKE_INSTALL_DATADIR}/lull)
 set(lull_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/lull)
 file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
 
-install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull)
-install(FILES ${models} DESTINATION ${lull_data}/models)
-install(TARGETS lull_stopping lull_denoising EXPORT lullTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# The component `python` is what a wheel holds.
+install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT python)
+install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull COMPONENT python)
+install(FILES ${models} DESTINATION ${lull_data}/models COMPONENT python)
+install(TARGETS lull_stopping lull_denoising EXPORT lullTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT python)
 install(FILES stopping/embedding/include/lull/stopping.h renderer/embedding/include/lull/denoising.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
 install(EXPORT lullTargets NAMESPACE lull:: DESTINATION ${lull_cmake})
@@ -20,6 +22,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/lullConfig.cmake ${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
         DESTINATION ${lull_cmake})
+# The same for who uses pkg-config: `pkg-config --cflags --libs lull-stopping`.
+file(RELATIVE_PATH prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+foreach(library stopping denoising)
+  configure_file(cmake/lull.pc.in ${PROJECT_BINARY_DIR}/lull-${library}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/lull-${library}.pc
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(FILES renderer/pages/uPlot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
         RENAME copyright.uPlot) # it is part of the program
@@ -40,6 +49,21 @@ if(Python3_Interpreter_FOUND AND NOT LULL_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
   install(FILES ${manual}/lull DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 else()
   message(STATUS "No manual page and no completion: they need Python")
+endif()
+
+# `cmake --build --preset release --target wheel` makes a Python package that pip installs, in build/release/wheel.
+if(TARGET lull_python_stubs)
+  set(wheel ${PROJECT_BINARY_DIR}/wheel)
+  add_custom_target(wheel
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${wheel}
+    COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --component python --strip
+            --prefix ${wheel}/tree
+    COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/cmake/wheel.py ${wheel}/tree
+            ${LULL_PYTHON_DIR} ${PROJECT_VERSION} "${LULL_ARCH}" ${wheel}
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${wheel}/tree
+    VERBATIM)
+  add_dependencies(wheel lull lull_formats lull_stopping lull_denoising lull_python
+                   lull_denoising_python lull_python_files lull_python_stubs)
 endif()
 
 # `cmake --build --preset release --target package` makes a Debian package of all that.

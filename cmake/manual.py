@@ -15,7 +15,8 @@ VALUE = re.compile(r"^(?P<name>.*?)"
                    r"(?::(?P<check>(?:INT|UINT|FLOAT|POSITIVE|NONNEGATIVE)\b.*?|\{.*?\})"
                    r"|(?<=[A-Z.])(?P<file>[a-z0-9]*):FILE)?"
                    r"(?:=(?P<default>\S*))?(?P<repeated> \.\.\.)?$")
-CHOICES = re.compile(r"[a-z0-9-]+(\|[a-z0-9-]+)+")  # a value that is one of these words
+CHOICES = re.compile(r"([a-z0-9-]+(?:\|[a-z0-9-]+)+)(,\.\.\.)?")  # a value that is one of these words, or several
+RULE = re.compile(r"  ([a-z]+)(\[?:\S+)?  ")  # how a stopping rule is written, where the help has them
 RELATION = re.compile(r" (Needs|Excludes): (.*?)(?= Needs:| Excludes:|$)")
 # How a long head goes on, where a text cannot begin.
 GOES_ON = re.compile(r"Needs:|Excludes:|REQUIRED|in \[|\[|- |\d|\.\.\.")
@@ -32,8 +33,10 @@ class Option:
         value = VALUE.match(RELATION.sub("", " " + rest).strip())
         check = value["check"] or ""
         self.value = value["name"] + (value["file"] or "") + (value["repeated"] or "")
+        words = CHOICES.fullmatch(self.value)
         self.choices = (check[1:-1].split(",") if check.startswith("{") else
-                        self.value.split("|") if CHOICES.fullmatch(self.value) else [])
+                        words[1].split("|") if words else [])
+        self.is_list = "," in self.value  # of choices, with commas
         self.text = text
         limits = re.search(r"\[(\S+) - (\S+)\]", check)
         if limits:
@@ -119,21 +122,35 @@ def quoted(words):
     return "'" + " ".join(words) + "'"
 
 
+def rules_of(page):
+    """Returns what stopping rules begin with: with a colon where more has to follow."""
+    section = page.notes.partition("(--stop)")[2].partition("\n\n")[0]
+    rules = [RULE.match(line) for line in section.split("\n")]
+    return [r[1] + (":" if (r[2] or "").startswith(":") else "") for r in rules if r]
+
+
 def completion(main, commands):
-    """Words are looked up by command; behind an option with choices these, else files."""
+    """Words are looked up by command; behind an option with choices these, else files. Where more
+    may follow a word, no blank does."""
     def names(page):
         return [n for o in page.entries["Options"] for n in o.names]
 
+    rules = rules_of(commands["render"])
     lines = ["# Completion of bash for lull.", "_lull() {",
-             "    local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]} words= command=",
+             "    local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]} words= command= given=",
              "    ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}",
              "    COMPREPLY=()",
              '    case "$command $last" in']
     for name, page in commands.items():
         for option in page.entries["Options"]:
             patterns = "|".join(f'"{name} {n}"' for n in option.names)
-            if option.choices:
+            if option.choices and option.is_list:
+                lines.append(f"    {patterns}) words={quoted(option.choices)}")
+                lines.append("        [[ $word == *,* ]] && given=${word%,*}, word=${word##*,}; _lull_goes_on ;;")
+            elif option.choices:
                 lines.append(f"    {patterns}) words={quoted(option.choices)} ;;")
+            elif option.value.split(" ")[0] == "RULE":
+                lines.append(f"    {patterns}) words={quoted(rules)}; _lull_goes_on ;;")
             elif option.value:
                 lines.append(f"    {patterns}) return ;;")
     lines += ['    *) case "$command" in',
@@ -141,8 +158,8 @@ def completion(main, commands):
     for name, page in commands.items():
         lines.append(f"        {name}) [[ $word == -* ]] && words={quoted(names(page))} ;;")
     lines += ["        esac ;;", "    esac",
-              '    [[ -z $words ]] || COMPREPLY=($(compgen -W "$words" -- "$word"))', "}",
-              "complete -o default -o bashdefault -F _lull lull"]
+              '    [[ -z $words ]] || COMPREPLY=($(compgen -P "$given" -W "$words" -- "$word"))', "}",
+              "_lull_goes_on() { compopt -o nospace 2>/dev/null || :; }", "complete -o default -o bashdefault -F _lull lull"]
     return "\n".join(lines) + "\n"
 
 

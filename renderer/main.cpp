@@ -126,7 +126,7 @@ ExitCode Main(int argc, char** argv) {
         return kFailed;
     }
     const ExitCode code = Main(job.get(), argc, argv);
-    job->EndWithout(code);
+    job->Leave(code);
     return code;
 }
 

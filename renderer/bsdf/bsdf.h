@@ -40,6 +40,12 @@ class Bsdf {
         for (int i = begin; i < end; ++i) lobes[i] = Scaled(lobes[i], scale);
     }
     void SetEta(float e) { eta = e; }
+    // Turns the shading frame about its normal, from s to t, by the angle of this cosine and sine.
+    void Turn(float cosine, float sine) {
+        const Vec3f s = shading.s;
+        shading.s = cosine * s + sine * shading.t;
+        shading.t = cosine * shading.t - sine * s;
+    }
 
     int LobeCount(LobeSet set) const {
         return set == LobeSet::All ? lobeCount : lobeCount - specularCount;

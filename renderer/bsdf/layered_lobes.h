@@ -36,6 +36,19 @@ inline float ThroughCoat(float coat, float cosO, float cosI) {
     return above.Through(cosO) * above.Through(cosI);
 }
 
+// Follows Schlick's approximation from f0 to f90, below a clear coat. Of the coat only the half
+// vector is known, which is near to the normal where it counts.
+struct CoatedInterface {
+    StoredRgb f0;
+    float f90, coat;
+
+    Rgb operator()(float cosI) const {
+        const float cosine = std::abs(cosI);
+        const Rgb r = f0;
+        return (r + SchlickWeight(cosine) * (f90 - r)) * ThroughCoat(coat, cosine, cosine);
+    }
+};
+
 // Reflects diffusely below a rough interface and glossily at it. Both share one distribution of
 // microfacets and Schlick's reflectance from f0 to f90; metal is an interface without a base.
 //

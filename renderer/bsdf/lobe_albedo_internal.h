@@ -4,6 +4,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/bsdf/lobes.h"
+#include "renderer/bsdf/sheen_albedo.h"
 
 namespace lull {
 
@@ -56,6 +57,10 @@ typename To::Value Albedo(const DisneyDiffuse& lobe, const Vec3f&, To to) {
     const bool isGrazing = lobe.part == DisneyDiffuse::Part::RetroReflection ||
                            lobe.part == DisneyDiffuse::Part::Sheen;
     return (isGrazing ? 0.2f : 1.f) * to(lobe.r);
+}
+template <typename To>
+typename To::Value Albedo(const CharlieSheen& lobe, const Vec3f& wo, To to) {
+    return to(lobe.r) * SheenAlbedo(std::abs(wo.z()), lobe.alpha);
 }
 template <typename To>
 typename To::Value Albedo(const DisneyClearcoat& lobe, const Vec3f& wo, To to) {

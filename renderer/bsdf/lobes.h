@@ -20,6 +20,7 @@
 #include "renderer/bsdf/layered_lobes.h"
 #include "renderer/bsdf/lobe_basics.h"
 #include "renderer/bsdf/microfacet_lobes.h"
+#include "renderer/bsdf/sheen_lobe.h"
 #include "renderer/bsdf/subsurface_lobe.h"
 
 namespace lull {
@@ -184,7 +185,8 @@ using Lobe =
                  SpecularReflection<ConductorInterface>, SpecularTransmission, FresnelSpecular,
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
                  HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
-                 ThinTransmission, ThinSpecular, DiffuseExit>;
+                 ThinTransmission, ThinSpecular, DiffuseExit, CharlieSheen,
+                 MicrofacetReflection<CoatedInterface>>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
@@ -226,10 +228,12 @@ auto VisitLobe(const Lobe& lobe, F&& f) {
         case 20: return f(*std::get_if<20>(&lobe));
         case 21: return f(*std::get_if<21>(&lobe));
         case 22: return f(*std::get_if<22>(&lobe));
-        default: return f(*std::get_if<23>(&lobe));
+        case 23: return f(*std::get_if<23>(&lobe));
+        case 24: return f(*std::get_if<24>(&lobe));
+        default: return f(*std::get_if<25>(&lobe));
             // clang-format on
     }
-    static_assert(std::variant_size_v<Lobe> == 24, "one case a kind");
+    static_assert(std::variant_size_v<Lobe> == 26, "one case a kind");
 }
 
 inline bool IsSpecular(const Lobe& lobe) {

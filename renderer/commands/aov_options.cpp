@@ -19,9 +19,8 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                        throw CLI::ValidationError("--aov", e.what());
                    }
                },
-               "Layers of the EXR: albedo, normal, depth, position, object, material, alpha and\n"
-               "cryptomatte of what is seen first, and the noise of each pixel")
-            ->type_name("LAYER,...");
+               "Layers of the EXR, of what is seen first; noise is that of each pixel")
+            ->type_name("albedo|normal|depth|position|object|material|alpha|cryptomatte|noise,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Of what is seen in mirrors and through glass, instead of these")
         ->needs(aov);

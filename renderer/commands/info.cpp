@@ -8,6 +8,7 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/scene_options.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/measure/report.h"
 #include "renderer/render/progress.h"
 
@@ -26,6 +27,14 @@ std::string CountsText(const Counts& counts) {
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, kind);
     }
     return kinds.empty() ? "0" : fmt::format("{} ({})", total, kinds);
+}
+
+// Formats "0 red, 1 blue; --variant NAME|N chooses".
+std::string VariantsText(const std::vector<std::string>& variants) {
+    std::string text;
+    for (size_t i = 0; i < variants.size(); ++i)
+        text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, Printable(variants[i]));
+    return text + "; --variant NAME|N chooses";
 }
 
 template <typename Entities>
@@ -71,6 +80,7 @@ void PrintGeometry(const Description& description, const Scene& scene) {
 void PrintAppearance(const Description& description, const Scene& scene) {
     Line("materials", CountsText(CountKinds(description.materials)));
     Line("textures", CountsText(CountKinds(description.textures)));
+    if (!description.variants.empty()) Line("variants", VariantsText(description.variants));
     if (!description.media.empty()) Line("media", CountsText(CountKinds(description.media)));
     Counts lights = CountKinds(description.lights);
     const int area = scene.lights.Count() - int(description.lights.size());

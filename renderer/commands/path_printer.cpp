@@ -65,17 +65,19 @@ bool ParsePixel(const std::string& text, Vec2i* pixel) {
 }  // namespace
 
 void AddPathOptions(CLI::App& app, PathOfSample* options) {
-    auto* pixel = app.add_option_function<std::string>(
-                         "--pixel",
-                         [=](const std::string& text) {
-                             Vec2i p;
-                             if (!ParsePixel(text, &p))
-                                 throw CLI::ValidationError(text, "is not x,y in pixels");
-                             options->pixel = p;
-                         },
-                         "Instead of rendering, print one path through this pixel of the whole\n"
-                         "image, counted from its upper left: what it meets, and what that brings")
-                      ->type_name("x,y");
+    auto* pixel =
+        app.add_option_function<std::string>(
+               "--pixel",
+               [=](const std::string& text) {
+                   Vec2i p;
+                   if (!ParsePixel(text, &p))
+                       throw CLI::ValidationError(text, "is not x,y in pixels");
+                   options->pixel = p;
+               },
+               "Instead of rendering, print one path, without a guide, through this pixel\n"
+               "of the whole image, counted from its upper left: what it meets, and what\n"
+               "that brings")
+            ->type_name("x,y");
     app.add_option("--sample", options->sample,
                    "Which of its samples, from 0; it is always the same")
         ->needs(pixel)

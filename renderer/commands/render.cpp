@@ -265,16 +265,21 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
 }
 
 // Prints the path of a sample instead.
-ExitCode RunPath(RenderSettings settings, const PathOfSample& path) {
+ExitCode RunPath(const Options& options) {
+    if (options.guide.mode != GuideMode::Off)
+        throw UsageError(
+            "--pixel: paths with a guide depend on all that it has learned, and are not printed; "
+            "leave --guide out");
+    const RenderSettings& settings = options.render;
     SceneInput input(settings.scene, {.withHalf = false}, TalkOf(settings));
     const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
-    PrintPath(path, settings, MakeProvenance(settings, *scene, input.film).sampler,
+    PrintPath(options.path, settings, MakeProvenance(settings, *scene, input.film).sampler,
               input.description, *scene);
     return kDone;
 }
 
 ExitCode RunRender(Options options, Job* job) {
-    if (options.path.pixel) return job->Rank() == 0 ? RunPath(options.render, options.path) : kDone;
+    if (options.path.pixel) return job->Rank() == 0 ? RunPath(options) : kDone;
     CheckSamplesSuffice(options);
     options.aovs.alpha |= options.pictures.format.isTransparent;
     options.rule = options.spp > 0
@@ -319,6 +324,7 @@ ExitCode RunRender(Options options, Job* job) {
     how.checkpoint = settings.checkpoint;
     how.identity = IdentityFor(options, provenance, input.description, *job);
     how.clock = clock;
+    if (clock) job->SetClock(clock);
     Session session(*scene, region, how);
     if (denoiser) denoiser->Show(&session.TheFilm(), session.Features());
     if (denoiser && display)

@@ -148,6 +148,15 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
                    "glTF: the animation of this name or number, from 0 [the first one]")
         ->needs(frame)
         ->type_name("NAME|N");
+    app.add_option("--shutter", options->view.shutter,
+                   "glTF: blur what moves, nodes and cameras, from then on for so long")
+        ->needs(frame)
+        ->check(CLI::Range(0., 1e9))
+        ->type_name("SECONDS");
+    app.add_option("--variant", options->view.variant,
+                   "glTF: use the materials of this variant, a name or number, from 0, that `lull\n"
+                   "info` lists")
+        ->type_name("NAME|N");
     app.add_flag("--solid-glass", options->view.solidGlass,
                  "glTF: let all that transmits light be solid; without a volume's thickness it is\n"
                  "a thin sheet, as the format says");
@@ -160,9 +169,10 @@ Warnings MakePrintedWarnings(const Talk& talk) {
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     const bool isGltf = IsGltf(options.file);
     if (!isGltf && options.view.IsGiven())
-        throw Error(options.file +
-                    ": is no glTF file; --camera, --orbit, --frame and --solid-glass are for "
-                    "these, as a pbrt-v3 scene says all of that itself");
+        throw Error(
+            options.file +
+            ": is no glTF file; --camera, --orbit, --frame, --variant and --solid-glass are "
+            "for these, as a pbrt-v3 scene says all of that itself");
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings);
     if (options.exposure != 0) SetExposure(options.exposure, &description);

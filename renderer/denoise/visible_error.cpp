@@ -16,6 +16,24 @@ constexpr int kSide = 10;             // sub-blocks a side
 constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = 5;      // pixels
 constexpr double kLeastDoubt = 0.01;  // of the mean doubt
+// Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
+// 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
+// well as noise that changes from pixel to pixel. With these they count 1.5, 1.8, 1.9 times.
+constexpr int kCoarseRadius = 3;  // pixels
+constexpr float kCoarseGain = 1;
+constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of products of noise
+// The visible error over what of it still changes, and how much that varies, over 53 pictures of
+// nine scenes (tests/measurements/denoising.md).
+constexpr double kUsual = 1.27;
+constexpr double kUsualDoubt = 0.25;
+// The bound is not below this share of what the samples by themselves allow, for what is hidden
+// under the noise of unusual pictures.
+constexpr double kTrust = 0.8;
+
+template <typename T>
+T Square(T x) {
+    return x * x;
+}
 
 // Returns L, in [0, 100], of what a display shows, and the slope by which luminance changes it.
 LightnessSlope<float> DisplayedLightness(float y) {
@@ -48,10 +66,6 @@ struct Sums {
 // Holds mean squares of visible errors, with the variance of the first.
 struct Squares {
     double estimate = 0, variance = 0, least = 0;
-
-    double Root(double deviations) const {
-        return std::sqrt(std::max(estimate + deviations * std::sqrt(variance), least));
-    }
 };
 
 Squares SquaresOf(const Sums& sums) {
@@ -59,59 +73,108 @@ Squares SquaresOf(const Sums& sums) {
     return {seen * sums.squared, seen * seen * sums.variance, seen * sums.least};
 }
 
-// Returns the root of the mean of all, which is not below the mean of their roots.
-double RootOfMean(std::span<const Squares> all) {
-    double sum = 0;
-    for (const Squares& s : all) sum += s.estimate;
-    return std::sqrt(std::max(0.0, sum / double(all.size())));
-}
+// Holds what is known of the square of the mean of roots.
+struct Belief {
+    double mean = 0, variance = 0;
 
-// Returns a bound of the mean of roots. By Cauchy's inequality it is at most the root of
-// mean(1 / w) mean(w s), for any weights w > 0 of the mean squares s, and about that where w goes
-// as 1 / sqrt(s). Of s itself little is known, of the doubts much, which go with s; and what one
-// sub-block of much noise does not know weighs less so.
-double UpperBound(std::span<const Squares> all) {
+    double Root(double deviations) const {
+        return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
+    }
+};
+
+// Returns what the samples say. By Cauchy's inequality the square is at most mean(1 / w) mean(w s),
+// for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s). Of s
+// itself little is known, of the doubts much, which go with s; and what one sub-block of much noise
+// does not know weighs less so.
+Belief FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
     double doubts = 0;
     for (const Squares& s : all) doubts += std::sqrt(s.variance) / n;
-    Squares mean;
-    double inverse = 0;
+    double inverse = 0, mean = 0, variance = 0;
     for (const Squares& s : all) {
         const double doubt = std::max({std::sqrt(s.variance), kLeastDoubt * doubts, 1e-12});
         const double w = 1 / std::sqrt(doubt);
         inverse += 1 / (w * n);
-        mean.estimate += w * s.estimate / n;
-        mean.variance += w * w * s.variance / (n * n);
-        mean.least += w * s.least / n;
+        mean += w * s.estimate / n;
+        variance += w * w * s.variance / (n * n);
     }
-    return std::sqrt(inverse) * mean.Root(kUpper);
+    return {inverse * mean, inverse * inverse * variance};
 }
 
-}  // namespace
+// Returns what is usual where the halves of the denoised picture differ by this.
+Belief Usual(double least) {
+    const double mean = Square(kUsual * least);
+    return {mean, Square(2 * kUsualDoubt * mean)};
+}
 
-EstimatedError MeasureError(const DenoisedPicture& denoised) {
-    const auto square = [](float x) { return x * x; };
+// Returns what both say together, each by its doubt. As far as the samples contradict what is usual
+// beyond chance, this picture is an unusual one, of which less is known beforehand (DerSimonian and
+// Laird's estimate of what two differ by).
+Belief Together(const Belief& samples, Belief usual) {
+    usual.variance +=
+        std::max(0.0, Square(samples.mean - usual.mean) - samples.variance - usual.variance);
+    const double both = samples.variance + usual.variance;
+    if (both <= 0) return samples;
+    const double share = usual.variance / both;  // of the samples
+    return {share * samples.mean + (1 - share) * usual.mean, share * samples.variance};
+}
+
+// Returns slope * (a - b) of the luminances of two pictures, in lightness.
+Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
+    Planes difference(a.width, a.height, 1);
+    for (size_t i = 0; i < difference.Area(); ++i)
+        difference.values[i] = std::clamp(slope.values[i] * (LuminanceOf(a, i) - LuminanceOf(b, i)),
+                                          -kLargest, kLargest);
+    return difference;
+}
+
+// Adds `share` times the square of the difference of two pictures, as it is seen.
+void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float share, bool asSeen,
+               Planes* sum) {
+    Planes difference = Difference(a, b, slope);
+    if (asSeen) difference = AsSeen(std::move(difference));
+    for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Square(difference.values[i]);
+}
+
+EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
     error.squared = error.deviation = error.least = error.lightness;
+    Planes slope = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
         const LightnessSlope<float> at = DisplayedLightness(LuminanceOf(denoised.picture, i));
-        const float a = LuminanceOf(denoised.noisy.a, i), b = LuminanceOf(denoised.noisy.b, i);
-        const float x = LuminanceOf(denoised.halves.a, i), y = LuminanceOf(denoised.halves.b, i);
-        const float scale = square(at.slope);
-        // The noise of both halves, and of what is made of them, is in it as products of the two.
-        const float squared = (square(x - b) + square(y - a) - square(a - b)) / 2;
         Rgb deviations;
         for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
         const float deviation = Luminance(deviations);  // the colours of a path go together
         error.lightness.values[i] = at.lightness;
-        error.least.values[i] = scale * square(x - y) / 4;
-        error.squared.values[i] = scale * (squared - square(x - y) / 4);
-        error.deviation.values[i] = scale * square(deviation);
+        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Square(at.slope * deviation);
+        slope.values[i] = at.slope;
     }
+    const auto add = [&](const Planes& a, const Planes& b, float share, Planes* sum) {
+        AddSquare(a, b, slope, share, asSeen, sum);
+    };
+    const Halves &halves = denoised.halves, &noisy = denoised.noisy;
+    add(halves.a, halves.b, 0.25f, &error.least);
+    // The noise of both halves, and of what is made of them, is in it as products of the two.
+    add(halves.a, noisy.b, 0.5f, &error.squared);
+    add(halves.b, noisy.a, 0.5f, &error.squared);
+    add(noisy.a, noisy.b, -0.5f, &error.squared);
+    for (size_t i = 0; i < error.squared.Area(); ++i)
+        error.squared.values[i] -= error.least.values[i];
     // The variance of a few samples is itself noisy, which would count twice in its square.
     error.deviation = BoxMean(std::move(error.deviation), kSmoothRadius);
     return error;
 }
+
+}  // namespace
+
+Planes AsSeen(Planes difference) {
+    const Planes coarse = BoxMean(difference, kCoarseRadius);
+    for (size_t i = 0; i < difference.values.size(); ++i)
+        difference.values[i] += kCoarseGain * coarse.values[i];
+    return difference;
+}
+
+EstimatedError MeasureError(const DenoisedPicture& denoised) { return Measure(denoised, true); }
 
 VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, int x1, int y1) {
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
@@ -124,17 +187,16 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
                 for (int x = x0 + xs[u]; x < x0 + xs[u + 1]; ++x)
                     sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
             all.push_back(SquaresOf(sums));
-            result.estimate += all.back().Root(0) / (kSide * kSide);
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    result.upper = UpperBound(all);
-    // Chance is never below 0 in the mean of roots, and averages out in the root of the mean.
-    result.estimate = std::clamp(RootOfMean(all), result.least, result.estimate);
-    result.upper = std::max(result.upper, result.estimate);
+    const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
+    result.estimate = std::max(belief.Root(0), result.least);
+    result.upper = std::max({belief.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
     return result;
 }
 
-Planes StandardError(const EstimatedError& error) {
+Planes StandardError(const DenoisedPicture& denoised) {
+    const EstimatedError error = Measure(denoised, false);
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)

@@ -13,11 +13,16 @@ struct EstimatedError {
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // what the halves of the denoised picture differ by: what still changes
 };
+// Measures it as it is seen (AsSeen).
 EstimatedError MeasureError(const DenoisedPicture&);
 
+// Makes what is coarse in differences in lightness, blotches of several pixels, as much stronger as
+// the eye is more sensitive to it. Noise without correlation between pixels stays as strong.
+Planes AsSeen(Planes difference);
+
 // Holds the visible error of a block: the mean over its 10 x 10 sub-blocks of the root mean square
-// of the error in lightness, times what an observer sees of a difference there (NoiseVisibility:
-// flare and detail).
+// of the error in lightness, as it is seen, times what an observer sees of a difference there
+// (NoiseVisibility: flare and detail).
 struct VisibleError {
     double estimate = 0;
     double upper = 0;  // not exceeded in 95 of 100 blocks
@@ -28,6 +33,6 @@ struct VisibleError {
 VisibleError MeasureVisibleError(const EstimatedError&, int x0, int y0, int x1, int y1);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around.
-Planes StandardError(const EstimatedError&);
+Planes StandardError(const DenoisedPicture&);
 
 }  // namespace lull

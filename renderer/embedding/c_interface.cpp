@@ -104,9 +104,9 @@ void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& c
 }
 
 void Write(DenoisedPicture denoised, lull_denoised_picture* clean) {
+    const Planes standard = clean->error ? StandardError(denoised) : Planes();
     const EstimatedError error = MeasureError(denoised);
     denoised.halves = denoised.noisy = {};  // a large picture needs the memory
-    const Planes standard = clean->error ? StandardError(error) : Planes();
     const std::vector<float> colours = Interleaved(denoised.picture);
     for (int i = 0; i < clean->block_count; ++i) {
         lull_block_error& block = clean->blocks[i];

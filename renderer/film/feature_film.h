@@ -2,7 +2,9 @@
 // samples.
 #pragma once
 
-#include "renderer/film/aov_film.h"
+#include "renderer/base/color.h"
+#include "renderer/film/pixel_plane.h"
+#include "renderer/transport/first_hit.h"
 
 namespace lull {
 
@@ -27,25 +29,7 @@ struct FeaturePixel {
     bool operator==(const FeaturePixel&) const = default;
 };
 
-// Holds these pixels of the region that a Film beside it has: 60 bytes a pixel. Different pixels
-// can be changed by different threads at the same time.
-class FeatureFilm {
-  public:
-    explicit FeatureFilm(const PixelRect& region)
-        : region(region), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
-
-    const PixelRect& Region() const { return region; }
-    FeaturePixel& At(const Vec2i& p) { return pixels[Index(p)]; }
-    const FeaturePixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
-
-  private:
-    size_t Index(const Vec2i& p) const {
-        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
-               size_t(p.x() - region.min.x());
-    }
-
-    PixelRect region;
-    std::vector<FeaturePixel> pixels;
-};
+// Holds these pixels of the region that a Film beside it has: 60 bytes a pixel.
+using FeatureFilm = PixelPlane<FeaturePixel>;
 
 }  // namespace lull

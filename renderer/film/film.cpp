@@ -67,7 +67,7 @@ int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
 
 void Film::DropHalf() {
     hasHalf = false;
-    halfSums = {};
+    decltype(halfSums)().swap(halfSums);  // an assigned list would leave its memory allocated
 }
 
 FilmPixel Film::At(const Vec2i& p) const {

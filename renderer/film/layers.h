@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "renderer/film/aov_film.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/film/matte_film.h"
 #include "renderer/transport/path_tracer.h"

@@ -174,6 +174,9 @@ struct Description {
     std::vector<InstanceEntity> instances;
     std::vector<Motion> motions;
     std::vector<EmbeddedImage> images;
+    // How the file's format lets people choose between materials: the names, in its order. They are
+    // no part of the scene.
+    std::vector<std::string> variants;
 
     std::string directory;             // of the scene's file; relative file names start there
     std::vector<std::string> sources;  // the files that this was read from

@@ -15,6 +15,7 @@
 #include "renderer/input/gltf/parameters.h"
 #include "renderer/input/gltf/primitives.h"
 #include "renderer/input/gltf/skins.h"
+#include "renderer/input/gltf/variants.h"
 
 namespace lull {
 namespace {
@@ -43,6 +44,7 @@ struct MeshShapes {
 struct Placement {
     int node;
     Mat4d worldFromMesh;
+    std::optional<Mat4d> atClose = {};  // of one that moves: the same when the shutter closes
 };
 
 MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& nodes,
@@ -69,6 +71,7 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         ShapeEntity shape = MakeShapeEntity(std::move(triangles), loc);
         shape.material = material.index;
         shape.areaLight = material.emission;
+        shape.insideMedium = material.medium;
         for (const Parameter& parameter : material.coverage.All()) shape.parameters.Add(parameter);
         result.shapes.push_back(std::move(shape));
     }
@@ -82,6 +85,17 @@ PosedMesh MeshOf(const GltfDocument& document, const tinygltf::Node& node) {
     if (std::all_of(mesh.weights.begin(), mesh.weights.end(), [](double w) { return w == 0; }))
         mesh.weights.clear();
     return mesh;
+}
+
+bool HasExtent(const Mat4d& m) {
+    return m.inverse().allFinite() && m.topLeftCorner<3, 3>().determinant() != 0;
+}
+
+bool AnyJointMoves(const GltfDocument& document, const std::vector<GltfNode>& nodes, int skin) {
+    const std::vector<int>& joints = document.model.skins[size_t(skin)].joints;
+    return std::any_of(nodes.begin(), nodes.end(), [&](const GltfNode& node) {
+        return node.atClose && std::find(joints.begin(), joints.end(), node.index) != joints.end();
+    });
 }
 
 // Lists where meshes stand, without those that have been flattened to nothing.
@@ -99,12 +113,16 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
             placements[mesh].push_back({node.index, Mat4d::Identity()});
             if (n.extensions.count("EXT_mesh_gpu_instancing") > 0)
                 warnings.Add(loc, "copies of a mesh with a skin are left out");
+            if (AnyJointMoves(document, nodes, n.skin))
+                warnings.Add(loc, "skins are not blurred by the motion of their joints");
             continue;
         }
         for (const Mat4d& copy : ReadCopies(document, node.index)) {
-            const Mat4d m = node.worldFromNode * copy;
-            if (m.inverse().allFinite() && m.topLeftCorner<3, 3>().determinant() != 0)
-                placements[mesh].push_back({node.index, m});
+            Placement placement{node.index, node.worldFromNode * copy};
+            if (node.atClose) placement.atClose = *node.atClose * copy;
+            if (HasExtent(placement.worldFromMesh) &&
+                (!placement.atClose || HasExtent(*placement.atClose)))
+                placements[mesh].push_back(placement);
             else
                 warnings.Add(loc, "a mesh scaled to nothing is left out");
         }
@@ -118,17 +136,21 @@ std::string NameOf(const GltfDocument& document, const Placement& placement) {
     return node.name.empty() ? document.model.meshes[size_t(node.mesh)].name : node.name;
 }
 
-// Puts a mesh into the world: once as it is, more often as instances of an object. What emits is
-// copied instead, since every light is a triangle of the world.
+// Puts a mesh into the world: once as it is, more often, or where it moves, as instances of an
+// object. What emits is copied instead, since every light is a triangle of the world at rest.
 void AddShapes(const GltfDocument& document, MeshShapes mesh,
-               const std::vector<Placement>& placements, Description* description) {
-    const bool isInstanced = placements.size() > 1;
+               const std::vector<Placement>& placements, Description* description,
+               Warnings& warnings) {
+    const bool moves = std::any_of(placements.begin(), placements.end(),
+                                   [](const Placement& p) { return p.atClose.has_value(); });
+    const bool isInstanced = placements.size() > 1 || moves;
     ObjectEntity object;
     for (ShapeEntity& shape : mesh.shapes) {
         if (isInstanced && !shape.areaLight) {
             object.shapes.push_back(std::move(shape));
             continue;
         }
+        if (moves) warnings.Add(shape.loc, "what emits light is not blurred by its motion");
         for (size_t i = 0; i < placements.size(); ++i) {
             ShapeEntity copy = i + 1 < placements.size() ? shape : std::move(shape);
             copy.worldFromObject = placements[i].worldFromMesh;
@@ -142,10 +164,16 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
     object.loc = document.At(path);
     const std::string& name = document.model.meshes[size_t(index)].name;
     object.name = name.empty() ? path : name;
-    for (const Placement& p : placements)
+    for (const Placement& p : placements) {
+        int motion = -1;
+        if (p.atClose) {
+            motion = int(description->motions.size());
+            description->motions.push_back({TransformPair{{p.worldFromMesh, *p.atClose}}});
+        }
         description->instances.push_back({int(description->objects.size()), p.worldFromMesh,
-                                          document.At(fmt::format("/nodes/{}", p.node)), -1,
+                                          document.At(fmt::format("/nodes/{}", p.node)), motion,
                                           NameOf(document, p)});
+    }
     description->objects.push_back(std::move(object));
 }
 
@@ -153,15 +181,12 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
 
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings) {
     GltfDocument document = ReadGltf(file, warnings);
-    if (options.frame)
-        PoseAt(*options.frame, options.animation, &document, warnings);
-    else if (!document.model.animations.empty())
-        warnings.Add(document.At("/animations"),
-                     "the scene is shown as the file stands; --frame SECONDS poses its animation");
+    if (!options.variant.empty()) UseVariant(options.variant, &document);
     Description description;
     description.upAxis = 1;
     description.directory = std::filesystem::path(file).parent_path().string();
-    const std::vector<GltfNode> nodes = ListNodes(document);
+    description.variants = VariantNames(document);
+    const std::vector<GltfNode> nodes = PoseNodes(options, &document, warnings);
 
     GltfMaterials materials(document, options.solidGlass, &description);
     std::optional<Framing> framing = FramingFor(document, nodes, options);
@@ -169,10 +194,13 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
         MeshShapes mesh =
             ReadMesh(document, nodes, posed, framing.has_value(), &materials, warnings);
         for (const Placement& p : placements)
-            for (const Vec3f& point : mesh.outline)
+            for (const Vec3f& point : mesh.outline) {
                 framing->Extend(TransformPoint(p.worldFromMesh, point));
-        AddShapes(document, std::move(mesh), placements, &description);
+                if (p.atClose) framing->Extend(TransformPoint(*p.atClose, point));
+            }
+        AddShapes(document, std::move(mesh), placements, &description, warnings);
     }
+    if (!description.media.empty()) description.integrator.name = "volpath";  // which sees them
     description.sources = {file};
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))

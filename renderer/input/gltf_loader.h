@@ -20,10 +20,16 @@ struct GltfOptions {
     // Pose the scene as an animation has it at this time, in seconds; nothing: as the file stands.
     std::optional<double> frame = {};
     std::string animation = {};  // which one: its name or number, from 0; empty: the first one
+    // Let the shutter be open for so many seconds from then on: nodes and cameras that move are
+    // blurred. At least 0; without `frame` nothing moves.
+    double shutter = 0;
+    std::string variant = {};  // which materials, by name or number, from 0; empty: the usual ones
     // Let all that transmits light be solid, as if the file gave it a volume.
     bool solidGlass = false;
 
-    bool IsGiven() const { return !camera.empty() || orbit || frame || solidGlass; }
+    bool IsGiven() const {
+        return !camera.empty() || orbit || frame || !variant.empty() || solidGlass;
+    }
 };
 
 // Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, for

@@ -13,11 +13,13 @@ constexpr int kSmallest = 10;  // pixels a side of a block whose visible error c
 DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
     DenoisedPicture denoised = Denoise(std::move(picture));
+    std::vector<float> standardError = StandardError(denoised).values;
     const EstimatedError error = MeasureError(denoised);
     denoised.halves = denoised.noisy = {};  // a large picture needs the memory
-    DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)}, {}, {}};
+    DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)},
+                         std::move(standardError),
+                         {}};
     denoised = {};
-    result.error = StandardError(error).values;
     for (const Block& block : blocks) {
         const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
         const bool isSmall = std::min(max.x() - min.x(), max.y() - min.y()) < kSmallest;

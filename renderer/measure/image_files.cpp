@@ -137,13 +137,12 @@ RowSource WithoutBackground(const RowSource& rows, const Film& film, const Matte
     };
 }
 
-// Adds alpha to rows of R, G, B.
+// Adds alpha to rows of R, G, B, which are moved apart for it from the last pixel on.
 RowSource WithAlpha(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
     return [&, rows](int y, std::span<float> row) {
-        std::vector<float> rgb(row.size() / 4 * 3);
-        rows(y, rgb);
-        for (size_t x = 0; x < row.size() / 4; ++x) {
-            std::copy_n(&rgb[3 * x], 3, &row[4 * x]);
+        rows(y, row.first(row.size() / 4 * 3));
+        for (size_t x = row.size() / 4; x-- > 0;) {
+            for (size_t c = 3; c-- > 0;) row[4 * x + c] = row[3 * x + c];
             row[4 * x + 3] = mattes.alpha.At(film.Region().min + Vec2i(int(x), y)).Alpha();
         }
     };

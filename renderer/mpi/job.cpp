@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,6 +14,9 @@
 namespace lull {
 
 namespace {
+
+// Seconds that ranks are waited for.
+constexpr double leastPatience = 5, mostPatience = 60;
 
 // Returns how many processes mpirun or srun has started, from what they tell each.
 int LaunchedProcesses() {
@@ -62,9 +66,21 @@ Job::Job() {
     Silence(2);
 }
 
+// What was left already is not waited for again.
 Job::~Job() {
     peers.reset();
-    EndMpi();
+    EndMpi(leastPatience);
+}
+
+double Job::Patience() const {
+    const std::chrono::duration<double> busy = std::chrono::steady_clock::now() - start;
+    const double patience =
+        clock ? std::clamp(clock() / 10, leastPatience, mostPatience) : mostPatience;
+    return std::max(patience, busy.count());
+}
+
+Agreement Job::AgreeWithOthers(bool failed, uint64_t value) {
+    return Agree(peers.get(), ++rounds, failed, value, Patience());
 }
 
 void Job::Begin(const std::string& what) {
@@ -73,21 +89,31 @@ void Job::Begin(const std::string& what) {
         phase = Phase::Working;
         throw Error(fmt::format("rank {} gives no sign of life; start again without it", givenUp));
     }
-    const MpiAgreement all = AgreeByMpi(false, HashOf(what));
+    const Agreement all = AgreeWithOthers(false, HashOf(what));
     if (all.failed >= 0) throw OtherRankFailed();
     phase = Phase::Working;
     if (all.different < 0) return;
-    phase = Phase::After;  // all find the same, and end
-    if (rank > 0) throw OtherRankFailed();
+    if (!all.isLate) {
+        phase = Phase::After;  // all find the same, and end
+        if (rank > 0) throw OtherRankFailed();
+    }
     throw Error(
         fmt::format("rank {} is about to render something else: the version of lull, the "
                     "scene and what it refers to have to be the same everywhere",
                     all.different));
 }
 
-void Job::EndWithout(int exitCode) {
-    if (givenUp < 0) return;
-    std::fflush(nullptr);
+void Job::End() {
+    phase = Phase::After;
+    start = std::chrono::steady_clock::now();
+}
+
+void Job::Leave(int exitCode) {
+    std::fflush(nullptr);  // an abort would not
+    if (givenUp < 0) {
+        peers.reset();
+        if (EndMpi(mostPatience)) return;
+    }
     AbortMpi(exitCode);
 }
 
@@ -97,7 +123,12 @@ void Job::Warn(const std::string& message) const {
 }
 
 void Job::Fail(const std::string& message) {
-    const bool isFirst = count == 1 || phase != Phase::Before || AgreeByMpi(true, 0).failed == rank;
+    bool isFirst = true;
+    if (count > 1 && phase == Phase::Before) {
+        const Agreement all = AgreeWithOthers(true, 0);
+        isFirst = all.failed == rank;
+        if (all.isLate) phase = Phase::Working;
+    }
     if (isFirst) {
         const std::string who =
             rank > 0 ? fmt::format("rank {} on {}: ", rank, HostName()) : std::string();

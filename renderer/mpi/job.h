@@ -1,10 +1,12 @@
 // Knows whether this process is one of several that share a render, as mpirun or srun start them.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "renderer/mpi/agreement.h"
 #include "renderer/render/peers.h"
 
 namespace lull {
@@ -26,15 +28,19 @@ class Job {
     Peers* ThePeers() { return peers.get(); }
 
     // Waits until all ranks are ready to begin, and checks that all are about to render the same
-    // thing, which `what` describes completely. Throws Error, or OtherRankFailed.
+    // thing, which `what` describes completely. Who has given no sign of life for longer than rank
+    // 0 was busy before, and a minute, is not waited for: it may still join. Throws Error, or
+    // OtherRankFailed.
     void Begin(const std::string& what);
+    // Has a tenth of what the clock says to be left, but at least five seconds, be that minute.
+    void SetClock(std::function<double()> secondsLeft) { clock = std::move(secondsLeft); }
     // Declares that the others are not needed until the next Begin().
-    void End() { phase = Phase::After; }
+    void End();
     // Declares that a rank gives no sign of life, and will not be waited for again.
     void GiveUp(int rank) { givenUp = rank; }
-    // Ends this process, and all others, with the exit code, if one of them was given up: it would
-    // not end by itself. Else does nothing.
-    void EndWithout(int exitCode);
+    // Waits for the others to come here. Ends this process, and all others, with the exit code, if
+    // one of them was given up, or does not come: it would not end by itself.
+    void Leave(int exitCode);
     // Has warnings and errors put into the lines that wording(kind, message) returns.
     using Wording = std::function<std::string(const std::string& kind, const std::string& message)>;
     void SetWording(Wording given) { wording = std::move(given); }
@@ -46,9 +52,15 @@ class Job {
   private:
     enum class Phase { Before, Working, After };
 
+    double Patience() const;
+    Agreement AgreeWithOthers(bool failed, uint64_t value);
+
     int rank = 0, count = 1;
     int givenUp = -1;  // the last rank that was; -1: none
     Phase phase = Phase::Before;
+    int rounds = 0;  // of agreement
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    std::function<double()> clock;
     int errorOutput = 2;  // where errors go; 2 itself is silenced in all ranks but the first
     Wording wording = [](const std::string& kind, const std::string& message) {
         return "lull: " + kind + ": " + message + "\n";

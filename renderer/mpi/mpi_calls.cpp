@@ -1,13 +1,12 @@
 #include "renderer/mpi/mpi_calls.h"
 
-#include <algorithm>
-#include <chrono>
 #include <climits>
+#include <cmath>
 #include <list>
 #include <set>
-#include <thread>
 
 #include "renderer/base/error.h"
+#include "renderer/mpi/nap.h"
 
 #ifdef LULL_MPI
 #include <mpi.h>
@@ -23,13 +22,13 @@ namespace {
 
 constexpr int tag = 0x6c;
 
-// Waits without taking a core from ranks that still load the scene, or write files.
-void WaitFor(MPI_Request request) {
-    constexpr std::chrono::microseconds longest{10000};
-    std::chrono::microseconds nap{50};
-    for (int done = 0; !done; nap = std::min(2 * nap, longest)) {
+// Returns false if it takes longer than `patience` seconds.
+bool WaitFor(MPI_Request request, double patience = INFINITY) {
+    for (Nap nap;; nap.Take()) {
+        int done = 0;
         MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-        if (!done) std::this_thread::sleep_for(nap);
+        if (done) return true;
+        if (nap.SecondsSinceFirst() > patience) return false;
     }
 }
 
@@ -118,29 +117,18 @@ MpiWorld StartMpi() {
     return world;
 }
 
-void EndMpi() {
-    int started = 0, ended = 0;
+bool EndMpi(double patience) {
+    int started = 0, ended = 0, rank = 0;
     MPI_Initialized(&started);
     MPI_Finalized(&ended);
-    if (!started || ended) return;
-    MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Ibarrier(MPI_COMM_WORLD, &request);  // rank 0 may be writing files for long
-    WaitFor(request);
-    MPI_Finalize();
-}
-
-MpiAgreement AgreeByMpi(bool failed, uint64_t value) {
-    int rank = 0;
+    if (!started || ended) return true;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    uint64_t first = value;
     MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Ibcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
-    WaitFor(request);
-    const int mine[2] = {failed ? rank : INT_MAX, value != first ? rank : INT_MAX};
-    int all[2] = {};
-    MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MIN, MPI_COMM_WORLD, &request);
-    WaitFor(request);
-    return {all[0] == INT_MAX ? -1 : all[0], all[1] == INT_MAX ? -1 : all[1]};
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    // Rank 0 may be writing files for long.
+    if (!WaitFor(request, rank == 0 ? patience : INFINITY)) return false;
+    MPI_Finalize();
+    return true;
 }
 
 void AbortMpi(int exitCode) { MPI_Abort(MPI_COMM_WORLD, exitCode); }
@@ -152,8 +140,7 @@ std::unique_ptr<Peers> MakeMpiPeers() { return std::make_unique<MpiPeers>(); }
 const bool hasMpi = false;
 
 MpiWorld StartMpi() { return {}; }
-void EndMpi() {}
-MpiAgreement AgreeByMpi(bool, uint64_t) { return {}; }
+bool EndMpi(double) { return true; }
 void AbortMpi(int) {}
 std::unique_ptr<Peers> MakeMpiPeers() { return nullptr; }
 

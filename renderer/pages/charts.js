@@ -66,11 +66,11 @@ const charts = [];  // [chart, element], to follow the width of the page
 function drawChart(parent, series, options) {
   const box = make("div", {class: "chart"}, make("h3", {}, options.title));
   parent.append(box);
-  const logs = series.map(s => ({...s, log: options.logY}));
+  // A curve that is 0 throughout is one as well.
+  const isLogY = options.logY && series.some(s => (s.mark != null || s.line) && s.y.some(v => v > 0));
+  const logs = series.map(s => ({...s, log: isLogY}));
   const data = joinSeries(logs);
   if (!data[0].length) { box.append(make("p", {class: "small"}, "Nothing was recorded.")); return null; }
-  const values = data.slice(1).flat().filter(isNumber);
-  const isLogY = options.logY && values.length > 0;
   // A logarithmic axis needs two different ends.
   const widen = (min, max) => min === max ? [min / 1.5, max * 1.5] : [min / 1.08, max * 1.08];
   const number = v => show(v, 3), lines = (options.lines || []).filter(l => isNumber(l.x));

@@ -19,6 +19,12 @@ function chooseBlock(i) {
   [...byId("blocks-table").querySelectorAll("tbody tr")].forEach((row, k) => row.classList.toggle("chosen", k === i));
 }
 
+// Returns the block that took the most samples: there is most to see.
+function hardestBlock(data) {
+  const spp = data.blocks.map((b, i) => Math.max(...data.images.filter(m => m.name !== data.reference && m.blocks && m.blocks[i]).map(m => m.blocks[i].spp || 0)));
+  return Math.max(0, spp.indexOf(Math.max(...spp)));
+}
+
 document.title = `${data.title} \u2013 lull ${data.kind}`;
 byId("title").textContent = data.title;
 const p = data.provenance;
@@ -33,5 +39,5 @@ showTotals(data);
 showSummary(data);
 showBlocksTable(data);
 showProvenance(data);
-if (data.blocks.length && layers.length) chooseBlock(0);
+if (data.blocks.length && layers.length) chooseBlock(hardestBlock(data));
 dispatchEvent(new Event("resize"));  // now that the page has its height, and so its width

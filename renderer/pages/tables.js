@@ -62,28 +62,39 @@ function showBlock(data, i) {
   byId("curves").hidden = !parent.children.length;
 }
 
+// A column for each image.
 function showSummary(data) {
   const parent = byId("summary-tables");
   const images = data.images.filter(i => i.figures || i.cost || i.seams);
-  if (images.length) {
-    const seams = images.some(i => i.seams), errors = images.some(i => i.figures);
-    parent.append(makeTable(errors ? "Errors against the reference; figures of displays (PSNR, SSIM, FLIP) of the 8-bit image" : "",
-      ["image", ...(errors ? figureNames.map(f => f[1]) : []), ...(seams ? ["seams"] : []), "samples", "mean spp", "seconds of processors", "of that the rule", "samples saved", "seconds saved"],
-      images.map(i => [i.label, ...(errors ? figureNames.map(([name]) => showFigure(i.figures, name)) : []),
-        ...(seams ? [show(i.seams && i.seams.ratio, 3)] : []),
-        showCount(i.cost && i.cost.samples), show(i.cost && i.cost.samples / (data.width * data.height), 4),
-        i.cost && i.cost.seconds > 0 ? (i.cost.estimated ? "~" : "") + showSeconds(i.cost.seconds) : "\u2013",
-        i.cost && i.cost.seconds > 0 ? showShare(i.cost.ruleSeconds / (i.cost.seconds + i.cost.ruleSeconds)) : "\u2013",
-        ...(i.saved && i.name !== data.reference ? [showShare(i.saved.samples), (i.saved.estimated && isNumber(i.saved.seconds) ? "~" : "") + showShare(i.saved.seconds)] : ["\u2013", "\u2013"])])));
-    if (seams) parent.append(make("p", {class: "small"}, "Seams: how much more the noise level jumps across borders of blocks than inside them; 1 is not at all. ~ marks what is estimated from the seconds that a block took for the samples it had."));
-  }
+  const rows = [];
+  const add = (label, text) => { const cells = images.map(i => text(i) || "\u2013"); if (cells.some(c => c !== "\u2013")) rows.push([label, ...cells]); };
+  const roughly = (isEstimated, text) => (isEstimated && text !== "\u2013" ? "~" : "") + text;
+  const saved = i => i.name !== data.reference && i.saved;
+  add("rule", i => i.rule && i.rule.replace(/[:/]/g, "$&\u200b"));  // it can break there
+  add("mean spp", i => i.cost && show(i.cost.samples / (data.width * data.height), 4));
+  add("samples", i => i.cost && showCount(i.cost.samples));
+  add("samples saved", i => saved(i) && showShare(i.saved.samples));
+  add("seconds of processors", i => i.cost && i.cost.seconds > 0 && roughly(i.cost.estimated, showSeconds(i.cost.seconds)));
+  add("seconds saved", i => saved(i) && roughly(i.saved.estimated, showShare(i.saved.seconds)));
+  add("of the rule", i => i.cost && i.cost.seconds > 0 && showShare(i.cost.ruleSeconds / (i.cost.seconds + i.cost.ruleSeconds)));
+  for (const [name, label] of figureNames) add(label, i => i.figures && showFigure(i.figures, name));
+  add("seams", i => i.seams && show(i.seams.ratio, 3));
+  if (rows.length) parent.append(makeTable("", ["", ...images.map(i => i.name)], rows));
+  const notes = [];
+  if (images.some(i => i.figures)) notes.push("Errors are against the reference; PSNR, SSIM and FLIP of the 8-bit image.");
+  if (images.some(i => i.seams)) notes.push("Seams: how much more the noise level jumps across borders of blocks than inside them; 1 is not at all.");
+  if (images.some(i => i.cost && i.cost.estimated || i.saved && i.saved.estimated)) notes.push("~ marks what is estimated from the seconds that a block took for the samples it had.");
+  if (notes.length) parent.append(make("p", {class: "small"}, notes.join(" ")));
   const h = data.againstHuman;
   if (h) parent.append(make("p", {}, `Automatic against human: ${h.earlier} blocks earlier, ${h.later} later, ${showCount(h.meanDistance)} spp apart in the mean; ${showShare(Math.abs(h.savedSamples))} ${h.savedSamples < 0 ? "more" : "fewer"} samples.`));
   const e = data.estimates;
   if (e && e.blocks) parent.append(make("p", {}, `The seconds to the cap, estimated where ${e.blocks} blocks stopped, are ${showShare(e.total)} off the measured in all and ${showShare(e.worst)} at the worst.`));
-  if (data.verifications && data.verifications.length)
-    parent.append(makeTable("The automatic image rendered by itself", ["threads", "seconds", "to the cap (estimated)", "time saved", "of the saving in samples kept", "the rule's share", "pixels"],
-      data.verifications.map(v => [String(v.threads), showSeconds(v.wallSeconds), showSeconds(v.wallSecondsToCap), showShare(v.savedWall), showShare(v.kept), showShare(v.ruleShare), v.samePixels ? "the same bits" : "DIFFERENT"])));
+  const v = data.verifications || [];
+  if (v.length)
+    parent.append(makeTable("The automatic image rendered by itself", ["threads", ...v.map(o => String(o.threads))], [
+      ["seconds", ...v.map(o => showSeconds(o.wallSeconds))], ["to the cap (estimated)", ...v.map(o => showSeconds(o.wallSecondsToCap))],
+      ["time saved", ...v.map(o => showShare(o.savedWall))], ["of the saving in samples kept", ...v.map(o => showShare(o.kept))],
+      ["the rule's share", ...v.map(o => showShare(o.ruleShare))], ["pixels", ...v.map(o => o.samePixels ? "the same bits" : "DIFFERENT")]]));
   byId("summary").hidden = !parent.children.length;
 }
 
@@ -125,7 +136,7 @@ function showBlocksTable(data) {
 function showProvenance(data) {
   byId("notes").append(...(data.notes || []).map(n => make("li", {}, n)),
     ...Object.entries(data.warnings || {}).map(([kind, count]) => make("li", {}, `Warning, ${count} times: ${kind}`)));
-  const rows = Object.entries(data.provenance || {}).map(([k, v]) =>
+  const rows = Object.entries(data.provenance || {}).filter(([, v]) => v !== "").map(([k, v]) =>
     [k, v && typeof v === "object" ? Object.entries(v).map(([a, b]) => Array.isArray(v) ? b : `${a} ${b}`).join(", ") : String(v)]);
   if (rows.length) byId("provenance-table").replaceChildren(makeTable("", null, rows).querySelector("tbody"));
   byId("provenance").hidden = !rows.length && !byId("notes").children.length;

@@ -10,7 +10,11 @@
 #include <tuple>
 #include <vector>
 
+#include "stopping/python/arrays.h"
+
 namespace py = pybind11;
+
+namespace lull {
 
 namespace {
 
@@ -18,13 +22,6 @@ constexpr int kLeastRest =
     40;  // pixels; less at the right and at the bottom is no block of its own
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-std::string ShapeOf(const py::array& array) {
-    std::string text;
-    for (py::ssize_t i = 0; i < array.ndim(); ++i)
-        text += (i ? " x " : "") + std::to_string(array.shape(i));
-    return text;
-}
 
 // Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
 Floats ToFloats(const py::array& array, const char* name, int channels, py::ssize_t height,
@@ -39,8 +36,9 @@ Floats ToFloats(const py::array& array, const char* name, int channels, py::ssiz
         throw py::value_error(std::string(name) + " has the type " +
                               py::str(array.dtype()).cast<std::string>() +
                               "; linear floats are needed");
-    if (isFlat) return Floats(array);
-    return Floats(array[py::make_tuple(py::ellipsis(), py::slice(0, channels, 1))]);
+    const py::array wanted = isFlat ? array : FirstChannels(array, channels);
+    if (channels == 3) WarnOfValues(wanted, name);  // depths may be infinite
+    return Floats(wanted);
 }
 
 // Holds the arrays that a lull_halves points to.
@@ -134,9 +132,20 @@ Denoised Denoise(const py::array& a, const py::array& b, const py::object& albed
     return result;
 }
 
+std::string ReprOf(const Denoised& d) {
+    const auto worst = std::ranges::max(d.blocks, {}, &lull_block_error::upper);
+    return py::str(
+               "<lull_denoising.Denoised of {} x {} pixels: visible error {:.2g} in its worst "
+               "block, hardly above {:.2g}>")
+        .format(d.picture.shape(1), d.picture.shape(0), worst.estimate, worst.upper);
+}
+
 }  // namespace
 
+}  // namespace lull
+
 PYBIND11_MODULE(lull_denoising, module) {
+    using namespace lull;
     using namespace py::literals;
     module.doc() =
         "Takes the noise out of pictures of any renderer, and says how wrong they may still be.\n\n"
@@ -154,7 +163,8 @@ PYBIND11_MODULE(lull_denoising, module) {
             "The visible error of each block, in lightness: an array of rows x columns.")
         .def_property_readonly(
             "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
-            "What that hardly exceeds: meant to, in 5 of 100 blocks.");
+            "What that hardly exceeds: meant to, in 5 of 100 blocks.")
+        .def("__repr__", [](const Denoised& d) { return ReprOf(d); });
 
     module.def(
         "denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),

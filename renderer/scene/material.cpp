@@ -84,6 +84,8 @@ void Analyse(const TextureTable& textures, std::span<const Material> made, Mater
                 if (!kind.roughness.IsIsotropic()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
             if constexpr (requires { kind.NeedsTangents(); })
                 if (kind.NeedsTangents()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
+            if constexpr (requires { kind.VariesWithHit(); })
+                if (kind.VariesWithHit()) m->isConstant = false;
             if constexpr (requires { kind.NeedsUv(); }) {
                 m->lobeNeeds = m->lobeNeeds | kNeedsUv;
                 m->isConstant = false;

@@ -4,12 +4,18 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "stopping/python/arrays.h"
+#include "stopping/python/picture.h"
+
 namespace py = pybind11;
+
+namespace lull {
 
 namespace {
 
@@ -26,65 +32,6 @@ void Check(lull_status status) {
     throw py::error_already_set();
 }
 
-std::string ShapeOf(const py::array& array) {
-    std::string text;
-    for (py::ssize_t i = 0; i < array.ndim(); ++i)
-        text += (i ? " x " : "") + std::to_string(array.shape(i));
-    return text;
-}
-
-// Checks that an array is H x W x 3 (more channels, such as alpha, are left out) of float32 or
-// uint8; float16 and float64 are converted.
-py::array ToPixels(const py::array& array, const char* name, int width, int height) {
-    if (array.ndim() != 3 || array.shape(0) != height || array.shape(1) != width ||
-        array.shape(2) < 3)
-        throw py::value_error(std::string(name) + " has the shape " + ShapeOf(array) +
-                              "; needed are " + std::to_string(height) + " x " +
-                              std::to_string(width) + " x 3: rows, columns, R G B");
-    if (py::isinstance<py::array_t<float>>(array) || py::isinstance<py::array_t<uint8_t>>(array))
-        return array;
-    if (array.dtype().kind() == 'f') return py::array_t<float>(array);
-    throw py::value_error(std::string(name) + " has the type " +
-                          py::str(array.dtype()).cast<std::string>() +
-                          "; float32 (linear) or uint8 (sRGB) is needed");
-}
-
-// Returns an array with the same pixels, R, G and B side by side.
-py::array Packed(const py::array& pixels) {
-    return py::module_::import("numpy").attr("array")(
-        pixels[py::make_tuple(py::ellipsis(), py::slice(0, 3, 1))], py::arg("order") = "C");
-}
-
-// Shows arrays to the C interface, which read them with one set of strides, none of them 0.
-struct Picture {
-    py::array mean;
-    std::optional<py::array> half;
-    lull_picture view = {};
-
-    Picture(const py::array& image, const std::optional<py::array>& other, int width, int height)
-        : mean(ToPixels(image, "image", width, height)) {
-        bool isPlain = true;
-        if (other) half = ToPixels(*other, "half", width, height);
-        if (half && half->itemsize() != mean.itemsize())
-            throw py::value_error("image and half have different types");
-        for (int i = 0; i < 3; ++i)
-            isPlain =
-                isPlain && mean.strides(i) != 0 && (!half || half->strides(i) == mean.strides(i));
-        if (!isPlain) {
-            mean = Packed(mean);
-            if (half) half = Packed(*half);
-        }
-        view.width = width;
-        view.height = height;
-        view.format = mean.itemsize() == 1 ? LULL_SRGB8 : LULL_LINEAR_FLOAT;
-        view.mean = mean.data();
-        view.half = half ? half->data() : nullptr;
-        view.row_stride = mean.strides(0);
-        view.pixel_stride = mean.strides(1);
-        view.channel_stride = mean.strides(2);
-    }
-};
-
 // Holds how it stands with all blocks, for each number an array of rows x columns.
 struct Answer {
     int columns;
@@ -96,17 +43,40 @@ struct Answer {
         for (size_t i = 0; i < blocks.size(); ++i) values.mutable_data()[i] = T(blocks[i].*field);
         return values;
     }
-    bool Stop() const {
-        for (const lull_answer& block : blocks)
-            if (!block.stop) return false;
-        return true;
+    size_t StoppedCount() const {
+        return size_t(std::ranges::count(blocks, 1, &lull_answer::stop));
     }
+    bool Stop() const { return StoppedCount() == blocks.size(); }
     // Returns None where a number is not known.
     py::object Known(double lull_answer::*field) const {
         for (const lull_answer& block : blocks)
             if (block.*field < 0) return py::none();
         return Of<double>(field);
     }
+};
+
+// Notices pictures of a block that lie too far apart for rules that compare them: these then look
+// at none, and never stop the block.
+class Spacing {
+  public:
+    // Returns the samples of the last three pictures if the third has come when it was asked for,
+    // could still not be judged, and each has so many times the samples of the one before; ""
+    // otherwise.
+    std::string Note(const lull_answer& answer) {
+        constexpr double kFar = 1.6;
+        const bool isFar = before > 0 && last >= kFar * before && answer.spp >= kFar * last;
+        const bool isMissed = !answer.stop && !answer.judged && answer.spp >= awaited;
+        const std::string pictures = std::to_string(before) + ", " + std::to_string(last) +
+                                     " and " + std::to_string(answer.spp);
+        before = last;
+        last = answer.spp;
+        awaited = answer.next_spp;
+        return isFar && isMissed ? pictures : "";
+    }
+
+  private:
+    int before = 0, last = 0;  // spp
+    int awaited = 0;
 };
 
 class Stopper {
@@ -131,6 +101,7 @@ class Stopper {
         lull_stopper* made = nullptr;
         Check(lull_stopper_create(&settings, &made));
         handle.reset(made, lull_stopper_destroy);
+        spacings.resize(size_t(lull_stopper_block_count(made)));
     }
 
     Answer Observe(const py::array& image, int spp, const std::optional<py::array>& half) {
@@ -142,6 +113,7 @@ class Stopper {
             status = lull_stopper_observe(handle.get(), &picture.view, spp, answer.blocks.data());
         }
         Check(status);
+        for (size_t i = 0; i < answer.blocks.size(); ++i) CheckSpacing(i, answer.blocks[i]);
         return answer;
     }
 
@@ -156,6 +128,7 @@ class Stopper {
             status = lull_stopper_observe_block(handle.get(), block, &picture.view, spp, &answer);
         }
         Check(status);
+        CheckSpacing(size_t(block), answer);
         return answer;
     }
 
@@ -204,6 +177,17 @@ class Stopper {
     const int width, height;
 
   private:
+    // Warns once.
+    void CheckSpacing(size_t block, const lull_answer& answer) {
+        const std::string pictures = spacings[block].Note(answer);
+        if (pictures.empty() || hasWarned) return;
+        hasWarned = true;
+        Warn("pictures at " + pictures +
+             " spp lie too far apart for this rule, which compares them: it has not looked at "
+             "the last and will never stop so; show pictures every 20 or 40 spp, or at most 1.4 "
+             "times "
+             "the spp of the one before");
+    }
     lull_rect RectOf(int block) const {
         lull_rect rect;
         Check(lull_stopper_block_rect(handle.get(), block, &rect));
@@ -215,15 +199,40 @@ class Stopper {
     }
 
     std::shared_ptr<lull_stopper> handle;
+    std::vector<Spacing> spacings;  // of the blocks
+    bool hasWarned = false;
 };
 
 std::optional<double> Known(double value) {
     return value < 0 ? std::nullopt : std::optional(value);
 }
 
+std::string ReprOf(const lull_answer& a) {
+    const std::string votes = a.votes_needed > 1
+                                  ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
+                                  : py::str();
+    return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
+        .format(a.stop ? "stopped" : "goes on", a.spp, votes, a.value, a.threshold);
+}
+
+std::string ReprOf(const Answer& answer) {
+    const auto [least, most] = std::ranges::minmax(answer.blocks, {}, &lull_answer::spp);
+    return py::str("<lull.Answer: {} of {} blocks stopped, at {} to {} spp>")
+        .format(answer.StoppedCount(), answer.blocks.size(), least.spp, most.spp);
+}
+
+std::string ReprOf(const Stopper& stopper) {
+    const Answer answer = stopper.Last();
+    return py::str("<lull.Stopper of {} x {} pixels: {} of {} blocks stopped>")
+        .format(stopper.width, stopper.height, answer.StoppedCount(), answer.blocks.size());
+}
+
 }  // namespace
 
+}  // namespace lull
+
 PYBIND11_MODULE(_stopping, module) {
+    using namespace lull;
     using namespace py::literals;
     module.doc() =
         "Says when a picture that is being rendered has had enough samples.\n\n"
@@ -247,7 +256,8 @@ PYBIND11_MODULE(_stopping, module) {
         .def_property_readonly("probability",
                                [](const lull_answer& a) { return Known(a.probability); })
         .def_property_readonly("visible_noise",
-                               [](const lull_answer& a) { return Known(a.visible_noise); });
+                               [](const lull_answer& a) { return Known(a.visible_noise); })
+        .def("__repr__", [](const lull_answer& a) { return ReprOf(a); });
 
     py::class_<Answer>(module, "Answer",
                        "How it stands with all blocks: arrays of rows x columns. `probability` is "
@@ -272,8 +282,9 @@ PYBIND11_MODULE(_stopping, module) {
             "threshold", [](const Answer& a) { return a.Of<double>(&lull_answer::threshold); })
         .def_property_readonly("probability",
                                [](const Answer& a) { return a.Known(&lull_answer::probability); })
-        .def_property_readonly(
-            "visible_noise", [](const Answer& a) { return a.Known(&lull_answer::visible_noise); });
+        .def_property_readonly("visible_noise",
+                               [](const Answer& a) { return a.Known(&lull_answer::visible_noise); })
+        .def("__repr__", [](const Answer& a) { return ReprOf(a); });
 
     py::class_<Stopper>(
         module, "Stopper",
@@ -312,5 +323,6 @@ PYBIND11_MODULE(_stopping, module) {
         .def("save", &Stopper::Save, "Returns all that has been noted, as bytes.")
         .def("restore", &Stopper::Restore, "state"_a, "Takes up what save() has returned.")
         .def_readonly("width", &Stopper::width)
-        .def_readonly("height", &Stopper::height);
+        .def_readonly("height", &Stopper::height)
+        .def("__repr__", [](const Stopper& s) { return ReprOf(s); });
 }

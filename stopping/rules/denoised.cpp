@@ -7,7 +7,7 @@ namespace lull {
 namespace {
 
 constexpr uint32_t kTag = 0x31534e44;  // "DNS1"
-constexpr int kVotes = 2;
+constexpr int kVotes = 1;
 constexpr int kFirstSpp = 20;
 constexpr double kGrowth = 1.25;
 

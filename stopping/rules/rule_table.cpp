@@ -94,11 +94,11 @@ constexpr Rule kRules[] = {
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when the error that is visible once it is denoised was probably below T@ in "
-              "lightness at two looks in a row, each at 1.25 times the samples of the one before; "
-              "the default with --denoise",
+              "lightness, looked at whenever samples have grown by a quarter; the default with "
+              "--denoise",
      .need = ViewNeed::Measured,
      .compares = RuleTrend::Error,
-     .votes = 2,
+     .votes = 1,
      .takesCaution = true,
      .replay = Replay::Unknown,
      .sweep = {},

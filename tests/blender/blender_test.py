@@ -104,6 +104,18 @@ class AddOn(unittest.TestCase):
         self.assertTrue((passes["Combined.A"] == 1).all())
         self.assertIn("blocks stopped", said)
 
+    def test_leaves_the_background_out(self):
+        passes, said = self.render("factory", SAMPLES + "scene.render.film_transparent = True")
+        self.assertNotIn("Warning", said)
+        alpha, seen = passes["Combined.A"], self.read("factory.cycles", None)["Depth.Z"] < 1e9
+        inside = alpha == 1
+        self.assertLess((inside != seen).mean(), 0.15)  # but for the edges
+        self.assertGreater((alpha == 0).mean(), 0.3)
+        self.assertEqual(abs(rgb(passes)[alpha == 0]).max(), 0)
+        # Where there is no background, it is the picture that it always is.
+        opaque, _ = self.render("factory")
+        self.assertEqual(abs(rgb(opaque)[inside] - rgb(passes)[inside]).max(), 0)
+
     def test_lamps(self):
         passes, said = self.render("lamps")
         self.assert_close("lamps", passes, 0.01, 0.02)
@@ -159,14 +171,13 @@ class AddOn(unittest.TestCase):
 
     def test_warns_by_name(self):
         _, said = self.render("factory", SAMPLES + """
-scene.render.film_transparent = True
 cube = bpy.data.objects['Cube']
 cube.modifiers.new('hair', 'PARTICLE_SYSTEM').particle_system.name = 'fur'
 nodes = cube.active_material.node_tree.nodes
 noise = nodes.new('ShaderNodeTexNoise')
 cube.active_material.node_tree.links.new(noise.outputs['Color'], nodes['Principled BSDF'].inputs['Base Color'])
 bpy.data.lights['Light'].type = 'SPOT'""")
-        for text in ("film is not transparent", "particles 'fur' of object 'Cube'",
+        for text in ("particles 'fur' of object 'Cube'",
                      "material 'Material': glTF cannot express its node 'Noise Texture'",
                      "spot light 'Light' has no radius"):
             self.assertEqual(said.count(text), 1, said)

@@ -48,6 +48,13 @@ class DenoisingTest(unittest.TestCase):
                                        albedo=(albedo, np.float64(albedo)), depth=[depth[..., None], depth])
         np.testing.assert_array_equal(other.picture, plain)
 
+    def test_says_what_it_is_and_what_counts_as_black(self):
+        _, a, b, _ = pictures()
+        a[1, 2, 0] = np.nan
+        with self.assertWarnsRegex(UserWarning, "a or b has values that are not finite"):
+            clean = lull_denoising.denoise(a, b)
+        self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 130 x 70 pixels: visible error [\d.]+ in")
+
     def test_says_what_is_wrong(self):
         _, a, b, albedo = pictures()
         for message, call in (

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Tests of the Python module: python_test.py FOLDER, where the module is."""
+import ast
 import contextlib
 import io
 import pathlib
 import sys
 import threading
 import unittest
+import warnings
 
 import numpy as np
 
@@ -70,7 +72,11 @@ class StopperTest(unittest.TestCase):
         }
         for name, other in layouts.items():
             for other_half in (half, half.astype(np.float64), np.asfortranarray(half)):
-                answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(other, 40, other_half)
+                with warnings.catch_warnings(record=True) as warned:
+                    warnings.simplefilter("always")
+                    answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(other, 40, other_half)
+                self.assertEqual(["image has 4 channels" in str(w.message) for w in warned],
+                                 [True] * (name == "alpha"))
                 self.assertEqual(numbers(answer), numbers(plain), name)
         grey = np.broadcast_to(image[:, :, :1], image.shape)  # one value for all three
         answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(grey, 40, grey)
@@ -142,6 +148,56 @@ class StopperTest(unittest.TestCase):
                 lull.Stopper(WIDTH, HEIGHT, **settings)
         with self.assertRaises(ValueError):
             lull.Stopper(39, HEIGHT)
+
+    def test_warns_at_once_of_what_it_cannot_judge(self):
+        def warned_at(ratio, **settings):
+            """Returns at which picture it says so, of eight; None: never."""
+            stopper, spp = lull.Stopper(WIDTH, HEIGHT, **settings), 40.0
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                for k in range(8):
+                    try:
+                        stopper.observe(picture(int(spp))[0], int(spp))
+                    except UserWarning as warning:
+                        self.assertRegex(str(warning), r"^pictures at \d+, \d+ and %d spp lie" % int(spp))
+                        return k
+                    spp *= ratio
+
+        self.assertEqual((warned_at(2), warned_at(1.7), warned_at(1.4)), (2, 2, None))
+        self.assertIsNone(warned_at(2, rule="entropy"))  # which looks at each
+        self.assertIsNone(warned_at(2, rule="fixed:300"))
+        for pass_spp in 20, 40:
+            stopper = lull.Stopper(WIDTH, HEIGHT)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                for spp in range(pass_spp, 300, pass_spp):
+                    stopper.observe(picture(spp)[0], spp)
+        image, half = picture(40)
+        image[3, 4, 1] = np.nan
+        black = np.nan_to_num(image)
+        with self.assertWarnsRegex(UserWarning, "image has values that are not finite"):
+            answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(image, 40, half)
+        self.assertEqual(numbers(answer), numbers(
+            lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)))
+        half[0, 0, 2] = np.inf
+        with self.assertWarnsRegex(UserWarning, "half has values"):
+            lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)
+
+    def test_says_what_it_is(self):
+        stopper = lull.Stopper(WIDTH, HEIGHT, rule="fixed:80", block=40)
+        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 0 of 1 blocks stopped>")
+        image, _ = picture(40)
+        self.assertEqual(repr(stopper.observe(image, 40)), "<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>")
+        self.assertEqual(repr(stopper.observe_block(0, image, 80)),
+                         "<lull.BlockAnswer: stopped at 80 spp, value 80, threshold 80>")
+        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 1 of 1 blocks stopped>")
+
+    def test_stub_names_all_there_is(self):
+        stub = ast.parse(pathlib.Path(lull.__file__).with_name("_stopping.pyi").read_text())
+        for kind in (node for node in stub.body if isinstance(node, ast.ClassDef)):
+            named = {n.target.id if isinstance(n, ast.AnnAssign) else n.name for n in kind.body}
+            real = {n for n in vars(getattr(lull, kind.name)) if not n.startswith("_")}
+            self.assertEqual(named - {"__init__"}, real, kind.name)
 
     def test_lets_other_threads_run(self):
         answers = [None] * 4

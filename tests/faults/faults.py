@@ -5,6 +5,7 @@ Every case of every reader has a number, and is the same for the same seed. It c
 code 0), clear (exit code 1 and one line of error that names a file) or as anything else: a crash, a
 hang, an error without a name. Those are kept in the folder --keep, with the command. A killed render
 has to come to the same bits in the end, with no more than one temporary file left meanwhile.
+With --write FOLDER the damaged files are only written, for the fuzzers (tests/fuzz).
 Exits with 0 if there was nothing else.
 """
 import argparse
@@ -245,14 +246,24 @@ def make_files(lull, folder):
     return {name: (folder / name).read_bytes() for name in kept if (folder / name).exists()}
 
 
+def damaged_file(reader, files, seed, number):
+    return reader.damaged(files, random.Random(f"{seed} {reader.name} {number}"))
+
+
+def write_cases(reader, files, seed, cases, folder):
+    folder = pathlib.Path(folder) / reader.name
+    folder.mkdir(parents=True, exist_ok=True)
+    for number in range(cases):
+        (folder / str(number)).write_bytes(damaged_file(reader, files, seed, number))
+
+
 def try_case(lull, reader, files, seed, number, keep):
-    rng = random.Random(f"{seed} {reader.name} {number}")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for other, data in files.items():
             (folder / other).write_bytes(data)
-        (folder / reader.file).write_bytes(reader.damaged(files, rng))
-        damaged = (folder / reader.file).read_bytes()
+        damaged = damaged_file(reader, files, seed, number)
+        (folder / reader.file).write_bytes(damaged)
         code, said = run(lull, reader.arguments, folder)
         found = verdict(code, said, folder)
         if found == "else":
@@ -309,8 +320,9 @@ def main():
     parser.add_argument("--cases", type=int, default=500, help="of each reader")
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", help="one reader")
+    parser.add_argument("--only", help="one reader", choices=[r.name for r in READERS])
     parser.add_argument("--keep", default="faults-found")
+    parser.add_argument("--write", help="a folder for the damaged files; none is tried")
     args = parser.parse_args()
     lull = os.path.abspath(args.lull)
     if is_sanitized(lull):
@@ -318,11 +330,14 @@ def main():
     others = 0
     with tempfile.TemporaryDirectory() as folder:
         files = make_files(lull, pathlib.Path(folder))
+    readers = [r for r in READERS if r.file in files and args.only in (None, r.name)]
+    if args.write:
+        for reader in readers:
+            write_cases(reader, files, args.seed, args.cases, args.write)
+        return 0
     print(f"seed {args.seed}\nreader      cases   fine  clear   else  seconds")
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        for reader in READERS:
-            if reader.file not in files or (args.only and reader.name != args.only):
-                continue
+        for reader in readers:
             start = time.monotonic()
             found = list(pool.map(lambda k: try_case(lull, reader, files, args.seed, k, args.keep),
                                   range(args.cases)))

@@ -41,10 +41,12 @@ void FuzzPbrt(std::span<const char> bytes) {
 void FuzzGltf(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings;
-    try {
-        ParseGltf(path, {}, warnings);
-    } catch (const Error&) {
-    }
+    for (const GltfOptions& options :
+         {GltfOptions{}, GltfOptions{.frame = 0.5, .shutter = 0.5, .variant = "0"}})
+        try {
+            ParseGltf(path, options, warnings);
+        } catch (const Error&) {
+        }
 }
 
 void FuzzPly(std::span<const char> bytes) {

@@ -128,14 +128,17 @@ HardCaseResult Bound(const HardCaseOptions& o) {
                 EstimatedError error = MeasureError(p.denoised);
                 const VisibleError said = MeasureVisibleError(error, 0, 0, kWidth, kHeight);
                 // The same measure of the true error, which has no noise.
-                for (size_t i = 0; i < error.squared.Area(); ++i) {
+                Planes difference(kWidth, kHeight, 1);
+                for (size_t i = 0; i < difference.Area(); ++i) {
                     const auto lightness = [](float y) { return 116 * std::cbrt(y) - 16; };
-                    const float d = lightness(std::max(0.01f, p.denoised.picture.values[i])) -
-                                    lightness(p.truth.values[i]);
-                    error.squared.values[i] = error.least.values[i] = d * d;
-                    error.deviation.values[i] = 0;
+                    difference.values[i] =
+                        lightness(std::max(0.01f, p.denoised.picture.values[i])) -
+                        lightness(p.truth.values[i]);
                 }
-                const double truth = MeasureVisibleError(error, 0, 0, kWidth, kHeight).estimate;
+                difference = AsSeen(std::move(difference));
+                for (size_t i = 0; i < difference.Area(); ++i)
+                    error.least.values[i] = difference.values[i] * difference.values[i];
+                const double truth = MeasureVisibleError(error, 0, 0, kWidth, kHeight).least;
                 above.Note(truth > said.upper, [&] {
                     return fmt::format("noise {:g}, texture {:g}, seed {}", noise, texture, seed);
                 });

@@ -113,7 +113,16 @@ TEST(Install, CompletionKnowsCommandsAndValues) {
         EXPECT_TRUE(Contains(Complete(tree, "lull ''", 1), command)) << command;
     EXPECT_EQ(Complete(tree, "lull render --sampler ''", 3), "random sobol\n");
     EXPECT_EQ(Complete(tree, "lull render --sampler so", 3), "sobol\n");
-    EXPECT_EQ(Complete(tree, "lull render --stop ''", 3), "\n");  // bash completes files
+    EXPECT_EQ(Complete(tree, "lull render --aov al", 3), "albedo alpha\n");
+    EXPECT_EQ(Complete(tree, "lull render --aov depth,no", 3), "depth,normal depth,noise\n");
+    EXPECT_EQ(Complete(tree, "lull bench --samplers sobol,", 3), "sobol,random sobol,sobol\n");
+    for (const char* option :
+         {"render --stop", "compare --stop", "evaluate --stop", "bench --rule"})
+        EXPECT_EQ(Complete(tree, "lull " + std::string(option) + " ''", 3),
+                  "learned entropy dammertz cycles: luxtile: lnoise denoised thresholds: fixed:\n")
+            << option;
+    EXPECT_EQ(Complete(tree, "lull render --stop th", 3), "thresholds:\n");
+    EXPECT_EQ(Complete(tree, "lull render -o ''", 3), "\n");  // bash completes files
     EXPECT_EQ(Complete(tree, "lull render sc", 2), "\n");
 }
 
@@ -158,6 +167,58 @@ TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
     const Outcome small = RunShell(tree, "build/judge_pngs 60 small.png");
     EXPECT_EQ(small.exitCode, 1);
     EXPECT_TRUE(Contains(small.err, "20x20")) << small.err;
+}
+
+TEST(Install, PkgConfigFindsTheLibraries) {
+    const InstalledTree tree;
+    if (RunShell(tree, "command -v pkg-config").exitCode != 0) GTEST_SKIP() << "no pkg-config";
+    const std::string flags = "PKG_CONFIG_PATH=TREE/" LULL_LIBDIR "/pkgconfig pkg-config ";
+    EXPECT_EQ(Do(tree, flags + "--modversion lull-stopping lull-denoising"),
+              LULL_VERSION "\n" LULL_VERSION "\n");
+    Do(tree, "eval \"'" LULL_CXX
+             "' -std=c++17 TREE/share/doc/lull/examples/judge_pngs.cpp -o judge " +
+                 ("$(" + flags + "--cflags --libs lull-stopping libpng)\""));
+    const std::string pictures = WritePictures(tree, 2, 60);
+    const std::string run = "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./judge 60" + pictures;
+    EXPECT_TRUE(Do(tree, run).starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n"));
+    tree.Write("use.c",
+               "#include <lull/denoising.h>\n"
+               "int main(void) { return lull_denoise(0, 0) == 0; }\n");
+    Do(tree, "eval \"cc use.c -o use $(" + flags +
+                 "--cflags --libs lull-denoising)\" && "
+                 "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./use");
+}
+
+// pip puts a wheel, made of what is built, into an environment of its own.
+TEST(Install, WheelWorksWherePipPutsIt) {
+    const TemporaryDirectory directory;
+    const auto here = [&](const std::string& command) { return Do(directory, command); };
+    if (std::string(LULL_PYTHON_DIR) == "none") GTEST_SKIP() << "built without Python";
+    if (RunShell(directory, "'" LULL_PYTHON "' -m venv --system-site-packages env && "
+                            "env/bin/python -m pip --version && env/bin/python -c 'import numpy'")
+            .exitCode != 0)
+        GTEST_SKIP() << "there is no venv, pip or numpy (python3-venv, python3-numpy)";
+    here("'" LULL_CMAKE "' --install '" LULL_BUILD_DIR
+         "' --component python --prefix tree >/dev/null");
+    const std::string make = "'" LULL_PYTHON "' '" LULL_WHEEL "' tree '" LULL_PYTHON_DIR
+                             "' " LULL_VERSION " 'x86-64-v3' ";
+    const std::string wheel = here(make + ".");
+    EXPECT_TRUE(Contains(wheel, "lull-" LULL_VERSION "+x86.64.v3-cp3")) << wheel;
+    here("mkdir again && " + make + "again && cmp *.whl again/*.whl");
+    here("rm -r tree && env/bin/python -m pip install -q --no-index *.whl >&2");
+    EXPECT_EQ(here("env/bin/lull --version"), "lull " LULL_VERSION "\n");
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("use.py",
+                    "import numpy, lull, lull_denoising\n"
+                    "stopper = lull.Stopper(50, 40)\n"
+                    "print(stopper.observe(numpy.zeros((40, 50, 3), numpy.float32), 40))\n"
+                    "print(lull.render('scene.pbrt', spp=2, progress=False).spp.max())\n"
+                    "print(lull_denoising.__file__)\n");
+    const std::string out = here("env -u LULL_PROGRAM PATH=/usr/bin:/bin env/bin/python use.py");
+    EXPECT_TRUE(out.starts_with("<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>\n2\n"))
+        << out;
+    EXPECT_TRUE(Contains(out, "/env/lib/python3")) << out;
+    here("env/bin/python -m pip uninstall -q -y lull >&2 && test ! -e env/bin/lull");
 }
 
 // A package, made of what is built, unpacked and run: nothing of the system is changed.

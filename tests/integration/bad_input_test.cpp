@@ -117,6 +117,9 @@ TEST(BadInput, GltfScene) {
     const TemporaryDirectory directory;
     directory.Write("scene.gltf", "{}");
     ExpectFailure(directory, "render scene.gltf -o out.exr --spp 2", {"scene.gltf"});
+    directory.Write("plain.gltf", "{\"asset\": {\"version\": \"2.0\"}}");
+    ExpectFailure(directory, "render plain.gltf -o out.exr --spp 2 --variant red",
+                  {"plain.gltf", "has no variant \"red\""});
 }
 
 TEST(BadInput, UnknownDirective) {

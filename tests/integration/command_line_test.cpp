@@ -30,6 +30,7 @@ TEST(CommandLine, RefusesWrongUsage) {
                                   "render scene.pbrt --crop 0,0.5,0,1px",
                                   "render scene.pbrt --pixel 24,0",
                                   "render scene.pbrt --pixel 1",
+                                  "render scene.pbrt --pixel 1,1 --guide on",
                                   "render scene.pbrt --sample 1",
                                   "render scene.pbrt --threads -1",
                                   "render scene.pbrt --threads many",

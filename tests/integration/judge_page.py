@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from report_page import Browser, check
+from report_page import Browser, check, check_widths
 from simulated_observer import Participant
 
 STEPS = [20, 40, 60, 80, 100, 120, 160, 200, 240]  # the ladder up to the cap
@@ -256,6 +256,9 @@ def main(lull, chromium, scenes):
         check(browser.evaluate("[...document.images].every(i => i.complete && i.naturalWidth === 40) &&"
                                " document.querySelectorAll('.shade').length === 6"), "the report shows image and blocks")
         check(browser.evaluate("document.body.textContent.includes('left out: failed')"), "and who was left out")
+        check_widths(browser, "the report")
+        browser.open(folder / "stairs.html")
+        check_widths(browser, "the first screen")
         check(not browser.problems, "no errors, nothing from the network " + "; ".join(browser.problems))
         browser.close()
 

@@ -139,7 +139,8 @@ def check(condition, what):
 
 def check_blocks(browser, name, charts):
     title = "document.getElementById('block-title').textContent"
-    check(browser.evaluate(title).startswith("Block 0 "), name + ": shows the first block")
+    check(browser.evaluate("(spp => spp[view.block] === Math.max(...spp))(data.images[0].blocks.map(b => b.spp))"),
+          name + ": begins with a block that took the most samples")
     browser.click("[data-block=\"4\"]")
     check(browser.evaluate(title).startswith("Block 4 "), name + ": a click chooses a block")
     check(browser.evaluate(DRAWN % "#block-charts") == charts, f"{name}: it has {charts} curves")
@@ -151,6 +152,18 @@ def check_blocks(browser, name, charts):
     check(browser.evaluate("[...document.images].filter(i => i.getAttribute('src'))"
                            ".every(i => i.complete && i.naturalWidth === 120)"),
           name + ": pictures are there")
+
+
+def check_widths(browser, name):
+    """Nothing of the page is beside a window of these widths, and a picture is large."""
+    for width in (1400, 700, 400):
+        browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+        fits = "(e => e.scrollWidth <= e.clientWidth)(document.documentElement)"
+        browser.wait_for(f"innerWidth === {width} && {fits}")  # once it has heard of its width
+        print(f"ok: {name}: as wide as a window of {width} pixels")
+        share = browser.evaluate("(c => c ? c.clientWidth / document.documentElement.clientWidth : 1)(document.querySelector('.canvas'))")
+        check(share > 0.4, f"{name}: the picture takes {share:.2f} of that")
+    browser.call("Emulation.clearDeviceMetricsOverride")
 
 
 def choose(browser, label, value):
@@ -226,6 +239,7 @@ def main(lull, chromium):
         check(browser.evaluate("document.querySelectorAll('.stage:not([hidden]) svg text').length") == 6,
               "render: the samples are over the image")
         check_dark(browser)
+        check_widths(browser, "render")
         check_sentences(browser)
         browser.open(folder / "compare.html")
         check_two(browser)
@@ -233,12 +247,15 @@ def main(lull, chromium):
         choose(browser, "Over it", "spp:human")
         check(browser.evaluate("document.querySelector('.stage svg').textContent.includes('80')"),
               "compare: the map has the samples of each block")
-        check(browser.evaluate("document.querySelectorAll('#summary table tbody tr').length >= 3"),
-              "compare: the table has three images")
+        check(browser.evaluate("document.querySelectorAll('#summary thead th').length === 4 &&"
+                               " document.querySelectorAll('#summary tbody tr').length > 10"),
+              "compare: the table has three images and their figures")
+        check_widths(browser, "compare")
         browser.open(folder / "bench.html")
         check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: two charts are drawn")
         choose(browser, "Error", "flip")
         check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: and again for another error")
+        check_widths(browser, "bench")
         check(not browser.problems, "no errors, nothing from the network " +
               "; ".join(browser.problems))
         browser.close()

@@ -68,10 +68,19 @@ def seen(truth):
     return slope((y + flare) / (1 + flare)) / (1 + flare) / slope(y) / (1 + detail / 40)
 
 
+def as_seen(difference, radius=3):
+    """Doubles what is coarse, as AsSeen() in visible_error.cpp does: the mean over the pixels around, within the image."""
+    def total(values):
+        padded = np.pad(values, ((radius + 1, radius), (radius + 1, radius))).cumsum(0).cumsum(1)
+        n = 2 * radius + 1
+        return padded[n:, n:] - padded[:-n, n:] - padded[n:, :-n] + padded[:-n, :-n]
+    return difference + total(difference) / total(np.ones_like(difference))
+
+
 def visible_error(rgb, halves):
     a, b = map(lightness, halves)
     truth = lightness((halves[0] + halves[1]) / 2)
-    squared = sub_blocks((lightness(rgb) - truth) ** 2 - (a - b) ** 2 / 4)
+    squared = sub_blocks(as_seen(lightness(rgb) - truth) ** 2 - as_seen(a - b) ** 2 / 4)
     return float(np.mean(np.sqrt(np.maximum(squared, 0)) * seen(truth)))
 
 

@@ -70,6 +70,7 @@ class Render(unittest.TestCase):
         self.assertEqual([b["spp"] for b in r.blocks], [24])
         self.assertFalse(r.interrupted)
         self.assertGreater(r.seconds, 0)
+        self.assertRegex(repr(r), r"^<lull.Rendering of 50 x 40 pixels: 24 to 24 spp, \S+ s>$")
 
     def test_gives_the_errors_of_the_command(self):
         with self.assertRaisesRegex(lull.Error, "nowhere.pbrt"):
@@ -98,6 +99,7 @@ class Others(unittest.TestCase):
             c = lull.compare(CORNELL, snapshots=True, stop="lnoise:3", cap=200,
                              output=os.path.join(folder, "c"), **SMALL)
             self.assertEqual(set(c.images), {"automatic", "reference"})
+            self.assertEqual(repr(c), "<lull.Comparison of automatic, reference>")
             self.assertEqual(c.images["reference"].shape, (40, 50, 3))
             self.assertIn("automatic", [i["name"] for i in c.figures["images"]])
             thresholds = os.path.join(folder, "c.thresholds.csv")

@@ -1,12 +1,13 @@
 """Renders a glTF file with Cycles. Runs inside Blender, for side_by_side.py, which says how it is
 called: its last argument is a JSON object of model, environment (or null), width, height, bounces,
-folder and runs. A run has a name, spp, seed, adaptive (Cycles' threshold, or 0) and materials:
+frame and shutter (seconds; the latter 0 for none), folder and runs. A run has a name, spp, seed, adaptive (Cycles' threshold, or 0) and materials:
 "imported" as Blender's importer makes them, or "specification" as appendix B of glTF 2.0 has them.
 
 Writes FOLDER/NAME.exr, multi-layer, and prints "RESULT {name, seconds}" with the processor seconds.
 """
 
 import json
+import math
 import struct
 import sys
 import time
@@ -79,6 +80,40 @@ def glossy(tree, roughness, share):
     return node.outputs[0]
 
 
+def follow_volume(material, described):
+    """Makes a volume absorb as KHR_materials_volume says: in Cycles, 1 - colour is absorbed in a unit
+    of length times the density."""
+    volume = described.get('extensions', {}).get('KHR_materials_volume', {})
+    for node in [n for n in material.node_tree.nodes if n.type == 'VOLUME_ABSORPTION']:
+        if volume.get('thicknessFactor', 0) <= 0 or 'attenuationDistance' not in volume:
+            material.node_tree.nodes.remove(node)
+            continue
+        absorbed = [-math.log(max(c, 1e-30)) / volume['attenuationDistance']
+                    for c in volume.get('attenuationColor', [1, 1, 1])[:3]]
+        density = max(absorbed)
+        node.inputs['Density'].default_value = density
+        node.inputs['Color'].default_value = (*(1 - a / (density or 1) for a in absorbed), 1)
+
+
+def brushed(tree, described):
+    """Makes a node of anisotropic metal as KHR_materials_anisotropy says, which Blender 3.4 does not
+    read: rougher along the tangent. Returns its output."""
+    pbr = described['pbrMetallicRoughness']
+    anisotropy = described['extensions']['KHR_materials_anisotropy']
+    across = pbr.get('roughnessFactor', 1) ** 2
+    along = across + (1 - across) * anisotropy['anisotropyStrength'] ** 2
+    node, tangent = tree.nodes.new('ShaderNodeBsdfAnisotropic'), tree.nodes.new('ShaderNodeTangent')
+    tangent.direction_type = 'UV_MAP'
+    tree.links.new(tangent.outputs[0], node.inputs['Tangent'])
+    node.distribution = 'GGX'
+    node.inputs['Color'].default_value = pbr['baseColorFactor']
+    # A negative anisotropy -a divides the alpha along the tangent by 1 - a, and multiplies the other.
+    node.inputs['Roughness'].default_value = (along * across) ** 0.25
+    node.inputs['Anisotropy'].default_value = (across / along) ** 0.5 - 1
+    node.inputs['Rotation'].default_value = anisotropy.get('anisotropyRotation', 0) / (2 * math.pi)
+    return node.outputs[0]
+
+
 def follow_specification(material, described):
     """Rebuilds what Blender 3.4's Principled BSDF does otherwise than the specification: its base is
     Disney's diffuse and is not darkened by what the interface above it reflects, and it emits on
@@ -89,6 +124,11 @@ def follow_specification(material, described):
         return
     metallic, roughness, transmission, f0, f90 = surface_of(described)
     targets = [link.to_socket for link in principled.outputs[0].links]
+    follow_volume(material, described)
+    if 'KHR_materials_anisotropy' in described.get('extensions', {}):
+        for target in targets:
+            links.new(brushed(material.node_tree, described), target)
+        return
 
     def take(name, socket):
         """Moves an input of the Principled BSDF to another socket, and leaves black."""
@@ -169,7 +209,8 @@ def load(o):
     for material in bpy.data.materials:  # an absorption of nothing
         if material.use_nodes:
             for node in [n for n in material.node_tree.nodes if n.type == 'VOLUME_ABSORPTION']:
-                material.node_tree.nodes.remove(node)
+                if node.inputs['Density'].default_value == 0:
+                    material.node_tree.nodes.remove(node)
     surround(scene, o['environment'])
     return scene
 
@@ -203,6 +244,12 @@ def set_up(scene, o):
     c.caustics_reflective = c.caustics_refractive = True
     c.pixel_filter_type, c.filter_width = 'BOX', 1
     scene.view_layers[0].cycles.pass_debug_sample_count = True
+    if o['frame'] is not None:
+        frame = o['frame'] * r.fps / r.fps_base
+        scene.frame_set(int(frame), subframe=frame - int(frame))
+    r.use_motion_blur = o['shutter'] > 0
+    r.motion_blur_shutter = o['shutter'] * r.fps / r.fps_base or 1
+    c.motion_blur_position = 'START'
 
 
 def main():

@@ -61,6 +61,8 @@ class Scene:
                    str(self.o.bounces + 1), *how]
         if self.environment:
             command += ['--environment', self.environment]
+        if self.o.frame is not None:
+            command += ['--frame', str(self.o.frame), '--shutter', str(self.o.shutter)]
         self.seconds.run(name, command)
 
     def cycles(self, runs):
@@ -71,8 +73,8 @@ class Scene:
         if not runs:
             return
         options = {'model': self.model, 'environment': self.environment, 'width': self.o.width,
-                   'height': self.o.height, 'bounces': self.o.bounces, 'folder': self.folder,
-                   'runs': runs}
+                   'height': self.o.height, 'bounces': self.o.bounces, 'frame': self.o.frame,
+                   'shutter': self.o.shutter, 'folder': self.folder, 'runs': runs}
         command = ['blender', '-b', '-noaudio', '-t', '2', '--python-exit-code', '1', '--python',
                    os.path.join(HERE, 'in_blender.py'), '--', json.dumps(options)]
         run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -101,6 +103,7 @@ class Scene:
         if o.stop:
             self.lull('lull-stop', '--cap', str(o.cap))
             self.lull('lull-denoised', '--denoise', '--cap', str(o.cap))
+            self.lull('lull-cautious', '--denoise', '--caution', '2', '--cap', str(o.cap))
             self.cycles([('cycles-stop', o.cap, 1, 0.01, 'specification')])
 
     def reference(self, program):
@@ -183,11 +186,11 @@ def print_speed(scenes, o):
 
 
 def print_stops(scenes, o):
-    print("\nEach one's own stopping rule, lull's default, plain and denoised, and Cycles' threshold of 0.01:\n")
+    print("\nEach one's own stopping rule, lull's default, plain, denoised and with half the error, and Cycles' threshold of 0.01:\n")
     print('| scene | program | mean spp | seconds | RMSE of L | worst block | FLIP |')
     print('|---|---|---|---|---|---|---|')
     for s in scenes:
-        for name in 'lull-stop', 'lull-denoised', 'cycles-stop':
+        for name in 'lull-stop', 'lull-denoised', 'lull-cautious', 'cycles-stop':
             program = name.split('-')[0]
             rgb, spp = read(s.file(name))
             mean = spp.mean() * (o.cap if program == 'cycles' else 1)
@@ -223,6 +226,8 @@ def main():
                         help='leave out the stopping rules')
     parser.add_argument('--cap', type=int, default=4096, help='of the stopping rules (4096)')
     parser.add_argument('--bounces', type=int, default=12)
+    parser.add_argument('--frame', type=float, help='seconds of the animation (as the file stands)')
+    parser.add_argument('--shutter', type=float, default=0, help='seconds that it is open (0)')
     parser.add_argument('--environment', help='surrounds a .glb model')
     o = parser.parse_args()
     o.width, o.height = (int(n) for n in o.size.split('x'))

@@ -65,6 +65,7 @@ class _Job:
         self.engine, self.folder = engine, folder
         self.scene = depsgraph.scene.original
         self.settings = self.scene.lull
+        self.is_transparent = self.scene.render.film_transparent
         self.layer = depsgraph.view_layer.name
         self._measure(depsgraph.scene.render)
 
@@ -95,6 +96,8 @@ class _Job:
         command = [lull, "render", exported["gltf"], "-o", picture,
                    "--resolution", "%dx%d" % self.whole, "--aov", "albedo,normal,depth,noise",
                    *self.settings.arguments()]
+        if self.is_transparent:
+            command += ["--transparent"]
         if self.crop:
             command += ["--crop", self.crop]
         if exported["environment"]:
@@ -174,6 +177,8 @@ class _Job:
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)
         for i, name in enumerate("RGB"):
             combined[:, :, i] = channels[name]
+        if self.is_transparent:  # colours are multiplied by it, as Blender wants them
+            combined[:, :, 3] = channels["A"]
         _set(passes["Combined"], combined)
         for name, _, names in _passes(self.scene):
             values = np.stack([channels[n] for n in names], -1)

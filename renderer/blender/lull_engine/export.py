@@ -77,8 +77,6 @@ def warn_of_objects(objects, warn):
 
 
 def warn_of_film(scene, warn):
-    if scene.render.film_transparent:
-        warn("the film is not transparent: the world is seen behind the scene")
     if scene.render.use_motion_blur:
         warn("there is no motion blur")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:

@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "renderer/image/files/exr_channels.h"
+#include "renderer/image/files/exr_header.h"
 #include "renderer/image/files/exr_threads.h"
 
 namespace lull {
@@ -91,12 +92,15 @@ struct ExrFile::Parts {
     MemoryStream stream;
     Imf::MultiPartInputFile file;
 
+    // Of a header that was checked.
     explicit Parts(std::span<const std::byte> bytes)
         : stream(bytes), file(stream, UseExrThreads()) {}
     const Imf::Header& Header() const { return file.header(0); }
 };
 
-ExrFile::ExrFile(std::span<const std::byte> bytes) try : parts(std::make_unique<Parts>(bytes)) {
+ExrFile::ExrFile(std::span<const std::byte> bytes) try {
+    CheckExrHeader(bytes);
+    parts = std::make_unique<Parts>(bytes);
     const Imf::Header& header = parts->Header();
     if (header.hasType() && Imf::isDeepData(header.type()))
         throw std::runtime_error("deep images are not modelled");

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/accessors.h"
+#include "renderer/input/gltf/choice.h"
 
 namespace lull {
 namespace {
@@ -89,17 +89,9 @@ size_t Choose(const GltfDocument& document, const std::string& wanted, Warnings&
                                      animations.size()));
         return 0;
     }
-    for (size_t i = 0; i < animations.size(); ++i)
-        if (animations[i].name == wanted) return i;
-    size_t number = 0;
-    const char* end = wanted.data() + wanted.size();
-    const auto [at, error] = std::from_chars(wanted.data(), end, number);
-    if (error == std::errc() && at == end && number < animations.size()) return number;
-    std::string names;
-    for (size_t i = 0; i < animations.size(); ++i)
-        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, Printable(animations[i].name));
-    throw Error(fmt::format("{}: has no animation \"{}\"; it has {}", document.file, wanted,
-                            names.empty() ? "none" : names));
+    std::vector<std::string> names;
+    for (const tinygltf::Animation& animation : animations) names.push_back(animation.name);
+    return ChooseByName(document, "animation", names, wanted);
 }
 
 }  // namespace
@@ -129,6 +121,38 @@ void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, W
         const Eigen::ArrayXd value = Evaluate(keys, seconds, isRotation);
         target->assign(value.begin(), value.end());
     }
+}
+
+std::vector<GltfNode> PoseNodes(const GltfOptions& options, GltfDocument* document,
+                                Warnings& warnings) {
+    if (!options.frame) {
+        if (!document->model.animations.empty())
+            warnings.Add(document->At("/animations"),
+                         "the scene is shown as the file stands; --frame SECONDS poses its "
+                         "animation");
+        return ListNodes(*document);
+    }
+    std::vector<GltfNode> later;
+    std::vector<std::vector<double>> laterWeights;
+    if (options.shutter > 0) {
+        Warnings unheard;  // those below are the same
+        PoseAt(*options.frame + options.shutter, options.animation, document, unheard);
+        later = ListNodes(*document);
+        for (const tinygltf::Node& node : document->model.nodes)
+            laterWeights.push_back(node.weights);
+    }
+    PoseAt(*options.frame, options.animation, document, warnings);
+    std::vector<GltfNode> nodes = ListNodes(*document);
+    // Poses change no hierarchy: both lists are in the same order.
+    for (size_t i = 0; i < later.size(); ++i) {
+        if (TransformPair{{nodes[i].worldFromNode, later[i].worldFromNode}}.IsAnimated())
+            nodes[i].atClose = later[i].worldFromNode;
+        const auto index = size_t(nodes[i].index);
+        if (document->model.nodes[index].weights != laterWeights[index])
+            warnings.Add(document->At(fmt::format("/nodes/{}", index)),
+                         "morph targets are not blurred by their motion");
+    }
+    return nodes;
 }
 
 }  // namespace lull

@@ -2,10 +2,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "renderer/input/gltf/document.h"
+#include "renderer/input/gltf/nodes.h"
+#include "renderer/input/gltf_loader.h"
 
 namespace lull {
+
+// Lists the nodes as the options pose them: as an animation has them while the shutter is open, or
+// as the file stands, with a warning if there are animations. Joints and weights keep what they
+// have when the shutter opens, with a warning. Throws as PoseAt() and ListNodes() do.
+std::vector<GltfNode> PoseNodes(const GltfOptions&, GltfDocument*, Warnings&);
 
 // Gives all nodes that an animation moves the transforms and weights that it has at a time in
 // seconds, as if the file held these; before its first key and after its last one it stands still.

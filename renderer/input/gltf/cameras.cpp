@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
-#include "renderer/files/file_contents.h"
+#include "renderer/input/gltf/choice.h"
 #include "renderer/input/gltf/parameters.h"
 
 namespace lull {
@@ -42,16 +40,9 @@ const View& Choose(const GltfDocument& document, const std::vector<View>& views,
         if (wanted == view.camera->name ||
             wanted == document.model.nodes[size_t(view.node.index)].name)
             return view;
-    size_t number = 0;
-    const char* end = wanted.data() + wanted.size();
-    const auto [at, error] = std::from_chars(wanted.data(), end, number);
-    if (error == std::errc() && at == end && number < views.size()) return views[number];
-    std::string names;
-    for (size_t i = 0; i < views.size(); ++i)
-        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i,
-                             Printable(NameOf(document, views[i])));
-    throw Error(fmt::format("{}: has no camera \"{}\"; it has {}", document.file, wanted,
-                            names.empty() ? "none" : names));
+    std::vector<std::string> names;
+    for (const View& view : views) names.push_back(NameOf(document, view));
+    return views[ChooseByName(document, "camera", names, wanted)];
 }
 
 void SetFilm(double aspect, const FileLoc& loc, Description* description) {
@@ -85,19 +76,27 @@ void SetLens(const tinygltf::Value& extras, const FileLoc& loc, Description* des
     if (lens.Has("focusDistance")) write.Float("focaldistance", number(lens.Get("focusDistance")));
 }
 
-void LookThrough(const GltfDocument& document, const View& view, Description* description) {
-    const auto index = size_t(view.camera - document.model.cameras.data());
-    const FileLoc loc = document.At(fmt::format("/cameras/{}", index));
-    // Scales of the nodes do not count.
-    Mat4d m = view.node.worldFromNode;
+// Scales of the nodes do not count.
+Mat4d CameraFromWorld(const Mat4d& worldFromNode, const FileLoc& loc) {
+    Mat4d m = worldFromNode;
     for (int i = 0; i < 3; ++i) {
         const double length = m.col(i).head<3>().norm();
         if (!(length > 0)) throw Error(loc, "the camera's node has no extent");
         m.col(i) /= length;
     }
-    description->cameraFromWorld = CameraFromNode() * m.inverse();
-    if (!description->cameraFromWorld.allFinite())
+    const Mat4d cameraFromWorld = CameraFromNode() * m.inverse();
+    if (!cameraFromWorld.allFinite())
         throw Error(loc, "the transform of the camera's node cannot be inverted");
+    return cameraFromWorld;
+}
+
+void LookThrough(const GltfDocument& document, const View& view, Description* description) {
+    const auto index = size_t(view.camera - document.model.cameras.data());
+    const FileLoc loc = document.At(fmt::format("/cameras/{}", index));
+    description->cameraFromWorld = CameraFromWorld(view.node.worldFromNode, loc);
+    if (view.node.atClose)
+        description->movingCameraFromWorld =
+            TransformPair{{description->cameraFromWorld, CameraFromWorld(*view.node.atClose, loc)}};
     if (view.camera->type == "perspective") {
         const auto& p = view.camera->perspective;
         if (!(p.yfov > 0 && p.yfov < std::numbers::pi))

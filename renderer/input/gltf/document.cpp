@@ -14,12 +14,22 @@
 namespace lull {
 namespace {
 
-constexpr const char* kModelled[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",     "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_materials_volume",    "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr const char* kModelled[] = {"EXT_mesh_gpu_instancing",
+                                     "EXT_meshopt_compression",
+                                     "KHR_draco_mesh_compression",
+                                     "KHR_lights_punctual",
+                                     "KHR_materials_anisotropy",
+                                     "KHR_materials_clearcoat",
+                                     "KHR_materials_emissive_strength",
+                                     "KHR_materials_ior",
+                                     "KHR_materials_sheen",
+                                     "KHR_materials_specular",
+                                     "KHR_materials_transmission",
+                                     "KHR_materials_unlit",
+                                     "KHR_materials_variants",
+                                     "KHR_materials_volume",
+                                     "KHR_mesh_quantization",
+                                     "KHR_texture_transform"};
 
 bool IsModelled(const std::string& extension) {
     return std::any_of(std::begin(kModelled), std::end(kModelled),
@@ -117,11 +127,6 @@ bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
 
 FileLoc GltfDocument::At(const std::string& path) const {
     return {std::make_shared<const std::string>(file + ": " + path), 0};
-}
-
-bool GltfDocument::Requires(const std::string& extension) const {
-    const auto& required = model.extensionsRequired;
-    return std::find(required.begin(), required.end(), extension) != required.end();
 }
 
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {

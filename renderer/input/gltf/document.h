@@ -16,9 +16,6 @@ struct GltfDocument {
 
     // Names a place in the file by its JSON pointer, such as "/meshes/0/primitives/1".
     FileLoc At(const std::string& path) const;
-
-    // Says whether the file cannot be shown without an extension.
-    bool Requires(const std::string& extension) const;
 };
 
 // Reads a file and the buffers it names; images stay encoded, those in files of their own unread.

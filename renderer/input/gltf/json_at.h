@@ -56,6 +56,20 @@ struct JsonAt {
     void Number(const std::string& name) const {
         if (Has(name) && !value.at(name).is_number()) Member(name).Fail("has to be a number");
     }
+    void NumberWithin(const std::string& name, double least, double most) const {
+        Number(name);
+        if (Has(name)) Member(name).Within(least, most);
+    }
+    void NumbersWithin(const std::string& name, size_t count, double least, double most) const {
+        Numbers(name, count);
+        ForEachAny(name, [&](const JsonAt& n) { n.Within(least, most); });
+    }
+    // Checks a value that is a number.
+    void Within(double least, double most) const {
+        const auto n = value.get<double>();
+        if (!(n >= least && n <= most))
+            Fail(fmt::format("is {:g}, but has to lie between {:g} and {:g}", n, least, most));
+    }
     void Numbers(const std::string& name, size_t count) const {
         if (!Has(name)) return;
         const JsonAt member = Member(name);

@@ -49,6 +49,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     const FileLoc loc =
         document.At(fmt::format("/extensions/KHR_lights_punctual/lights/{}", index));
     if (!(light.intensity >= 0)) throw Error(loc, "its intensity is negative");
+    if (node.atClose) warnings.Add(loc, "lights are not blurred by their motion");
     if (light.range > 0)
         warnings.Add(loc, "a light's range is ignored: it falls off with the distance squared");
 

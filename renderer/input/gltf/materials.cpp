@@ -26,6 +26,33 @@ double Number(const tinygltf::Value& owner, const std::string& name, double othe
     return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
 }
 
+Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& otherwise) {
+    if (!owner.Has(name)) return otherwise;
+    const tinygltf::Value& c = owner.Get(name);
+    return {float(c.Get(0).GetNumberAsDouble()), float(c.Get(1).GetNumberAsDouble()),
+            float(c.Get(2).GetNumberAsDouble())};
+}
+
+// Adds the medium of a volume, of whose light the share attenuationColor is left after
+// attenuationDistance. Returns its index; -1 where it absorbs nothing.
+int AddMedium(const tinygltf::Value& volume, const FileLoc& loc, Description* description) {
+    constexpr float kMost = 1e30f;  // nothing gets through: where the colour is 0
+    const double distance = Number(volume, "attenuationDistance", 0);
+    const Rgb color = Color(volume, "attenuationColor", Rgb::Ones());
+    if (distance == 0 || (color == 1).all()) return -1;
+    const Rgb absorption =
+        (color.cast<double>().log() / -distance).cast<float>().min(kMost).max(0.f);
+    MediumEntity medium;
+    medium.name = "homogeneous";
+    medium.mediumName = *loc.file;
+    medium.loc = loc;
+    const ParameterWriter write(&medium.parameters, loc);
+    write.Spectrum("sigma_a", absorption);
+    write.Spectrum("sigma_s", Rgb::Zero());
+    description->media.push_back(std::move(medium));
+    return int(description->media.size()) - 1;
+}
+
 // Makes the area light of a material that emits L.
 Entity EmissionOf(const Rgb& L, bool twoSided, const std::optional<TextureRef>& texture, int uvSet,
                   const FileLoc& loc) {
@@ -51,7 +78,8 @@ void GltfMaterials::AddTexture(const ParameterWriter& write, const std::string& 
 }
 
 void GltfMaterials::AddExtensions(const tinygltf::Material& material, const std::string& path,
-                                  const ParameterWriter& write, Warnings& warnings) {
+                                  const ParameterWriter& write, GltfMaterial* result,
+                                  Warnings& warnings) {
     const auto add = [&](const tinygltf::Value& owner, const std::string& extension,
                          const std::string& name, const std::string& as, GltfTexels texels) {
         AddTexture(write, as, ReadTextureUse(owner, name, path + "/extensions/" + extension),
@@ -62,12 +90,8 @@ void GltfMaterials::AddExtensions(const tinygltf::Material& material, const std:
     const tinygltf::Value& specular = Extension(material, "KHR_materials_specular");
     write.Float("specularfactor", Number(specular, "specularFactor", 1));
     add(specular, "KHR_materials_specular", "specularTexture", "specular", GltfTexels::Alpha);
-    if (specular.Has("specularColorFactor")) {
-        const tinygltf::Value& c = specular.Get("specularColorFactor");
-        write.Spectrum("specularcolorfactor",
-                       Rgb(float(c.Get(0).GetNumberAsDouble()), float(c.Get(1).GetNumberAsDouble()),
-                           float(c.Get(2).GetNumberAsDouble())));
-    }
+    if (specular.Has("specularColorFactor"))
+        write.Spectrum("specularcolorfactor", Color(specular, "specularColorFactor", Rgb::Ones()));
     add(specular, "KHR_materials_specular", "specularColorTexture", "specularcolor",
         GltfTexels::EncodedColor);
 
@@ -92,11 +116,28 @@ void GltfMaterials::AddExtensions(const tinygltf::Material& material, const std:
         warnings.Add(document.At(path),
                      "transmission without a volume's thickness is that of a thin sheet, which "
                      "bends no light; --solid-glass makes all such materials solid");
-    if (volume.Has("attenuationDistance")) {
-        const FileLoc loc = document.At(path + "/extensions/KHR_materials_volume");
-        if (document.Requires("KHR_materials_volume"))
-            throw Error(loc, "absorption in volumes is required, but not modelled");
-        warnings.Add(loc, "absorption in volumes is left out");
+    const FileLoc loc = document.At(path + "/extensions/KHR_materials_volume");
+    if (isSolid && Number(transmission, "transmissionFactor", 0) > 0)
+        result->medium = AddMedium(volume, loc, description);
+
+    const tinygltf::Value& sheen = Extension(material, "KHR_materials_sheen");
+    if (sheen.Has("sheenColorFactor")) {
+        write.Spectrum("sheencolorfactor", Color(sheen, "sheenColorFactor", Rgb::Zero()));
+        write.Float("sheenroughnessfactor", Number(sheen, "sheenRoughnessFactor", 0));
+        add(sheen, "KHR_materials_sheen", "sheenColorTexture", "sheencolor",
+            GltfTexels::EncodedColor);
+        add(sheen, "KHR_materials_sheen", "sheenRoughnessTexture", "sheenroughness",
+            GltfTexels::Alpha);
+    }
+
+    const tinygltf::Value& anisotropy = Extension(material, "KHR_materials_anisotropy");
+    if (const double strength = Number(anisotropy, "anisotropyStrength", 0); strength > 0) {
+        write.Float("anisotropyfactor", strength);
+        write.Float("anisotropyrotation", Number(anisotropy, "anisotropyRotation", 0));
+        const GltfTextureUse use = ReadTextureUse(anisotropy, "anisotropyTexture",
+                                                  path + "/extensions/KHR_materials_anisotropy");
+        AddTexture(write, "anisotropy", use, GltfTexels::LinearColor, warnings);
+        result->tangentUvSet = use.uvSet;
     }
 }
 
@@ -135,7 +176,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
                                   path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
                    GltfTexels::LinearColor, warnings);
         write.Bool("vertexcolors", hasColors);
-        AddExtensions(material, path, write, warnings);
+        AddExtensions(material, path, write, &result, warnings);
 
         const GltfTextureUse normal =
             ReadTextureUse(material.normalTexture, path + "/normalTexture");

@@ -14,7 +14,8 @@ struct GltfMaterial {
     int index = -1;                  // into Description::materials
     std::optional<Entity> emission;  // an area light
     Parameters coverage;             // of the shape: its alpha mode
-    int tangentUvSet = -1;  // which texture coordinates its normal map uses; -1: it has none
+    int medium = -1;                 // inside the shape, into Description::media; -1: vacuum
+    int tangentUvSet = -1;  // the texture coordinates that its tangents follow; -1: it needs none
 };
 
 // Adds materials to a description, each once.
@@ -33,8 +34,9 @@ class GltfMaterials {
 
   private:
     GltfMaterial Make(int material, bool hasColors, Warnings& warnings);
+    // Adds what the extensions of a material say, to its parameters and to `result`.
     void AddExtensions(const tinygltf::Material& material, const std::string& path,
-                       const ParameterWriter& write, Warnings& warnings);
+                       const ParameterWriter& write, GltfMaterial* result, Warnings& warnings);
     void AddTexture(const ParameterWriter& write, const std::string& name,
                     const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
 

@@ -1,6 +1,7 @@
 // Walks the node hierarchy of a glTF file.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "renderer/base/math.h"
@@ -11,6 +12,7 @@ namespace lull {
 struct GltfNode {
     int index = -1;  // into the file's nodes
     Mat4d worldFromNode = Mat4d::Identity();
+    std::optional<Mat4d> atClose = {};  // of one that moves: the same when the shutter closes
 };
 
 // Lists the nodes of the file's scene (of its first one if it names none; all roots if it has

@@ -86,6 +86,22 @@ void CheckAccessor(const JsonAt& o) {
     sparse.Member("indices").OneOfNumbers("componentType", {5121, 5123, 5125});
 }
 
+// Says how many variants of its materials the file has.
+size_t CountVariants(const json& root) {
+    const json::json_pointer variants("/extensions/KHR_materials_variants/variants");
+    return root.contains(variants) ? root.at(variants).size() : 0;
+}
+
+void CheckMapping(const JsonAt& mapping) {
+    for (const char* name : {"material", "variants"}) mapping.Required(name);
+    mapping.Index("material", "materials");
+    const size_t count = CountVariants(mapping.root);
+    mapping.ForEachAny("variants", [&](const JsonAt& v) {
+        if (!v.value.is_number_unsigned() || v.value.get<uint64_t>() >= count)
+            v.Fail(fmt::format("has to be the number of one of {} variants", count));
+    });
+}
+
 void CheckPrimitive(const JsonAt& o) {
     o.Required("attributes");
     o.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
@@ -97,6 +113,10 @@ void CheckPrimitive(const JsonAt& o) {
     });
     o.Index("material", "materials");
     o.Whole("mode", 0, 6, 4);
+    o.Extension("KHR_materials_variants", [](const JsonAt& e) {
+        e.Required("mappings");
+        e.ForEach("mappings", CheckMapping);
+    });
     o.Extension("KHR_draco_mesh_compression", [](const JsonAt& draco) {
         draco.Required("bufferView");
         draco.Required("attributes");
@@ -211,7 +231,21 @@ void CheckMaterial(const JsonAt& o) {
     }
     o.Extension("KHR_materials_specular",
                 [](const JsonAt& e) { e.Numbers("specularColorFactor", 3); });
-    o.Extension("KHR_materials_volume", [](const JsonAt& e) { e.Numbers("attenuationColor", 3); });
+    o.Extension("KHR_materials_volume", [](const JsonAt& e) {
+        e.NumbersWithin("attenuationColor", 3, 0, 1);
+        e.NumberWithin("thicknessFactor", 0, kLargest);
+        e.Number("attenuationDistance");
+        if (e.Has("attenuationDistance") && !(e.value.at("attenuationDistance") > 0))
+            e.Member("attenuationDistance").Fail("has to be above 0");
+    });
+    o.Extension("KHR_materials_sheen", [](const JsonAt& e) {
+        e.NumbersWithin("sheenColorFactor", 3, 0, 1);
+        e.NumberWithin("sheenRoughnessFactor", 0, 1);
+    });
+    o.Extension("KHR_materials_anisotropy", [](const JsonAt& e) {
+        e.NumberWithin("anisotropyStrength", 0, 1);
+        e.Number("anisotropyRotation");
+    });
     CheckTextureInfos(o);
 }
 
@@ -300,6 +334,13 @@ void CheckGltfJson(const std::string& file, const json& json) {
                 light.Member("spot").Number("innerConeAngle");
                 light.Member("spot").Number("outerConeAngle");
             }
+        });
+    });
+    root.Extension("KHR_materials_variants", [](const JsonAt& e) {
+        e.Required("variants");
+        e.ForEach("variants", [](const JsonAt& variant) {
+            variant.Required("name");
+            variant.String("name");
         });
     });
     root.ForEach("buffers", CheckBuffer);

@@ -68,18 +68,22 @@ function makeViewpoint(viewpoint) {
       make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows))));
 }
 
+// The second column has words.
+const wordsIn = table => { for (const row of table.rows) row.cells[1].classList.add("words"); return table; };
+
 function makeObservers() {
-  const table = makeTable("", ["observer", "viewpoint", "procedure", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm", ""],
-    data.observers.map(o => [o.observer, o.viewpoint, o.procedure, `${o.failed} of ${o.checks}`, String(o.repeats), showOctaves(o.repeatOctaves), showOctaves(o.shiftOctaves),
-      showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3), o.leftOut ? "left out: " + o.leftOut : o.doubts ? "counts, but " + o.doubts : ""]));
+  const table = makeTable("", ["observer", "counts", "viewpoint", "procedure", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm"],
+    data.observers.map(o => [o.observer, o.leftOut ? "left out: " + o.leftOut : o.doubts ? "yes, but " + o.doubts : "yes", o.viewpoint, o.procedure, `${o.failed} of ${o.checks}`,
+      String(o.repeats), showOctaves(o.repeatOctaves), showOctaves(o.shiftOctaves), showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3)]));
   [...table.querySelectorAll("tbody tr")].forEach((row, i) => {
     row.classList.toggle("left-out", data.observers[i].leftOut !== "");
-    row.lastElementChild.classList.add("words");
   });
+  wordsIn(table);
   return make("section", {}, make("h2", {}, "Observers"), make("div", {class: "scroll"}, table));
 }
 
 byId("subtitle").textContent = `${data.observers.filter(o => !o.leftOut).length} of ${data.observers.length + data.refused.length} files of answers count`;
 byId("all").append(...data.viewpoints.map(makeViewpoint), makeObservers());
 if (data.refused.length)
-  byId("all").append(make("section", {}, make("h2", {}, "Files that were refused"), makeTable("", ["file", "why"], data.refused.map(r => [r.file, r.reason]))));
+  byId("all").append(make("section", {}, make("h2", {}, "Files that were refused"),
+    make("div", {class: "scroll"}, wordsIn(makeTable("", ["file", "why"], data.refused.map(r => [r.file, r.reason]))))));

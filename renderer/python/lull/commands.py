@@ -16,7 +16,7 @@ _LAYERS = {"N": "normal", "Z": "depth", "P": "position", "objectID": "object",
            "materialID": "material"}
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(repr=False)
 class Rendering:
     """A picture: arrays of height x width, or height x width x 3, with the upper row first."""
     image: np.ndarray  # linear
@@ -28,12 +28,21 @@ class Rendering:
     interrupted: bool
     report: dict  # all of it
 
+    def __repr__(self):
+        height, width = self.spp.shape
+        return "<lull.Rendering of %d x %d pixels: %d to %d spp, %.3g s%s>" % (
+            width, height, self.spp.min(), self.spp.max(), self.seconds,
+            ", interrupted" if self.interrupted else "")
 
-@dataclasses.dataclass
+
+@dataclasses.dataclass(repr=False)
 class Comparison:
     """What `lull compare` finds: pictures by their names, and all figures."""
     images: dict
     figures: dict
+
+    def __repr__(self):
+        return "<lull.Comparison of %s>" % ", ".join(sorted(self.images))
 
 
 def _stack(channels):

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <thread>
 
+#include "renderer/scene/cameras/lens_bundle.h"
+
 namespace lull {
 namespace {
 
@@ -127,26 +129,33 @@ LensSystem::Area LensSystem::BoundExitPupil(double r0, double r1,
     const auto isInside = [](const Vector2d& p, const Area& area) {
         return (p.array() >= area.lower.array()).all() && (p.array() <= area.upper.array()).all();
     };
-    Area bounds{Vector2d::Constant(kInfinity), Vector2d::Constant(-kInfinity)}, reach = bounds;
+    const Area nothing{Vector2d::Constant(kInfinity), Vector2d::Constant(-kInfinity)};
+    Area bounds = nothing, reach{nothing.upper, nothing.lower};
+    const auto hasLight = [&] { return bounds.lower.x() <= bounds.upper.x(); };
+    LensBundle rays;
+    const auto trace = [&] {
+        rays.TraceFromFilm(interfaces);
+        for (; rays.count > 0; --rays.count) {
+            bounds.lower = bounds.lower.cwiseMin(rays.rear[rays.count - 1]);
+            bounds.upper = bounds.upper.cwiseMax(rays.rear[rays.count - 1]);
+        }
+    };
     for (size_t i = 0; i < points.size(); ++i) {
         // Once the first points have shown where light passes, only those nearby can add to it.
         if (i == kFirstPoints) {
+            trace();
             const double margin = 8 * side / std::sqrt(double(kFirstPoints));
-            reach = {bounds.lower.array() - margin, bounds.upper.array() + margin};
+            if (hasLight()) reach = {bounds.lower.array() - margin, bounds.upper.array() + margin};
         }
         const Vector2d rear = (2 * points[i].cast<double>() - Vector2d::Ones()) * side;
-        if (isInside(rear, bounds)) continue;
-        if (i >= kFirstPoints && bounds.lower.x() <= bounds.upper.x() && !isInside(rear, reach))
-            continue;
+        if (isInside(rear, bounds) || !isInside(rear, reach)) continue;
         const double r = r0 + (double(i) + 0.5) / double(points.size()) * (r1 - r0);
-        Line ray{{r, 0, 0}, {rear.x() - r, rear.y(), RearZ()}};
-        if (!TraceFromFilm(&ray)) continue;
-        bounds.lower = bounds.lower.cwiseMin(rear);
-        bounds.upper = bounds.upper.cwiseMax(rear);
+        rays.Add({r, 0, 0}, {rear.x(), rear.y(), RearZ()});
+        if (rays.IsFull()) trace();
     }
+    trace();
     // Without any light the sides do not matter.
-    if (!(bounds.lower.x() <= bounds.upper.x()))
-        return {Vector2d::Constant(-side), Vector2d::Constant(side)};
+    if (!hasLight()) return {Vector2d::Constant(-side), Vector2d::Constant(side)};
     const double spacing = 2 * std::sqrt(8.) * side / std::sqrt(double(points.size()));
     return {bounds.lower.array() - spacing, bounds.upper.array() + spacing};
 }

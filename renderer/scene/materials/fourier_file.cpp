@@ -20,7 +20,7 @@ class Cursor {
         static_assert(sizeof(T) == 4 && std::endian::native == std::endian::little);
         if (count > rest.size() / 4) Fail("is cut short");
         std::vector<T> values(count);
-        std::memcpy(values.data(), rest.data(), 4 * count);
+        if (count > 0) std::memcpy(values.data(), rest.data(), 4 * count);
         rest.remove_prefix(4 * count);
         return values;
     }

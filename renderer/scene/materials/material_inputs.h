@@ -12,7 +12,8 @@
 //     textures;
 //     std::string Problem(const MaterialReader&) const   what is wrong or not modelled, "" if
 //     nothing; bool NeedsTangents() const, bool NeedsUv() const   whether the lobes depend on
-//     these.
+//     these; bool VariesWithHit() const   whether they differ from hit to hit where no texture
+//     does.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,7 @@
 #include "renderer/scene/materials/metallic_roughness.h"
 
+#include "renderer/bsdf/sheen_albedo.h"
+
 namespace lull {
 namespace {
 
@@ -19,8 +21,8 @@ float Factor(const MaterialReader& in, const std::string& name, float otherwise)
     return std::max(0.f, in.entity.parameters.GetFloat(name + "factor", otherwise));
 }
 
-Rgb ColorFactor(const MaterialReader& in, const std::string& name) {
-    return in.entity.parameters.GetSpectrum(name + "factor", Rgb::Ones()).max(0.f);
+Rgb ColorFactor(const MaterialReader& in, const std::string& name, float otherwise = 1) {
+    return in.entity.parameters.GetSpectrum(name + "factor", Rgb::Constant(otherwise)).max(0.f);
 }
 
 template <typename Texture>
@@ -45,19 +47,26 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
     : baseColor(SpectrumSlot(in, "basecolor")),
       metallicRoughness(SpectrumSlot(in, "metallicroughness")),
       specularColor(SpectrumSlot(in, "specularcolor")),
+      sheenColor(SpectrumSlot(in, "sheencolor")),
+      anisotropy(SpectrumSlot(in, "anisotropy")),
       specular(FloatSlot(in, "specular")),
       transmission(FloatSlot(in, "transmission")),
       clearcoat(FloatSlot(in, "clearcoat")),
       clearcoatRoughness(FloatSlot(in, "clearcoatroughness")),
+      sheenRoughness(FloatSlot(in, "sheenroughness")),
       baseColorFactor(ColorFactor(in, "basecolor")),
       specularColorFactor(ColorFactor(in, "specularcolor")),
+      sheenColorFactor(ColorFactor(in, "sheencolor", 0)),
       metallicFactor(Factor(in, "metallic", 1)),
       roughnessFactor(Factor(in, "roughness", 1)),
       specularFactor(Factor(in, "specular", 1)),
       transmissionFactor(Factor(in, "transmission", 0)),
       clearcoatFactor(Factor(in, "clearcoat", 0)),
       clearcoatRoughnessFactor(Factor(in, "clearcoatroughness", 0)),
+      sheenRoughnessFactor(Factor(in, "sheenroughness", 0)),
+      anisotropyFactor(std::min(Factor(in, "anisotropy", 0), 1.f)),
       ior(in.entity.parameters.GetFloat("ior", 1.5f)),
+      anisotropyRotation(in.entity.parameters.GetFloat("anisotropyrotation", 0)),
       solid(in.entity.parameters.GetBool("solid", false)),
       vertexColors(in.entity.parameters.GetBool("vertexcolors", false)) {
     // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
@@ -67,12 +76,45 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
 
 SurfaceNeeds MetallicRoughness::ExtraNeeds() const {
     SurfaceNeeds needs = vertexColors ? kNeedsColor : kNeedsNothing;
-    const auto add = [&](const auto& slot) {
+    VisitSlots([&](const auto& slot) {
         if (slot.secondUv && !slot.texture.IsConstant()) needs = needs | kNeedsSecondUv;
-    };
-    for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor}) add(*slot);
-    for (const auto* slot : {&specular, &transmission, &clearcoat, &clearcoatRoughness}) add(*slot);
+    });
     return needs;
+}
+
+Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const {
+    if (anisotropyFactor == 0) return {alpha, alpha};
+    float strength = anisotropyFactor;
+    Vec2f direction(1, 0);
+    if (!anisotropy.texture.IsConstant()) {
+        const Rgb texel = Look(anisotropy, in);
+        direction = Vec2f(2 * texel.x() - 1, 2 * texel.y() - 1);
+        const float length = direction.norm();
+        direction = length > 1e-3f ? Vec2f(direction / length) : Vec2f(1, 0);
+        strength = std::clamp(strength * texel.z(), 0.f, 1.f);
+    }
+    // The second tangent may point either way.
+    const float side = bsdf->Shading().t.dot(in.hit->dpdv) < 0 ? -1 : 1;
+    const float c = std::cos(anisotropyRotation), s = std::sin(anisotropyRotation);
+    bsdf->Turn(c * direction.x() - s * direction.y(),
+               side * (s * direction.x() + c * direction.y()));
+    return {Lerp(Sqr(strength), alpha, 1), alpha};
+}
+
+// The specification leaves to what is below the share that sheen, taken as a whole, does not
+// reflect: here by the view alone, of which exactly as much is left as the sheen adds.
+void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
+    const Rgb color = (Look(sheenColor, in) * sheenColorFactor).max(0.f).min(1.f);
+    if (IsBlack(color)) return;
+    const float roughness =
+        sheenRoughnessFactor > 0 ? sheenRoughnessFactor * Look(sheenRoughness, in) : 0;
+    const float alpha = std::max(AlphaOf(roughness), CharlieSheen::kLeastAlpha);
+    const float cosine = std::abs(in.hit->ns.dot(in.hit->wo));
+    const float albedo = SheenAlbedo(cosine, alpha);
+    const float kept = std::min(1.f, 1 / std::max(albedo, 1e-6f));  // it reflects all at the most
+    bsdf->Scale(0, bsdf->LobeCount(LobeSet::All),
+                Rgb::Constant(1 - color.maxCoeff() * std::min(albedo, 1.f)));
+    bsdf->Add(CharlieSheen{Rgb(color * (kept * ThroughCoat(coat, cosine, 1))), alpha});
 }
 
 void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
@@ -80,7 +122,10 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     if (vertexColors) color = (color * in.hit->color).max(0.f).min(1.f);
     const Rgb packed = Look(metallicRoughness, in);
     const float metallic = std::clamp(metallicFactor * packed.z(), 0.f, 1.f);
-    const float alpha = AlphaOf(roughnessFactor * packed.y());
+    const Vec2f alphas = Alphas(in, AlphaOf(roughnessFactor * packed.y()), bsdf);
+    const bool isAnisotropic = alphas.x() != alphas.y();
+    // Where one number has to do, it is that of as large a highlight.
+    const float alpha = isAnisotropic ? std::sqrt(alphas.x() * alphas.y()) : alphas.x();
 
     // The dielectric's interface (KHR_materials_specular), and how the material is divided into
     // metal, dielectric over a diffuse base and dielectric that transmits.
@@ -91,7 +136,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float dielectric = 1 - metallic;
     const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
     const float coat = Weight(clearcoat, clearcoatFactor, in);
-    const bool isSmooth = alpha < kSmoothAlpha;
+    const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
     const Rgb base = (dielectric - transmitting) * color;
 
     // A thin rough sheet and a base below reflect by the same interface, in one lobe.
@@ -100,8 +145,12 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const Rgb r0 = reflecting * f0 + metallic * color;
     const float r90 = reflecting * strength + metallic;
     if (isSmooth && r90 > 0) bsdf->Add(ThinSpecular{r0, r90, Rgb(Rgb::Zero()), above, coat});
-    const Rgb glossy = isSmooth ? Rgb(Rgb::Zero()) : r0;
-    const float glossy90 = isSmooth ? 0 : r90;
+    if (isAnisotropic && r90 > 0)
+        bsdf->Add(MicrofacetReflection<CoatedInterface>{
+            Rgb(Rgb::Ones()), TrowbridgeReitz(alphas.x(), alphas.y()), {r0, r90, coat}});
+    const bool isApart = isSmooth || isAnisotropic;
+    const Rgb glossy = isApart ? Rgb(Rgb::Zero()) : r0;
+    const float glossy90 = isApart ? 0 : r90;
     if (glossy90 > 0 || ((r90 > 0 || coat > 0) && !IsBlack(base)))
         bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, above, coat));
     else if (!IsBlack(base))
@@ -115,7 +164,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         if (isSmooth) {
             bsdf->Add(FresnelSpecular{reflected, through, index});
         } else {
-            const TrowbridgeReitz distribution(alpha, alpha);
+            const TrowbridgeReitz distribution(alphas.x(), alphas.y());
             if (!IsBlack(reflected))
                 bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
                                                                     DielectricInterface{index}});
@@ -128,6 +177,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         bsdf->Add(ThinTransmission{through, alpha, above, coat});
     }
 
+    AddSheen(in, coat, bsdf);
     if (coat > 0) {
         const float roughness = clearcoatRoughnessFactor > 0
                                     ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in)

@@ -1,6 +1,6 @@
 // Represents glTF 2.0's material (appendix B of its specification) with the extensions
-// KHR_materials_ior, _specular, _transmission, _volume (its refraction, not its absorption) and
-// _clearcoat.
+// KHR_materials_ior, _specular, _transmission, _volume (what it absorbs is a medium of the shape),
+// _clearcoat, _sheen and _anisotropy.
 #pragma once
 
 #include "renderer/scene/materials/material_inputs.h"
@@ -17,18 +17,20 @@ struct UvSlot {
 // Reads the following textures, each multiplied by the parameter NAMEfactor, and looked up with the
 // second texture coordinates if NAMEuv is 1: "basecolor"; "metallicroughness" (roughness in green,
 // metallic in blue; the factors are "metallicfactor" and "roughnessfactor"); "specular",
-// "specularcolor", "transmission", "clearcoat", "clearcoatroughness". Also "ior"; "solid":
-// transmitted light is refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's
-// colours multiply the base colour.
+// "specularcolor", "transmission", "clearcoat", "clearcoatroughness", "sheencolor",
+// "sheenroughness", "anisotropy" (the factor is its strength in [0, 1]; red and green are a
+// direction along the tangents, blue a strength). Also "ior"; "solid": transmitted light is
+// refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's colours multiply the
+// base colour; "anisotropyrotation": radians, from the first tangent to the second.
 struct MetallicRoughness {
     static constexpr const char* kName = "metallicroughness";
 
-    UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor;
-    UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness;
-    Rgb baseColorFactor, specularColorFactor;
+    UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy;
+    UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness;
+    Rgb baseColorFactor, specularColorFactor, sheenColorFactor;
     float metallicFactor, roughnessFactor, specularFactor, transmissionFactor, clearcoatFactor,
-        clearcoatRoughnessFactor;
-    float ior;
+        clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor;
+    float ior, anisotropyRotation;
     bool solid, vertexColors;
 
     explicit MetallicRoughness(const MaterialReader& in);
@@ -37,14 +39,31 @@ struct MetallicRoughness {
 
     // Returns what it reads of a hit besides its textures' needs.
     SurfaceNeeds ExtraNeeds() const;
+    bool NeedsTangents() const { return anisotropyFactor > 0; }
+    // What sheen leaves to the rest depends on the view; anisotropy turns the frame.
+    bool VariesWithHit() const { return anisotropyFactor > 0 || !IsBlack(sheenColorFactor); }
 
     template <typename F>
     void VisitTextures(F&& f) const {
-        for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor}) f(slot->texture);
-        for (const auto* slot : {&specular, &transmission, &clearcoat, &clearcoatRoughness})
-            f(slot->texture);
+        VisitSlots([&](const auto& slot) { f(slot.texture); });
     }
-    int MaxLobes() const { return 4; }
+    int MaxLobes() const { return 4 + (anisotropyFactor > 0) + !IsBlack(sheenColorFactor); }
+
+  private:
+    template <typename F>
+    void VisitSlots(F&& f) const {
+        for (const auto* slot :
+             {&baseColor, &metallicRoughness, &specularColor, &sheenColor, &anisotropy})
+            f(*slot);
+        for (const auto* slot :
+             {&specular, &transmission, &clearcoat, &clearcoatRoughness, &sheenRoughness})
+            f(*slot);
+    }
+    // Returns the roughness along the tangents of a surface whose own is `alpha`, and turns the
+    // frame to where it is anisotropic.
+    Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
+    // Adds sheen over all lobes that there are, below a coat.
+    void AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
 };
 
 }  // namespace lull

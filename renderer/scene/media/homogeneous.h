@@ -18,6 +18,8 @@ struct HomogeneousMedium {
     // Samples a distance by the extinction of one channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
     // `length` is that of the ray to the next surface.
     MediumSample Sample(float length, Sampler& sampler) const {
+        // What only absorbs takes its share of every path, instead of ending some.
+        if (IsBlack(sigmaS)) return {.weight = Transmittance(length)};
         const int channel = std::min(int(sampler.Get1D() * 3), 2);
         const float depth = -std::log1p(-sampler.Get1D());
         const float distance = sigmaT[channel] > 0 ? depth / sigmaT[channel] : kInfinity;

@@ -127,7 +127,8 @@ TEST(Bsdf, EvaluateAgreesWithSample) {
         if (!s || s->isSpecular || alpha < 0.04f) continue;
         const BsdfValue v = bsdf.Evaluate(wo, s->wi, set);
         EXPECT_NEAR(v.pdf, s->pdf, 1e-3f * s->pdf);
-        EXPECT_LT((v.f - s->f).abs().maxCoeff(), 1e-3f * s->f.maxCoeff());
+        // Sheen falls off with high powers of a sine, whose rounding counts as often.
+        EXPECT_LT((v.f - s->f).abs().maxCoeff(), 1e-3f * s->f.maxCoeff() + 1e-12f);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/bsdf/sheen_albedo.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
@@ -76,6 +77,74 @@ TEST(LayeredReflection, HasHandComputedValues) {
     // A coat takes 4 % of the light on its way in and on its way out.
     const LayeredReflection coated(c, Rgb::Constant(0.04f), 1, 1, InterfaceAbove{0.04f, 1}, 1);
     EXPECT_NEAR(coated.Evaluate(up, up).f.x(), f.x() * 0.96 * 0.96, 1e-5);
+}
+
+// Of light that comes and goes at 45 degrees to either side: D / 4 over the product of the cosines,
+// 1/2, times Schlick's reflectance at 45 degrees, and twice through the coat.
+TEST(CoatedReflection, HasHandComputedValues) {
+    const Rgb f0(0.5f, 0.25f, 0);
+    const MicrofacetReflection<CoatedInterface> lobe{
+        Rgb(1, 1, 1), TrowbridgeReitz(0.4f, 0.2f), {f0, 1, 0.5f}};
+    const double cosine = std::sqrt(0.5), weight = std::pow(1 - cosine, 5);
+    for (const double azimuth : {0., 90.}) {
+        const double alpha = azimuth == 0 ? 0.4 : 0.2;
+        const Vec3f wo = FromAngles(45, azimuth), wi = FromAngles(45, azimuth + 180);
+        const double d = 1 / (kPi * 0.4 * 0.2);
+        const double g = 2 / (1 + std::sqrt(1 + alpha * alpha));  // G1 by the tangent, 1
+        const double both = 1 / (2 / g - 1);                      // correlated: 1 / (1 + 2 Lambda)
+        const double through = 1 - (0.02 + (0.5 - 0.02) * weight);
+        const Rgb f = lobe.Evaluate(wo, wi).f;
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(
+                f[i], d / 4 / 0.5 * both * (f0[i] + weight * (1 - f0[i])) * through * through, 1e-4)
+                << azimuth;
+    }
+}
+
+// The highlight is wide along the axis of the larger alpha.
+TEST(CoatedReflection, StretchesAlongTheRougherAxis) {
+    const MicrofacetReflection<CoatedInterface> lobe{
+        Rgb(1, 1, 1), TrowbridgeReitz(0.5f, 0.1f), {Rgb(Rgb::Ones()), 1, 0}};
+    const auto at = [&](double azimuth) {
+        return lobe.Evaluate(FromAngles(20, azimuth), Vec3f::UnitZ()).f.x();
+    };
+    EXPECT_GT(at(0), 3 * at(90));
+}
+
+// Steps are narrow where light grazes, as the lobe is.
+TEST(SheenAlbedo, AgreesWithTheLobe) {
+    for (const float alpha : {0.01f, 0.04f, 0.2f, 0.6f, 1.f})
+        for (const double angle : {0., 30., 60., 75., 85., 88., 89.99}) {
+            const Vec3f wo = FromAngles(angle);
+            const CharlieSheen lobe{Rgb(1, 1, 1), alpha};
+            constexpr int kCosines = 300, kAzimuths = 100;
+            double sum = 0;
+            for (int i = 0; i < kCosines; ++i)
+                for (int j = 0; j < kAzimuths; ++j) {
+                    const double u = (i + 0.5) / kCosines, cosine = u * u;
+                    const Vec3f wi =
+                        FromAngles(std::acos(cosine) * 180 / kPi, 180 * (j + 0.5) / kAzimuths);
+                    sum += lobe.Evaluate(wo, wi).f.x() * cosine * 2 * u;
+                }
+            EXPECT_NEAR(SheenAlbedo(wo.z(), alpha), sum * 2 * kPi / (kCosines * kAzimuths), 0.04)
+                << alpha << " " << angle;
+        }
+}
+
+// At alpha 1 and 45 degrees to either side of the normal, at right angles in azimuth: the half
+// vector has cosine 1/2^0.5 / (0.75)^0.5. The fit's numbers are those of the paper.
+TEST(CharlieSheen, HasHandComputedValues) {
+    const auto l = [](double x) {
+        return 21.5473 / (1 + 3.82987 * std::pow(x, 0.19823)) - 1.9776 * x - 4.32054;
+    };
+    const double cosine = std::sqrt(0.5);
+    const double lambda = std::exp(2 * l(0.5) - l(1 - cosine));
+    const double sine = std::sqrt(1 - 0.5 / 0.75);
+    const double expected = 3 * sine / (2 * kPi) / (4 * 0.5 * (1 + 2 * lambda));
+    const CharlieSheen lobe{Rgb(1, 0.5f, 0), 1};
+    const Rgb f = lobe.Evaluate(FromAngles(45, 0), FromAngles(45, 90)).f;
+    EXPECT_NEAR(f.x(), expected, 1e-5);
+    EXPECT_NEAR(f.y(), expected / 2, 1e-5);
 }
 
 TEST(ThinSpecular, DividesLightByFresnel) {

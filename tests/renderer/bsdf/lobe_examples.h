@@ -66,6 +66,12 @@ inline std::vector<NamedLobe> SpreadLobes() {
             LayeredReflection(0.5f * color, 0.5f * gold + 0.02f, 1, alpha, plastic, 0.8f));
         add("thin sheet", ThinTransmission{color, alpha, plastic, 0});
         add("thin coated sheet", ThinTransmission{white, alpha, dense, 1});
+        // A ridge of 0.0001 by 0.3 fails with conductors as well.
+        if (alpha > 0.0005f)
+            add("coated reflection",
+                MicrofacetReflection<CoatedInterface>{white, TrowbridgeReitz(alpha, 0.3f),
+                                                      CoatedInterface{gold, 1, 0.5f}});
+        if (alpha > 0.05f) add("sheen", CharlieSheen{color, alpha});
         add("clear coat", MicrofacetReflection<SchlickInterface>{
                               white, TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
     }

@@ -5,6 +5,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
+#include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
@@ -99,6 +100,39 @@ TEST(ExrFile, RefusesDeepAndSubsampledData) {
     { Imf::DeepScanLineOutputFile(file.path.c_str(), file.header); }
     const std::string deep = ErrorOf([&] { ReadExr(file.path); });
     EXPECT_TRUE(Contains(deep, "deep images are not modelled")) << deep;
+}
+
+// The library would allocate them first.
+TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
+    OneChannel file;
+    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    file.header.insert("note", Imf::StringAttribute("hello"));
+    {
+        Imf::OutputFile out(file.path.c_str(), file.header);
+        out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
+        out.writePixels(5);
+    }
+    std::string bytes = ReadBytes(file.path);
+    const std::string before("note\0string\0\5\0\0\0hello", 21);
+    const size_t at = bytes.find(before);
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_EQ(ReadExr(file.path).Find("Y")->values, file.values);
+    const std::string start = bytes.substr(0, at + before.size());
+    std::string channels = bytes;
+    channels.replace(channels.find("chlist"), 12, std::string("chlist\0\x14\0\0\0Y", 12));
+    bytes.replace(at + 12, 4, "\xff\xff\xff\x7f");
+    file.directory.Write("a.exr", bytes);
+    const std::string tooLong = ErrorOf([&] { ReadExr(file.path); });
+    EXPECT_TRUE(Contains(tooLong, "a.exr")) << tooLong;
+    EXPECT_TRUE(Contains(tooLong, "attribute 'note' has 2147483647 bytes, of which")) << tooLong;
+
+    file.directory.Write("a.exr", start);
+    const std::string cut = ErrorOf([&] { ReadExr(file.path); });
+    EXPECT_TRUE(Contains(cut, "cut short")) << cut;
+
+    file.directory.Write("a.exr", channels);
+    const std::string damaged = ErrorOf([&] { ReadExr(file.path); });
+    EXPECT_TRUE(Contains(damaged, "its list of channels is damaged")) << damaged;
 }
 
 }  // namespace

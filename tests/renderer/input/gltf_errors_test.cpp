@@ -98,6 +98,50 @@ TEST(GltfErrors, NameTheirPlace) {
     }
 }
 
+TEST(GltfErrors, CheckTheRangesOfExtensions) {
+    const GltfFolder folder;
+    const std::string material = "/materials/0/extensions/";
+    const std::string primitive = "/meshes/0/primitives/0/extensions/KHR_materials_variants";
+    struct RangeCase {
+        std::string pointer;
+        json value;
+        std::string message;
+    };
+    const std::string between = ", but has to lie between 0 and 1";
+    const RangeCase cases[] = {
+        {material + "KHR_materials_volume/attenuationDistance", -1, ": has to be above 0"},
+        {material + "KHR_materials_volume/attenuationDistance", 0, ": has to be above 0"},
+        {material + "KHR_materials_volume/attenuationDistance", "far", ": has to be a number"},
+        {material + "KHR_materials_volume/attenuationDistance", 1e300, ": is too large a number"},
+        {material + "KHR_materials_volume/attenuationColor",
+         {0.5, 0.5},
+         ": has to be an array of 3 numbers"},
+        {material + "KHR_materials_volume/attenuationColor", {0.5, 1.5, 0}, "/1: is 1.5" + between},
+        {material + "KHR_materials_volume/thicknessFactor", -0.5,
+         ": is -0.5, but has to lie between 0 and 3e+38"},
+        {material + "KHR_materials_sheen/sheenColorFactor", {0, 0, -1}, "/2: is -1" + between},
+        {material + "KHR_materials_sheen/sheenRoughnessFactor", 2, ": is 2" + between},
+        {material + "KHR_materials_anisotropy/anisotropyStrength", 7, ": is 7" + between},
+        {material + "KHR_materials_anisotropy/anisotropyRotation", true, ": has to be a number"},
+        {"/extensions/KHR_materials_variants/variants",
+         {{{"name", 3}}},
+         "/0/name: has to be a string"},
+        {"/extensions/KHR_materials_variants/variants", json::array({json::object()}),
+         "/0: lacks \"name\""},
+        {"/extensions/KHR_materials_variants/variants", 5, ": has to be an array"},
+        {primitive + "/mappings", json::array({{{"material", 0}, {"variants", {0}}}}),
+         "/0/variants/0: has to be the number of one of 0 variants"},
+        {primitive + "/mappings", json::array({{{"material", 4}, {"variants", json::array()}}}),
+         "/0/material: is 4, but there are only 1 materials"},
+        {primitive + "/mappings", json::array({{{"material", 0}}}), "/0: lacks \"variants\""},
+    };
+    for (const RangeCase& c : cases) {
+        GltfFile file = GoodFile();
+        file.root[json::json_pointer(c.pointer)] = c.value;
+        EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: " + c.pointer + c.message);
+    }
+}
+
 TEST(GltfErrors, FindWhatIsInTheBuffers) {
     const GltfFolder folder;
     GltfFile file = GoodFile();

@@ -171,6 +171,63 @@ TEST(GltfAnimations, MoveWeightsJointsAndCameras) {
     EXPECT_TRUE(TransformPoint(seen.cameraFromWorld, Vec3f(2, 0, 4)).isZero(1e-5f));
 }
 
+TEST(GltfShutter, BlursNodesAndCamerasThatMove) {
+    GltfFile file = Animated("translation", {0, 0, 0, 4, 0, 8}, "VEC3");
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["nodes"][0]["children"] = {1};
+    file.root["nodes"].push_back({{"camera", 0}});
+    file.Node({{"mesh", file.Triangle()}});
+    Warnings warnings;
+    const Description d = GltfFolder().Parse(file, {.frame = 1.5, .shutter = 0.5}, &warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    EXPECT_EQ(d.shapes.size(), 1u);  // what stands still
+    ASSERT_EQ(d.instances.size(), 1u);
+    ASSERT_EQ(d.instances[0].motion, 0);
+    ASSERT_EQ(d.motions.at(0).size(), 1u);
+    EXPECT_EQ(d.transformTimes, (std::array<double, 2>{0, 1}));
+    const auto& [open, close] = d.motions[0][0].at;
+    EXPECT_TRUE(TransformPoint(open, Vec3f::Zero()).isApprox(Vec3f(1, 0, 2)));
+    EXPECT_TRUE(TransformPoint(close, Vec3f::Zero()).isApprox(Vec3f(2, 0, 4)));
+    EXPECT_EQ(d.instances[0].worldFromInstance, open);
+    ASSERT_TRUE(d.movingCameraFromWorld);
+    EXPECT_EQ(d.movingCameraFromWorld->at[0], d.cameraFromWorld);
+    EXPECT_TRUE(TransformPoint(d.movingCameraFromWorld->at[1], Vec3f(2, 0, 4)).isZero(1e-5f));
+
+    // Before its first key, and without a shutter, it stands still.
+    for (const GltfOptions& still :
+         {GltfOptions{.frame = 0, .shutter = 1}, GltfOptions{.frame = 2}}) {
+        const Description other = GltfFolder().Parse(file, still);
+        EXPECT_TRUE(other.motions.empty());
+        EXPECT_FALSE(other.movingCameraFromWorld);
+        EXPECT_EQ(other.shapes.size(), 2u);
+    }
+}
+
+TEST(GltfShutter, WarnsOfWhatItCannotBlur) {
+    const auto countOf = [](const GltfFile& file, const std::string& message) {
+        Warnings warnings;
+        GltfFolder().Parse(file, {.frame = 1, .shutter = 0.5}, &warnings);
+        const auto counts = warnings.Counts();
+        const auto found = counts.find(message);
+        return found == counts.end() ? 0 : found->second;
+    };
+    EXPECT_EQ(countOf(Animated("weights", {0, 0, 1, 0.5}, "SCALAR"),
+                      "morph targets are not blurred by their motion"),
+              1);
+    GltfFile arm = Arm();
+    const int times = arm.Floats({0, 2}, "SCALAR");
+    const int turns = arm.Floats({0, 0, 0, 1, 0, 0, -kHalf, kHalf}, "VEC4");
+    arm.root["animations"] = {
+        {{"samplers", {{{"input", times}, {"output", turns}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}}}}}};
+    EXPECT_EQ(countOf(arm, "skins are not blurred by the motion of their joints"), 1);
+    GltfFile lamp = Animated("translation", {0, 0, 0, 4, 0, 8}, "VEC3");
+    lamp.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    lamp.root["meshes"][0]["primitives"][0]["material"] = 0;
+    EXPECT_EQ(countOf(lamp, "what emits light is not blurred by its motion"), 1);
+}
+
 TEST(GltfAnimations, AreNamedWhereTheyAreLeftOut) {
     Warnings warnings;
     const GltfFile file = Animated("translation", {0, 0, 0, 4, 0, 8}, "VEC3");

@@ -27,6 +27,18 @@ MediumTable MakeTable(const std::string& kind, std::vector<Parameter> parameters
     return table;
 }
 
+// No path ends by chance where nothing scatters.
+TEST(HomogeneousMedium, TakesItsShareOfEveryRayWhereItOnlyAbsorbs) {
+    const HomogeneousMedium medium{Rgb::Zero(), Rgb(1, 0.5f, 0), 0};
+    Sampler sampler(SamplerKind::Random, 1);
+    sampler.StartSample({0, 0}, 0);
+    for (int i = 0; i < 100; ++i) {
+        const MediumSample s = medium.Sample(2, sampler);
+        EXPECT_FALSE(s.t);
+        EXPECT_TRUE(s.weight.isApprox(Rgb(std::exp(-2.f), std::exp(-1.f), 1)));
+    }
+}
+
 struct Moments {
     Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = sum;
     int count = 0;

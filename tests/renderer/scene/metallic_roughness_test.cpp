@@ -1,6 +1,7 @@
 // Checks what glTF's material is made of; its values are checked in bsdf/, its look in transport/.
 #include <gtest/gtest.h>
 
+#include "renderer/bsdf/sheen_albedo.h"
 #include "tests/renderer/scene/material_scene.h"
 
 namespace lull::test {
@@ -96,6 +97,65 @@ TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
     EXPECT_FLOAT_EQ(glass.Eta(), 1.5f);
     EXPECT_TRUE(
         std::holds_alternative<MicrofacetTransmission>(lastOf(SceneWith(rough, true).MakeBsdf(0))));
+}
+
+// What the sheen reflects at the angle of view is taken from what is below; the coat is above both.
+TEST(MetallicRoughness, LaysSheenOverTheRest) {
+    const std::map<std::string, float> factors = {
+        {"metallicfactor", 0}, {"specularfactor", 0}, {"sheenroughnessfactor", 0.5f}};
+    const auto make = [](SceneWith b, const Vec3f& wo) {
+        AddRgb(&b.description.materials[0], "sheencolorfactor", Rgb(0.25f, 0.5f, 1));
+        const MaterialTable table = b.Make();
+        SurfaceInteraction hit = MaterialScene::Hit(0);
+        hit.wo = wo;
+        return table.MakeBsdf(b.textures, &hit);
+    };
+    for (const Vec3f& wo : {Vec3f(0, 0, 1), Vec3f(0.8f, 0, 0.6f), Vec3f(0.99f, 0, 0.14107f)}) {
+        const Bsdf bsdf = make(SceneWith(factors), wo);
+        ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+        const auto& sheen = LobeAt<CharlieSheen>(bsdf, 1);
+        EXPECT_FLOAT_EQ(sheen.alpha, 0.25f);
+        EXPECT_FLOAT_EQ(sheen.r.g, 0.5f);
+        EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r,
+                        0.5f * (1 - SheenAlbedo(wo.z(), 0.25f)));
+    }
+    std::map<std::string, float> coated = factors;
+    coated["clearcoatfactor"] = 1;
+    const Bsdf bsdf = make(SceneWith(coated), Vec3f::UnitZ());
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    EXPECT_NEAR(LobeAt<CharlieSheen>(bsdf, 1).r.g, 0.5 * 0.96 * 0.96, 1e-5);
+    // However narrow, it reflects no more than all light.
+    std::map<std::string, float> narrow = factors;
+    narrow["sheenroughnessfactor"] = 0;
+    const Vec3f grazing(std::sqrt(1 - 1e-6f), 0, 1e-3f);
+    const auto& rim = LobeAt<CharlieSheen>(make(SceneWith(narrow), grazing), 1);
+    EXPECT_FLOAT_EQ(rim.r.b * SheenAlbedo(1e-3f, rim.alpha), 1);
+    EXPECT_GT(SheenAlbedo(1e-3f, rim.alpha), 1.5f);
+}
+
+// Rougher along the tangent, which may be turned; the base below is as it was.
+TEST(MetallicRoughness, IsAnisotropicAlongItsTangent) {
+    const std::map<std::string, float> factors = {
+        {"metallicfactor", 0.5f}, {"roughnessfactor", 0.5f}, {"anisotropyfactor", 0.6f}};
+    const auto axisOf = [](SceneWith b, float side) {
+        const MaterialTable table = b.Make();
+        EXPECT_EQ(table.Needs(0), kNeedsTangents);
+        SurfaceInteraction hit = MaterialScene::Hit(0);
+        hit.dpdv *= side;
+        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        EXPECT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+        const auto& d = LobeAt<MicrofacetReflection<CoatedInterface>>(bsdf, 0).distribution;
+        EXPECT_FLOAT_EQ(d.AlphaX(), Lerp(0.36f, 0.25f, 1));
+        EXPECT_FLOAT_EQ(d.AlphaY(), 0.25f);
+        EXPECT_FALSE(IsBlack(LobeAt<LayeredReflection>(bsdf, 1).diffuse));
+        return bsdf.Shading().s;
+    };
+    EXPECT_TRUE(axisOf(SceneWith(factors), 1).isApprox(Vec3f(0, 1, 0)));
+    std::map<std::string, float> turned = factors;
+    turned["anisotropyrotation"] = kPi / 3;
+    const float c = 0.5f, s = std::sqrt(0.75f);
+    EXPECT_TRUE(axisOf(SceneWith(turned), 1).isApprox(Vec3f(-s, c, 0)));
+    EXPECT_TRUE(axisOf(SceneWith(turned), -1).isApprox(Vec3f(s, c, 0)));
 }
 
 TEST(MetallicRoughness, MultipliesVertexColours) {

@@ -194,6 +194,20 @@ TEST(GltfMaterial, NeverAddsEnergy) {
         {"\"float metallicfactor\" [0] \"float transmissionfactor\" [.5] \"float roughnessfactor\" "
          "[.2] \"bool solid\" \"true\"",
          0.85},
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1] \"float "
+         "sheenroughnessfactor\" "
+         "[.5] \"rgb sheencolorfactor\" [1 1 1]",
+         0.97},
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1] \"float "
+         "sheenroughnessfactor\" "
+         "[.1] \"rgb sheencolorfactor\" [1 1 1]",
+         0.97},
+        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [.2] \"float anisotropyfactor\" "
+         "[.8]",
+         0.65},
+        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [.4] \"float anisotropyfactor\" "
+         "[.5] \"float clearcoatfactor\" [1]",
+         0.8},
     };
     const TemporaryDirectory directory;
     for (const Case& c : cases) {
@@ -220,6 +234,66 @@ TEST(GltfMaterial, NeverAddsEnergy) {
         EXPECT_LT(std::abs(totals[0].mean.y() - totals[1].mean.y()),
                   4.5f * std::hypot(totals[0].error, totals[1].error) + 1e-4f);
     }
+}
+
+// A box of glass that does not bend light, 2 deep, in front of a lamp: a quarter of the red light
+// is left after each unit of length, and all of the blue.
+TEST(GltfMaterial, AbsorbsByTheLengthOfTheWayThrough) {
+    GltfFile file;
+    json lamp = Matte(0, 0, 0);
+    lamp["emissiveFactor"] = {1, 1, 1};
+    file.Node({{"mesh", Square(&file, lamp)}, {"translation", {0, 0, -4}}});
+    const json glass = {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                        {"extensions",
+                         {{"KHR_materials_ior", {{"ior", 1}}},
+                          {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                          {"KHR_materials_volume",
+                           {{"thicknessFactor", 1},
+                            {"attenuationDistance", 0.5},
+                            {"attenuationColor", {0.5, 0, 1}}}}}}};
+    const int face = Square(&file, glass);
+    const double half = std::sqrt(0.5);
+    const json turns[] = {{0, 0, 0, 1},        {0, 1, 0, 0},       {0, half, 0, half},
+                          {0, -half, 0, half}, {half, 0, 0, half}, {-half, 0, 0, half}};
+    for (const json& turn : turns) {
+        const Eigen::Quaterniond q(turn[3].get<double>(), turn[0].get<double>(),
+                                   turn[1].get<double>(), turn[2].get<double>());
+        const Eigen::Vector3d at = q * Eigen::Vector3d::UnitZ();
+        file.Node({{"mesh", face}, {"rotation", turn}, {"translation", {at.x(), at.y(), at.z()}}});
+    }
+    for (const Estimator estimator : kEstimators) {
+        const Rgb L = Measure(*Compiled(file), estimator, 4).mean;
+        EXPECT_NEAR(L.x(), 1 / 16., 1e-4);
+        EXPECT_EQ(L.y(), 0);
+        EXPECT_NEAR(L.z(), 1, 1e-4);
+    }
+}
+
+// While the shutter is open a square moves by twice its width over a ground of another colour.
+TEST(GltfShutter, BlursByTheTimeThatIsCovered) {
+    GltfFile file;
+    const int times = file.Floats({0, 1}, "SCALAR");
+    const int ways = file.Floats({-2, 0, 1, 2, 0, 1}, "VEC3");
+    file.Node({{"mesh", Square(&file, Matte(1, 0, 0))}, {"scale", {4, 4, 1}}});
+    file.Node({{"mesh", Square(&file, Matte(0, 1, 0))}, {"scale", {1, 4, 1}}});
+    file.root["animations"] = {
+        {{"samplers", {{{"input", times}, {"output", ways}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+    Sun(&file, Vec3f::UnitZ());
+    file.root["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
+    file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+    const GltfFolder folder;
+    // It covers each point that is seen for half of the time.
+    const auto blurred = Compiled(folder.Parse(file, {.frame = 0, .shutter = 1}), 4);
+    const Total t = Measure(*blurred, Estimator::Combined, 4000);
+    EXPECT_NEAR(t.mean.y() * kPi, 0.5, 4.5 * t.error * kPi);
+    EXPECT_NEAR(t.mean.x() + t.mean.y(), 1 / kPi, 1e-4);
+    EXPECT_GT(t.error, 0);
+    // At half that time it stands in the middle.
+    const auto sharp = Compiled(folder.Parse(file, {.frame = 0.5}), 4);
+    EXPECT_NEAR(Measure(*sharp).mean.y() * kPi, 1, 1e-4);
 }
 
 // The normal map turns the square towards or away from the sun: red to the right, green upwards.

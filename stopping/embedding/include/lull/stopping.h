@@ -77,8 +77,8 @@ typedef struct lull_settings {
      * as many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
      * one when 40 spp have passed since the last one that they looked at; "noise" and "paper" look
      * only at 40, 80, 120, ... spp (20, 60, 100, ... with 20 here). The default model compares a
-     * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: if the spp double from one
-     * picture to the next (64, 128, 256), it never votes. */
+     * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: with 1.5 times the spp from
+     * one picture to the next it votes; with 1.7 times, or if they double (64, 128, 256), never. */
     int pass;
     int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known */
     double caution; /* Divides the threshold of visible noise of "entropy", "noise" and the rules

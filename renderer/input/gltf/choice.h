@@ -1,0 +1,19 @@
+// Lets people choose among what a glTF file holds.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "renderer/input/gltf/document.h"
+
+namespace lull {
+
+// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
+std::string NumberedNames(const std::vector<std::string>& names);
+
+// Returns the first of `names` that is `wanted`, or the one of that number, from 0. Throws Error
+// with a list of them where there is none; `what` they are is named in it: "camera".
+size_t ChooseByName(const GltfDocument&, const std::string& what,
+                    const std::vector<std::string>& names, const std::string& wanted);
+
+}  // namespace lull
