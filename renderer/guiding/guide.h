@@ -2,6 +2,7 @@
 // quadtree over directions (Müller, Gross, Novák: Practical Path Guiding, CGF 36(4), 2017).
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -15,15 +16,23 @@ namespace lull {
 Vec2f SquareFromDirection(const Vec3f& w);
 Vec3f DirectionFromSquare(const Vec2f& s);
 
-// Cuts a square into quadrants: 0 and 1 below in y, 2 and 3 above.
+// Cuts a square into quadrants: 0 and 1 below in y, 2 and 3 above. Small, as what a walk down a
+// tree costs is what it has to fetch.
 struct QuadNode {
-    std::array<float, 4> share = {0.25f, 0.25f, 0.25f, 0.25f};  // of the square's light; sum 1
-    // From the first node of the tree on; 0: none, the quadrant is even.
-    std::array<uint16_t, 4> child = {};
+    static constexpr int kWhole = 1 << 16;
+
+    std::array<uint16_t, 4> share = {1 << 14, 1 << 14, 1 << 14, 1 << 14};  // > 0; sum kWhole
+    uint16_t children = 0;  // from the first node of the tree on: those of its quadrants, in turn
+    uint16_t isCut = 0;     // bit q: quadrant q has a node of its own; else it is even
+
+    bool IsCut(int q) const { return (isCut >> q) & 1; }
+    uint32_t Child(int q) const {
+        return children + uint32_t(std::popcount(uint32_t(isCut) & ((1u << q) - 1)));
+    }
 };
 
 struct GuideLeaf {
-    uint32_t firstNode = 0, nodeCount = 1;  // of its quadtree, the root first, children behind
+    uint32_t firstNode = 0, nodeCount = 1;  // of its quadtree, the root first, children later
     uint32_t depth = 0;                     // in the tree over space
     float fraction = 0;  // of the paths there that the guide directs; 0: has nothing to say
 };
@@ -38,9 +47,18 @@ class Guide {
     // even.
     Guide(const Bounds3f& bounds, int depth, int quadDepth);
 
+    // Has to be called when nodes or cube have been changed, and before Find().
+    void Index();
+
     // Returns the leaf at p; for points outside the bounds, one at the border.
     uint32_t Find(const Vec3f& p) const;
     const GuideLeaf& Leaf(uint32_t i) const { return leaves[i]; }
+    // Asks for the leaf's quadtree, which is about to be walked down.
+    void Prefetch(const GuideLeaf& leaf) const {
+        const QuadNode* tree = &quads[leaf.firstNode];
+        for (uint32_t i = 0; i < std::min(leaf.nodeCount, 24u); i += 64 / sizeof(QuadNode))
+            __builtin_prefetch(tree + i);
+    }
 
     // Turns u in [0, 1)^2 into a unit direction by the density of the leaf; `pdf` receives it,
     // 1/sr.
@@ -64,6 +82,14 @@ class Guide {
     std::vector<uint32_t> nodes;
     std::vector<GuideLeaf> leaves;
     std::vector<QuadNode> quads;
+
+  private:
+    static constexpr int kIndexBits = 4;  // of each coordinate
+
+    float cellsPerUnit = 1;  // of the 2^16 of a side
+    // What a walk through the nodes comes to after its first 3 * kIndexBits steps, or where it ends
+    // before, cell by cell: most of the way to a leaf.
+    std::vector<uint32_t> entries;
 };
 
 }  // namespace lull

@@ -8,6 +8,7 @@ namespace lull {
 // Says what a path did at one vertex, and what came of it.
 struct GuideVertex {
     Vec3f p, w;                    // where, and the unit direction in which it went on
+    uint32_t leaf;                 // Guide::Find(p)
     float pdf, bsdfPdf, guidePdf;  // of w, 1/sr: as it was sampled, and of the two parts
     // Luminance that the rest of the path brought to the image, light sampled at the vertex itself
     // left out, over what a path usually brings. Any value; not positive (or NaN) counts as 0.

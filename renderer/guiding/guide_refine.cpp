@@ -14,6 +14,20 @@ struct Quadtree {
     std::vector<Masses> light;  // 0 where a quadrant has children
 };
 
+// Returns the masses over their sum; even where that is 0.
+std::array<uint16_t, 4> SharesOf(const Masses& mass) {
+    QuadNode node;
+    const double sum = mass[0] + mass[1] + mass[2] + mass[3];
+    if (!(sum > 0)) return node.share;
+    int left = QuadNode::kWhole;
+    std::array<int, 4> share;
+    for (size_t q = 0; q < 4; ++q)
+        left -= share[q] = std::max(1, int(mass[q] / sum * QuadNode::kWhole + 0.5));
+    *std::max_element(share.begin(), share.end()) += left;  // what rounding has left over
+    for (size_t q = 0; q < 4; ++q) node.share[q] = uint16_t(share[q]);
+    return node.share;
+}
+
 // Makes the quadtree of one leaf.
 class TreeBuilder {
   public:
@@ -27,39 +41,51 @@ class TreeBuilder {
 
     // Returns an empty tree where nothing was recorded.
     Quadtree Build() {
-        if (total > 0) Place(masses[0], nodes[0].child, 0);
+        if (total > 0) {
+            Grow(1);
+            Fill(0, masses[0], &nodes[0], 0);
+        }
         return std::move(built);
     }
 
   private:
     // Fills in the masses of an old node and of those below.
     double SumOf(uint32_t node) {
-        for (size_t q = 0; q < 4; ++q) {
-            const uint16_t child = nodes[node].child[q];
-            masses[node][q] = child ? SumOf(child) : double(sums[4 * node + q]);
-        }
+        for (int q = 0; q < 4; ++q)
+            masses[node][size_t(q)] = nodes[node].IsCut(q) ? SumOf(nodes[node].Child(q))
+                                                           : double(sums[4 * node + uint32_t(q)]);
         const Masses& m = masses[node];
         return m[0] + m[1] + m[2] + m[3];
     }
 
-    // Makes a node of these masses, and what is below: of the old nodes where there are some, else
-    // even. Returns its place.
-    uint16_t Place(const Masses& mass, const std::array<uint16_t, 4>& below, int depth) {
-        const size_t place = built.nodes.size();
-        built.nodes.emplace_back();
-        built.light.push_back(mass);
-        const double sum = mass[0] + mass[1] + mass[2] + mass[3];
+    size_t Grow(int count) {
+        const size_t first = built.nodes.size();
+        built.nodes.resize(first + size_t(count));
+        built.light.resize(first + size_t(count));
+        return first;
+    }
+
+    // Fills in a node of these masses, and makes what is below: as below `old`, the node that was
+    // there before, or even where there was none (null).
+    void Fill(size_t place, const Masses& mass, const QuadNode* old, int depth) {
+        QuadNode node{.share = SharesOf(mass)};
         for (size_t q = 0; q < 4; ++q) {
-            if (sum > 0) built.nodes[place].share[q] = float(mass[q] / sum);
-            if (!(mass[q] > least) || depth + 1 >= kMaxQuadDepth || (!below[q] && !cuts)) continue;
-            const double m = mass[q] / 4;
-            const uint16_t child = below[q]
-                                       ? Place(masses[below[q]], nodes[below[q]].child, depth + 1)
-                                       : Place({m, m, m, m}, {}, depth + 1);
-            built.nodes[place].child[q] = child;
-            built.light[place][q] = 0;
+            const bool hadChild = old && old->IsCut(int(q));
+            if (mass[q] > least && depth + 1 < kMaxQuadDepth && (hadChild || cuts))
+                node.isCut |= uint16_t(1u << q);
         }
-        return uint16_t(place);
+        if (node.isCut) node.children = uint16_t(Grow(std::popcount(node.isCut)));
+        built.nodes[place] = node;
+        built.light[place] = mass;
+        for (int q = 0; q < 4; ++q) {
+            if (!node.IsCut(q)) continue;
+            const double m = mass[size_t(q)] / 4;
+            const bool hadChild = old && old->IsCut(q);
+            const uint32_t below = hadChild ? old->Child(q) : 0;
+            Fill(node.Child(q), hadChild ? masses[below] : Masses{m, m, m, m},
+                 hadChild ? &nodes[below] : nullptr, depth + 1);
+            built.light[place][size_t(q)] = 0;
+        }
     }
 
     const QuadNode* nodes;  // the old tree
@@ -89,6 +115,7 @@ class Refinement {
         made.guide.side = old.guide.side;
         made.guide.nodes.resize(1);
         Copy(0, 0);
+        made.guide.Index();
         return std::move(made);
     }
 

@@ -21,13 +21,18 @@ constexpr int kFirstRound = 4;
 constexpr int64_t kPathsEnough = 16 << 20;
 constexpr int kMost = 500, kMostWithClock = 60;
 
+// A leaf is cut when it has seen more vertices, times the square root of the millions of paths that
+// were recorded: so a guide gets finer in place and surer in direction alike (Müller 2017, section
+// 5.3).
+constexpr double kLeafVertices = 4000;
+
 // Of auto: how many paths a round has, in samples per pixel at least and at most; the rounds that
-// can go by before it begins; and the one after which it decides.
+// can go by before it begins; and those after which it can decide: the first, and the last.
 constexpr int64_t kPathsOfRound = 1 << 20;
-constexpr int kShortest = 4, kLongest = 16, kLeadOfAuto = 16, kDecision = 3;
+constexpr int kShortest = 4, kLongest = 16, kLeadOfAuto = 16, kFirstDecision = 3, kLastDecision = 7;
 
 // What a vertex costs with a guide over without (renderer/docs/guiding.md).
-constexpr double kVertexCost = 1.45;
+constexpr double kVertexCost = 1.2;
 
 // Cells that the first round has to record in.
 constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
@@ -77,7 +82,7 @@ std::string TextOf(const GuideFigures& f, GuideMode mode) {
     if (f.rounds == 0) return text;
     text += fmt::format("; learned from {} spp, from {} spp on, {:.1f} MB", f.samples, f.from,
                         double(f.bytes) / (1 << 20));
-    if (mode == GuideMode::Auto && f.rounds >= kDecision)
+    if (mode == GuideMode::Auto && f.rounds >= kFirstDecision)
         text += fmt::format("; variance {:.2f} +- {:.2f}, vertices {:.2f} of those without",
                             f.comparison.variance, f.comparison.error, f.comparison.vertices);
     return text;
@@ -95,14 +100,19 @@ GuideLearner::GuideLearner(const Scene& scene, const LearningOptions& options, i
 int GuideLearner::RoundLength(int round) const {
     if (options.mode == GuideMode::On) return kFirstRound << std::max(0, round - 1);
     if (round == 0) return options.isShort ? kFirstRound : kLeadOfAuto * pace;
-    return pace << std::max(0, round - kDecision);
+    return learning.decided > 0 ? pace << (round - learning.decided) : pace;
+}
+
+bool GuideLearner::IsTrial() const {
+    return options.mode == GuideMode::Auto && learning.round > 0 && learning.decided == 0 &&
+           !IsDone();
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
+    if (!IsTrial()) return nullptr;
     const int round = learning.round;
-    if (options.mode != GuideMode::Auto || IsDone()) return nullptr;
     if (round == 1) return &learning.tally.unguided[film.TileAt(tile.min)];
-    if (round == kDecision) return &learning.tally.guided[film.TileAt(tile.min)];
+    if (round >= kFirstDecision) return &learning.tally.guided[film.TileAt(tile.min)];
     return nullptr;
 }
 
@@ -136,32 +146,42 @@ bool GuideLearner::Begin(const Film& film) {
     return true;
 }
 
+// Decides whether guides pay, if that is known by now. Returns false if they do not.
+bool GuideLearner::Decide(const Film& film) {
+    const GuideComparison c = learning.figures.comparison = learning.tally.Compare(film);
+    const double work = c.vertices * kVertexCost;
+    if ((c.variance + 2 * c.error) * work < 1)
+        learning.decided = learning.round;
+    else if ((c.variance - 2 * c.error) * work > 1 || learning.round >= kLastDecision)
+        return false;
+    learning.tally.guided.assign(learning.tally.guided.size(), {});
+    if (learning.decided > 0) learning.tally = {};
+    return true;
+}
+
 bool GuideLearner::Learn(const Film& film) {
-    const bool decides = options.mode == GuideMode::Auto && learning.round == kDecision;
+    if (IsTrial() && learning.round >= kFirstDecision && !Decide(film))
+        return Finish(false, "variance times work is not surely below what it is without");
     GuideFigures& figures = learning.figures;
-    if (decides) {
-        const GuideComparison c = figures.comparison =
-            std::exchange(learning.tally, {}).Compare(film);
-        if (!((c.variance + 2 * c.error) * c.vertices * kVertexCost < 1))
-            return Finish(false, "variance times work is not surely below what it is without");
-    }
+    const bool isUsed = options.mode == GuideMode::On || learning.decided > 0;
     const int most = options.isShort ? kMostWithClock : kMost;
-    const bool isLast = (options.mode == GuideMode::On || learning.round >= kDecision) &&
-                        (learning.paths >= kPathsEnough || figures.samples >= most);
+    const bool isLast = isUsed && (learning.paths >= kPathsEnough || figures.samples >= most);
     // The old state and the new are there at the same time. What shares of guided paths would have
     // been worth is known of a guide that has been used.
-    const RefineOptions refine{.maxBytes = (size_t(options.megabytes) << 20) / 2,
+    const double millions = double(learning.paths) / double(1 << 20);
+    const RefineOptions refine{.leafVertices = kLeafVertices * std::sqrt(std::max(1., millions)),
+                               .maxBytes = (size_t(options.megabytes) << 20) / 2,
                                .knowsFractions = learning.round > 1};
     if (isLast)
         learning.guide = FreezeGuide(learning.state, refine);
     else
         learning.state = Refine(learning.state, refine);
     const Guide& guide = isLast ? learning.guide : learning.state.guide;
-    figures.isUsed = options.mode == GuideMode::On || learning.round >= kDecision;
+    figures.isUsed = isUsed;
     figures.bytes = int64_t(guide.Bytes());
     figures.leaves = int(guide.leaves.size());
     figures.why = options.mode == GuideMode::On ? "as asked for"
-                  : figures.isUsed              ? "variance times work is below what it is without"
+                  : isUsed                      ? "variance times work is below what it is without"
                                                 : "too few samples to decide";
     return !isLast || Finish(true, figures.why);
 }
@@ -170,6 +190,7 @@ bool GuideLearner::Finish(bool isUsed, const std::string& why) {
     learning.figures.isUsed = isUsed;
     learning.figures.why = why;
     learning.state = {};
+    learning.tally = {};
     learning.end = noRoundEnd;
     return false;
 }
@@ -190,8 +211,8 @@ std::vector<std::byte> GuideLearner::Save() const { return SaveLearning(learning
 void GuideLearner::Take(std::span<const std::byte> bytes, const Film& film) {
     Learning taken = RestoreLearning(bytes);
     const bool compares =
-        options.mode == GuideMode::Auto && taken.round > 0 && taken.round <= kDecision;
-    const size_t tiles = compares && !taken.IsDone() ? film.TileCount() : 0;
+        options.mode == GuideMode::Auto && taken.round > 0 && taken.decided == 0 && !taken.IsDone();
+    const size_t tiles = compares ? film.TileCount() : 0;
     if (taken.tally.unguided.size() != tiles || taken.tally.guided.size() != tiles)
         throw std::runtime_error("its guide is of another image");
     learning = std::move(taken);

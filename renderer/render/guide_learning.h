@@ -8,9 +8,10 @@
 // rounds, and on nothing else: blocks stop by their own samples, and sums are integers.
 //
 // `on` records from 4 spp on, in rounds of 4, 8, 16, ... spp, the first of them without a guide.
-// `auto` begins late, so that what stops early does not pay for it, with three rounds: one without
-// a guide, two with. It goes on with the guide if the last round was enough less noisy than the
-// first for what it cost in vertices.
+// `auto` begins late, so that what stops early does not pay for it, with short rounds: one without
+// a guide, the others with. It goes on with the guide as soon as a round was surely enough less
+// noisy than the first for what it cost in vertices, and without it once that is surely not so, or
+// not known after a few.
 #pragma once
 
 #include <optional>
@@ -57,6 +58,7 @@ struct LearningOptions {
 // Holds all that is needed to go on learning, to the same bits.
 struct Learning {
     int round = 0;        // 0: nothing was recorded yet
+    int decided = 0;      // of auto: the round after which it was known that guides pay; 0: none
     int end = 0;          // of the round, in samples per pixel; noRoundEnd: learning is done
     double usual = 0;     // mean luminance of the image
     int64_t paths = 0;    // that were recorded
@@ -107,6 +109,8 @@ class GuideLearner {
   private:
     bool Begin(const Film&);
     bool Learn(const Film&);
+    bool IsTrial() const;
+    bool Decide(const Film&);
     int RoundLength(int round) const;
     bool Finish(bool isUsed, const std::string& why);
     void SetPaths();

@@ -8,7 +8,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t kTag = 0x32756c67;
+constexpr uint32_t kTag = 0x33756c67;
 
 constexpr const char* kDamaged = "its guide is damaged";
 
@@ -28,14 +28,13 @@ void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
         Refuse();
     for (uint32_t i = 0; i < leaf.nodeCount; ++i) {
         const QuadNode& node = guide.quads[leaf.firstNode + i];
-        float sum = 0;
-        for (size_t q = 0; q < 4; ++q) {
-            if (!(node.share[q] >= 0)) Refuse();
-            sum += node.share[q];
-            if (node.child[q] != 0 && (node.child[q] <= i || node.child[q] >= leaf.nodeCount))
-                Refuse();
+        int sum = 0;
+        for (const uint16_t share : node.share) {
+            if (share == 0) Refuse();
+            sum += share;
         }
-        if (!(std::abs(sum - 1) < 1e-3f)) Refuse();
+        if (sum != QuadNode::kWhole || node.isCut > 0b1111) Refuse();
+        if (node.isCut && (node.children <= i || node.Child(4) > leaf.nodeCount)) Refuse();
     }
 }
 
@@ -73,6 +72,7 @@ Guide GetGuide(StateReader* reader) {
     guide.leaves = reader->GetVector<GuideLeaf>(kDamaged);
     guide.quads = reader->GetVector<QuadNode>(kDamaged);
     CheckGuide(guide);
+    if (!guide.nodes.empty()) guide.Index();
     return guide;
 }
 
@@ -106,7 +106,7 @@ GuideFigures GetFigures(StateReader* reader) {
 std::vector<std::byte> SaveLearning(const Learning& learning) {
     StateWriter writer;
     writer.Put(kTag);
-    writer.Put(std::array<int32_t, 2>{learning.round, learning.end});
+    writer.Put(std::array<int32_t, 3>{learning.round, learning.decided, learning.end});
     writer.Put(learning.usual);
     writer.Put(std::array<int64_t, 2>{learning.paths, learning.samples});
     PutFigures(learning.figures, &writer);
@@ -123,9 +123,10 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     StateReader reader(bytes);
     Learning learning;
     if (reader.Get<uint32_t>() != kTag) Refuse();
-    const auto round = reader.Get<std::array<int32_t, 2>>();
+    const auto round = reader.Get<std::array<int32_t, 3>>();
     learning.round = round[0];
-    learning.end = round[1];
+    learning.decided = round[1];
+    learning.end = round[2];
     learning.usual = reader.Get<double>();
     const auto counts = reader.Get<std::array<int64_t, 2>>();
     learning.paths = counts[0];
@@ -146,6 +147,7 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
         records == !state.guide.nodes.empty() &&
         (learning.IsDone() && learning.figures.isUsed) == !learning.guide.nodes.empty();
     if (!fits || learning.round < 0 || learning.round >= 24 || learning.end <= 0 ||
+        learning.decided < 0 || learning.decided > learning.round ||
         (records && !(learning.usual > 0)))
         Refuse();
     return learning;

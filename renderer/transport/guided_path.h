@@ -36,8 +36,10 @@ class Guided {
         mayRecord = false;
         if (!mayGuide || bsdf.LobeCount(LobeSet::NonSpecular) == 0) return;
         mayRecord = record && count < kMost;
-        leaf = guide.Leaf(guide.Find(hit.p));
+        place = guide.Find(hit.p);
+        leaf = guide.Leaf(place);
         fraction = leaf.fraction;
+        guide.Prefetch(leaf);
     }
 
     // Comes to a point in a medium.
@@ -91,7 +93,7 @@ class Guided {
         path->origin = hit.p;
         path->ray = hit.SpawnRay(w);
         if (mayRecord) {
-            visited[count] = {hit.p, w, pdf, bsdfPdf, guidePdf, 0};
+            visited[count] = {hit.p, w, place, pdf, bsdfPdf, guidePdf, 0};
             before[count++] = L;
         }
         return true;
@@ -120,6 +122,7 @@ class Guided {
     const Guide& guide;
     GuideRecord* record;
     float usual;
+    uint32_t place = 0;  // of the leaf
     GuideLeaf leaf;
     float fraction = 0;  // of directions at this vertex that come from the guide
     bool mayRecord = false;

@@ -23,9 +23,9 @@ GuideState MakeState(int depth = 3, int quadDepth = 2) {
 float Number(std::mt19937* random) { return float((*random)() >> 8) * 0x1p-24f; }
 
 // Makes a vertex that has found a lobe of light around an axis, from a uniform choice of
-// directions.
+// directions. Its leaf is for who records it to fill in.
 GuideVertex MakeVertex(std::mt19937* random, const Vec3f& axis, float sharpness) {
-    GuideVertex v;
+    GuideVertex v{};
     for (int i = 0; i < 3; ++i)
         v.p[i] = kBounds.lower[i] + (kBounds.upper[i] - kBounds.lower[i]) * Number(random);
     v.w = SampleUniformSphere({Number(random), Number(random)});
@@ -34,14 +34,18 @@ GuideVertex MakeVertex(std::mt19937* random, const Vec3f& axis, float sharpness)
     return v;
 }
 
+void Add(GuideState* state, GuideVertex v) {
+    v.leaf = state->guide.Find(v.p);
+    state->record.Add(state->guide, v);
+}
+
 // Learns the lobe in a few rounds.
 Guide LearnLobe(uint32_t seed, const Vec3f& axis, float sharpness) {
     std::mt19937 random(seed);
     GuideState state = MakeState();
     const RefineOptions options{.leafVertices = 2000, .knowsFractions = false};
     for (int round = 0; round < 3; ++round) {
-        for (int i = 0; i < 8000 << round; ++i)
-            state.record.Add(state.guide, MakeVertex(&random, axis, sharpness));
+        for (int i = 0; i < 8000 << round; ++i) Add(&state, MakeVertex(&random, axis, sharpness));
         if (round < 2) state = Refine(state, options);
     }
     return FreezeGuide(state, options);
@@ -151,8 +155,7 @@ TEST(Guide, FitsTheMemoryItIsGiven) {
     constexpr size_t kBytes = 100'000;
     const RefineOptions options{.leafVertices = 50, .quadrantShare = 5e-3f, .maxBytes = kBytes};
     for (int round = 0; round < 4; ++round) {
-        for (int i = 0; i < 20000; ++i)
-            state.record.Add(state.guide, MakeVertex(&random, Vec3f::UnitZ(), 30));
+        for (int i = 0; i < 20000; ++i) Add(&state, MakeVertex(&random, Vec3f::UnitZ(), 30));
         state = Refine(state, options);
         EXPECT_LE(state.guide.Bytes() + state.record.Bytes(), kBytes);
     }
@@ -171,7 +174,7 @@ TEST(Guide, WithstandsAnyNumber) {
         if (i % 5 == 0) v.bsdfPdf = pick();
         if (i % 7 == 0) v.guidePdf = pick();
         if (i % 11 == 0) v.p.x() = pick();
-        state.record.Add(state.guide, v);
+        Add(&state, v);
     }
     state = Refine(state, {});
     const Guide guide = FreezeGuide(state, {});
@@ -192,7 +195,7 @@ TEST(Guide, FirefliesAreBounded) {
     for (int i = 0; i < 200'000; ++i) {
         GuideVertex v = MakeVertex(&random, Vec3f::UnitX(), 2);
         if (i == 1000) v.found = 1e30f;
-        state.record.Add(state.guide, v);
+        Add(&state, v);
     }
     const Guide guide = FreezeGuide(state, {});
     EXPECT_GT(guide.Pdf(guide.Leaf(0), Vec3f::UnitX()), 0.5f * 0.25f * kInvPi);
@@ -203,6 +206,7 @@ TEST(Guide, SumsDoNotDependOnTheOrder) {
     std::vector<GuideVertex> vertices;
     for (int i = 0; i < 20000; ++i) vertices.push_back(MakeVertex(&random, Vec3f::UnitY(), 5));
     GuideState one = MakeState(), many = MakeState();
+    for (GuideVertex& v : vertices) v.leaf = one.guide.Find(v.p);
     for (const GuideVertex& v : vertices) one.record.Add(one.guide, v);
     {
         std::vector<std::jthread> threads;
@@ -226,6 +230,7 @@ TEST(Guide, FractionSuitsWhatThePartsAreWorth) {
         for (int i = 0; i < 1000; ++i)
             state.record.Add(state.guide, {.p = Vec3f::Zero(),
                                            .w = Vec3f::UnitZ(),
+                                           .leaf = 0,
                                            .pdf = 1,
                                            .bsdfPdf = bsdfPdf,
                                            .guidePdf = guidePdf,

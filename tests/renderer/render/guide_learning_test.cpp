@@ -305,7 +305,7 @@ TEST(Learning, IsTheSameOnAnyNumberOfThreads) {
             if (!film) {
                 film = render.film;
                 learned = BytesOf(render.learner);
-                EXPECT_EQ(render.learner.Figures().rounds, mode == GuideMode::On ? 6 : 3);
+                EXPECT_EQ(render.learner.Figures().rounds, mode == GuideMode::On ? 6 : 7);
             }
             EXPECT_TRUE(SamePixels(render.film, *film)) << threads;
             EXPECT_TRUE(BytesOf(render.learner) == learned) << threads;
@@ -358,7 +358,7 @@ TEST(Learning, GoesOnToTheSameBits) {
             }
         }
         EXPECT_GT(interruptions, 5);
-        EXPECT_EQ(rounds, mode == GuideMode::On ? 6 : 3);
+        EXPECT_EQ(rounds, mode == GuideMode::On ? 6 : 7);
     }
 }
 
