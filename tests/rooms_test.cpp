@@ -89,10 +89,11 @@ TEST(Rooms, HaveAnOrderWithinScene) {
             }
     EXPECT_GT(count, 100);
     for (const auto& entry : fs::directory_iterator(fs::path(LULL_ROOT) / "renderer/scene"))
-        if (entry.is_directory())
+        if (entry.is_directory()) {
             EXPECT_EQ(
                 std::count(kSceneFolders.begin(), kSceneFolders.end(), entry.path().filename()), 1)
                 << entry.path();
+        }
     EXPECT_EQ(LastFolderOf("renderer/scene/interaction.h"), 0);
     EXPECT_EQ(LastFolderOf("renderer/scene/light_table.h"), 6);
     EXPECT_EQ(LastFolderOf("renderer/scene/geometry/shapes/mesh.h"), 4);

@@ -35,6 +35,10 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
             }
         })
         ->type_name("HOST:PORT");
+    app.add_option("--preview", options->preview,
+                   "Write the image as far as it is, as OUT.exr and OUT.png, every so many seconds")
+        ->check(CLI::Range(0.1, 1e6))
+        ->type_name("SECONDS");
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,

@@ -13,9 +13,10 @@ namespace lull {
 struct PictureOptions {
     PictureFormat format;
     std::string display;  // empty: none
+    double preview = 0;   // seconds between pictures on the way; 0: none
 };
 
-// Adds --tone-map, --png-bits, --exr-half and --display.
+// Adds --tone-map, --png-bits, --exr-half, --display and --preview.
 void AddPictureOptions(CLI::App& app, PictureOptions* options);
 
 // Begins to show a render whose image is called `name`; null where that is not wanted. Throws Error

@@ -63,6 +63,7 @@ Examples:
   lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
   lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
+  lull render scene.pbrt --preview 60                  # with a picture to look at every minute
   lull render scene.pbrt --until 09:00                 # as clean as it gets until then
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
@@ -278,6 +279,17 @@ ExitCode RunPath(const Options& options) {
     return kDone;
 }
 
+// A preview that cannot be written is a warning: the files may be written in the end.
+void WritePreview(const RenderFiles& files, const PictureOrigin& origin, const Film& film,
+                  const MatteFilm* mattes, const RenderResult& result, const PictureFormat& format,
+                  const Talk& talk) try {
+    ResultFiles written(Rescue::None);
+    WriteImage({files.exr, files.png}, origin, film, nullptr, mattes, result, {}, format, &written);
+    written.Check();
+} catch (const Error& e) {
+    talk.Warn(fmt::format("no preview: {}", e.what()));
+}
+
 ExitCode RunRender(Options options, Job* job) {
     if (options.path.pixel) return job->Rank() == 0 ? RunPath(options) : kDone;
     CheckSamplesSuffice(options);
@@ -332,6 +344,11 @@ ExitCode RunRender(Options options, Job* job) {
             display->ShowDenoised(pixels, rgb);
         });
     session.Resume();
+    if (options.pictures.preview > 0)
+        session.Preview(options.pictures.preview, [&](const RenderResult& result) {
+            WritePreview(files, {*scene, provenance}, session.TheFilm(), session.Mattes(), result,
+                         options.pictures.format, talk);
+        });
     CatchInterrupts();
     const RenderResult result = session.Run();
     provenance.guideFigures = session.Guidance();

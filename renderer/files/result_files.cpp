@@ -33,6 +33,7 @@ void ResultFiles::Write(const std::string& path, const Writer& write) try {
     names.push_back(path);
 } catch (const Error& e) {
     Append(e.what(), "; ", &failures);
+    if (rescue == Rescue::None) return;
     const bool isRescued = WriteElsewhere(path, write);
     Append(fmt::format("\"{}\"", path), ", ", isRescued ? &rescued : &lost);
 }

@@ -8,9 +8,14 @@
 
 namespace lull {
 
+// Says what becomes of a file that cannot be written: it goes elsewhere, or is done without.
+enum class Rescue { Elsewhere, None };
+
 class ResultFiles {
   public:
     using Writer = std::function<void(const std::string& path)>;
+
+    ResultFiles(Rescue rescue = Rescue::Elsewhere) : rescue(rescue) {}
 
     // Calls write(path). Where that throws Error, calls it for a file of the same name in a new
     // folder where temporary files go ($TMPDIR, else /tmp). Check() tells of it.
@@ -29,6 +34,7 @@ class ResultFiles {
   private:
     bool WriteElsewhere(const std::string& path, const Writer& write);
 
+    Rescue rescue;
     std::vector<std::string> names;
     std::string folder;  // empty: there was no need for one
     std::string failures, rescued, lost;

@@ -13,7 +13,7 @@ constexpr int smallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() 
 
 // Returns the end of the pass that pixels of a block have samples of, beyond its spp; 0: none have.
 int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film) {
-    options.worstFirst = true;
+    options.inSteps = true;
     const int most = MostSamples(block.pixels, film);
     if (most <= block.spp) return 0;
     int end = block.spp;

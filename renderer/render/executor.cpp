@@ -65,17 +65,29 @@ Executor::Executor(const SampleSource& source, const RenderOptions& options, Fil
       hooks(std::move(given)) {}
 
 RenderResult Executor::Run() {
-    do {
-        nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
+    RestartIntervals();
+    for (;;) {
         do {
             pausing = false;
             SpawnReady();
             tasks.Wait();
         } while (EndRound());
-        if (schedule.TimeCalled() && !pausing && !IsCancelled()) Undo();
-        WriteCheckpoint();
-    } while (pausing && !IsCancelled());
-    return Result();
+        const bool isOver = !pausing || IsCancelled();
+        if (schedule.TimeCalled() && isOver && !IsCancelled()) Undo();
+        if (isOver || ledger.Seconds() >= nextCheckpoint) WriteCheckpoint();
+        if (isOver || IsCancelled()) return Result();
+        ShowPreview();
+    }
+}
+
+void Executor::RestartIntervals() {
+    nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
+    nextPreview = ledger.Seconds() + options.previewInterval;
+}
+
+bool Executor::IsPauseDue() const {
+    return (options.onCheckpoint && ledger.Seconds() >= nextCheckpoint) ||
+           (options.onPreview && ledger.Seconds() >= nextPreview);
 }
 
 bool Executor::EndRound() {
@@ -105,7 +117,7 @@ void Executor::RunTile() {
             tasks.Spawn(DecideBlock(tile->block));
     }
     ledger.Report(&schedule);
-    if (options.onCheckpoint && ledger.Seconds() >= nextCheckpoint) pausing = true;
+    if (IsPauseDue()) pausing = true;
 }
 
 int64_t Executor::TakeSamples(const Tile& tile) {
@@ -140,8 +152,15 @@ std::vector<int> Executor::Undo() {
 }
 
 void Executor::WriteCheckpoint() {
-    if (!options.onCheckpoint || (schedule.Unlocked().Done() && !options.checkpointAtEnd)) return;
-    options.onCheckpoint({ledger.Blocks(schedule.Unlocked()), judge.Save(), ledger.Seconds()});
+    if (options.onCheckpoint && !(schedule.Unlocked().Done() && !options.checkpointAtEnd))
+        options.onCheckpoint({ledger.Blocks(schedule.Unlocked()), judge.Save(), ledger.Seconds()});
+    nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
+}
+
+void Executor::ShowPreview() {
+    if (!options.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done()) return;
+    options.onPreview(Result());
+    nextPreview = ledger.Seconds() + options.previewInterval;
 }
 
 RenderResult Executor::Result() {

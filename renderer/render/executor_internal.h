@@ -43,9 +43,15 @@ class Executor {
         return peerInterrupted || (options.isCancelled && options.isCancelled());
     }
 
-    // With no task at work, shows options.onCheckpoint the state, and returns the result.
+    // Says whether it is time for a pause, to write a checkpoint or to show a preview.
+    bool IsPauseDue() const;
+    // With no task at work: show options.onCheckpoint the state, and options.onPreview how far it
+    // is, if it is time; and return the result.
     void WriteCheckpoint();
+    void ShowPreview();
     RenderResult Result();
+    // Begins to count the seconds to the next of them.
+    void RestartIntervals();
 
     LiveSchedule schedule;
     ProgressLedger ledger;
@@ -53,7 +59,7 @@ class Executor {
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
-    double nextCheckpoint = 0;  // seconds, as the ledger has them
+    double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
     void RunTile();

@@ -11,6 +11,7 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(options.secondsLeft);
+    schedule.inSteps |= options.display || options.onPreview;
     if (options.learner) schedule.roundEnd = options.learner->RoundEnd();
     return schedule;
 }

@@ -89,11 +89,10 @@ const std::vector<BlockResult>& ProgressLedger::Blocks(const Schedule& schedule)
 }
 
 RenderResult ProgressLedger::Result(const Schedule& schedule) {
-    Blocks(schedule);
     RenderResult result;
+    result.blocks = Blocks(schedule);
     result.progress = Progress(schedule);
     if (options.onProgress) options.onProgress(result.progress);
-    result.blocks = std::move(results);
     return result;
 }
 

@@ -43,8 +43,7 @@ class ProgressLedger {
 
     // Tells options.onProgress how far the render is, if that is due, from one thread at a time.
     void Report(LiveSchedule*);
-    // With no task at work, returns what there is of each block, and the result, after which there
-    // is nothing left.
+    // With no task at work, return what there is of each block, and the result so far.
     const std::vector<BlockResult>& Blocks(const Schedule&);
     RenderResult Result(const Schedule&);
 

@@ -36,6 +36,7 @@ struct RenderState {
 
 class GuideLearner;
 class Peers;
+struct RenderResult;
 
 struct RenderOptions {
     ScheduleOptions schedule;
@@ -60,6 +61,10 @@ struct RenderOptions {
     std::function<void(const RenderState&)> onCheckpoint;
     double checkpointInterval = 60;
     bool checkpointAtEnd = false;  // also when every block has stopped
+    // Is shown how far things are, with no thread at work and all samples in the film, every
+    // `previewInterval` seconds. Can be empty; is so for all ranks, or for none.
+    std::function<void(const RenderResult&)> onPreview;
+    double previewInterval = 60;
     // Is asked before every tile; true ends the render after the tiles under way. Can be empty.
     std::function<bool()> isCancelled;
     // A clock: returns the seconds that are left, and is asked before every tile. Can be empty.

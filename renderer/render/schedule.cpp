@@ -49,7 +49,8 @@ int PassEndAfter(int spp, const ScheduleOptions& options) {
     const int pass = options.passLength;
     int end = (spp / pass + 1) * pass;
     // A step that would leave less than itself to the pass is all that is left of it.
-    if (const int step = std::max(1, 2 * spp); options.worstFirst && 2 * step <= pass) end = step;
+    const bool inSteps = options.inSteps || options.worstFirst;
+    if (const int step = std::max(1, 2 * spp); inSteps && 2 * step <= pass) end = step;
     if (spp < options.roundEnd) end = std::min(end, options.roundEnd);
     return std::min(end, options.cap);
 }

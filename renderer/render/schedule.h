@@ -24,6 +24,9 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (small_blocks.h)
+    // For renders that somebody looks at while they go on: the first pass is taken in steps of 1,
+    // 2, 4, ... spp.
+    bool inSteps = false;
     // For renders that have a clock: the next pass is that of the block with the most visible
     // noise, so that at any moment the worst block is as good as it can be, after a first pass in
     // steps.
@@ -33,8 +36,8 @@ struct ScheduleOptions {
 };
 
 // Returns the spp at the end of the pass that begins at `spp`, a multiple of the length of passes
-// the end of the round, or the cap. With a clock the first pass is done in steps of 1, 2, 4, ...
-// spp, in case that there is no time for all of it.
+// the end of the round, or the cap. With a clock the first pass is done in steps too, in case that
+// there is no time for all of it.
 int PassEndAfter(int spp, const ScheduleOptions&);
 // Says whether a pass, or the first as a whole, ends at `spp`.
 bool IsPassEnd(int spp, const ScheduleOptions&);

@@ -107,6 +107,11 @@ GuideFigures Session::Guidance() const {
     return figures;
 }
 
+void Session::Preview(double seconds, std::function<void(const RenderResult&)> show) {
+    options.render.onPreview = std::move(show);
+    options.render.previewInterval = seconds;
+}
+
 RenderResult Session::Run(const RenderFunction& render) {
     RenderOptions& o = options.render;
     SetSources();

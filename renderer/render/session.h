@@ -66,6 +66,9 @@ class Session {
 
     // Takes up what the checkpoint has, where it is to be resumed from. Throws as ReadCheckpoint().
     void Resume();
+    // Before that: lets `show` look at the film and how far things are, every so many seconds, with
+    // no thread at work; called at all ranks, of which the first is shown.
+    void Preview(double seconds, std::function<void(const RenderResult&)> show);
     // Renders, once. Of several ranks, the first has the image. Throws as Render() does.
     RenderResult Run(const RenderFunction& render = Render);
 

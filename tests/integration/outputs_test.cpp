@@ -125,6 +125,30 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
 }
 
+// A picture is there long before the end, and is whole.
+TEST(Outputs, PreviewsAreWrittenOnTheWay) {
+    const Inputs directory;
+    const Outcome outcome = RunAndSignal(
+        directory, "LULL render scene.pbrt --spp 1000000 --quiet -o out.exr --preview 0.1", SIGKILL,
+        "out.png");
+    EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
+    const ExrImage image = ReadExr(directory.File("out.exr"));
+    EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
+    EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
+}
+
+TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
+    const Inputs directory;
+    fs::create_directory(directory.File("tmp"));
+    const Outcome outcome =
+        RunShell(directory,
+                 "(while ! test -e c.h5; do sleep 0.05; done; mkdir out.exr) & TMPDIR=tmp timeout "
+                 "-s INT 2 LULL render scene.pbrt --spp 1000000 -o out.exr --checkpoint c.h5 "
+                 "--checkpoint-interval 0.1 --preview 0.3");
+    EXPECT_TRUE(Contains(outcome.err, "warning: no preview: ")) << outcome.err;
+    EXPECT_TRUE(fs::exists(directory.File("out.png")));
+}
+
 // Rules that know nothing of people have no ranges of theirs.
 TEST(Outputs, RendersLeaveNoOlderRanges) {
     const Inputs directory;

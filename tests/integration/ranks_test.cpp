@@ -83,6 +83,15 @@ TEST_F(RanksTest, ComeToTheSameBits) {
     }
 }
 
+TEST_F(RanksTest, ShowPreviews) {
+    const std::string render = std::string(kRender) + "--spp 400 ";
+    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
+    const Outcome outcome = Run(Ranks(2) + render + "-o some.exr --preview 0.1");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSame("one", "some");
+    EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
+}
+
 // Each learns by itself.
 TEST_F(RanksTest, LearnTheSame) {
     const std::string render = std::string(kRender) + "--spp 32 --guide on ";

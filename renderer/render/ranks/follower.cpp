@@ -133,6 +133,8 @@ RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given,
     options.onProgress = nullptr;
     options.onStop = nullptr;
     options.onCheckpoint = nullptr;
+    options.schedule.inSteps |= bool(options.onPreview);
+    options.onPreview = nullptr;
     return Follower(source, options, film, arena).Follow();
 }
 

@@ -38,7 +38,7 @@ class Leader {
     RenderResult RunAll() {
         TellGuide();
         SendStart({});
-        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+        executor.RestartIntervals();
         for (;;) {
             executor.pausing = false;
             rank.EnqueueReady();
@@ -55,6 +55,7 @@ class Leader {
                               (undo || !schedule.TimeCalled() || executor.IsCancelled());
             if (over || Seconds() >= executor.nextCheckpoint) WriteCheckpoint();
             if (over) break;
+            executor.ShowPreview();
             if (takesOver)
                 TakeOver();
             else if (deal.empty() || schedule.TimeCalled())
@@ -100,7 +101,8 @@ class Leader {
     void WriteCheckpoint() {
         if (!channel.HasGivenUpAny() || (answers.empty() && !AreBehind()))
             executor.WriteCheckpoint();
-        executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+        else
+            executor.nextCheckpoint = Seconds() + options.checkpointInterval;
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
@@ -213,8 +215,7 @@ class Leader {
                 schedule.CallTime();
                 channel.PostToAll(Pack(RankWord::TimeUp));
             }
-            if (options.onCheckpoint && Seconds() >= executor.nextCheckpoint && HasGoneOn())
-                executor.pausing = true;
+            if (executor.IsPauseDue() && HasGoneOn()) executor.pausing = true;
             ThinkOfDeal();
             executor.ledger.Report(&schedule);
         }

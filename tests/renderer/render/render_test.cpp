@@ -194,5 +194,45 @@ TEST(Render, ReportsProgressInOrderAndTheEnd) {
     EXPECT_EQ(reports.back().stoppedBlocks, reports.back().blocks);
 }
 
+// The first of them come soon, and nothing of the image depends on them.
+TEST(Render, ShowsPreviews) {
+    for (const int threads : {1, 4}) {
+        RenderOptions options = SmallRender();
+        options.threads = threads;
+        options.previewInterval = 0;
+        Film film(kRegion, {.grid = GridOf(options.schedule)});
+        std::vector<int64_t> samples;
+        options.onPreview = [&](const RenderResult& result) {
+            EXPECT_TRUE(result.cancelled);
+            EXPECT_EQ(result.progress.samples, film.SampleCount());
+            samples.push_back(film.SampleCount());
+        };
+        const RenderResult result = Render(SyntheticSample, options, &film);
+        EXPECT_FALSE(result.cancelled);
+        EXPECT_TRUE(SamePixels(film, Rendered(SmallRender())));
+        EXPECT_GT(samples.size(), 20u);
+        EXPECT_TRUE(std::ranges::is_sorted(samples));
+        EXPECT_LE(samples.front(), threads * Sqr(int64_t(options.schedule.tileSize)));
+    }
+}
+
+// Whoever waits for either does not get both.
+TEST(Render, WritesCheckpointsAndPreviewsEachInTheirTime) {
+    RenderOptions options = SmallRender();
+    options.previewInterval = 0;
+    options.checkpointInterval = 1e6;
+    int previews = 0, checkpoints = 0;
+    options.onPreview = [&](const RenderResult&) { ++previews; };
+    options.onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+    Rendered(options);
+    EXPECT_GT(previews, 20);
+    EXPECT_EQ(checkpoints, 0);
+    std::swap(options.previewInterval, options.checkpointInterval);
+    previews = 0;
+    Rendered(options);
+    EXPECT_EQ(previews, 0);
+    EXPECT_GT(checkpoints, 20);
+}
+
 }  // namespace
 }  // namespace lull

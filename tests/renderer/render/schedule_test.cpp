@@ -100,6 +100,8 @@ TEST(Schedule, TakesTheFirstPassInStepsByTheClock) {
         EXPECT_EQ(found, ends) << pass << " " << cap;
         options.worstFirst = false;
         EXPECT_EQ(PassEndAfter(0, options), std::min(pass, cap));
+        options.inSteps = true;  // for who looks at it
+        EXPECT_EQ(PassEndAfter(0, options), ends.front());
     }
 }
 
