@@ -8,12 +8,12 @@ namespace lull {
 
 // Without a guide: what there is anyhow, at no cost.
 struct Unguided {
-    void Enter(const SurfaceInteraction&, const Bsdf&, bool) {}
-    void EnterMedium() {}
-    float Pdf(float bsdfPdf, const Vec3f&) const { return bsdfPdf; }
-    bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, const Rgb&, Sampler& sampler,
-                 Path* path, bool* isTransmission) {
-        return lull::Scatter(bsdf, hit, sampler, path, isTransmission);
+    void Enter(const SurfaceVertex&, bool) {}
+    void Enter(const MediumVertex&) {}
+    float Pdf(float pdf, const Vec3f&) const { return pdf; }
+    template <typename Vertex>
+    bool Scatter(const Vertex& v, const Rgb&, Sampler& sampler, Path* path, bool* isTransmission) {
+        return lull::Scatter(v, sampler, path, isTransmission);
     }
     bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
         return lull::SurvivesRoulette(threshold, sampler, path);
@@ -21,8 +21,8 @@ struct Unguided {
     void End(const Rgb&) {}
 };
 
-// Chooses directions from the guide and the BSDF, and weighs them by the density of both:
-// one-sample multiple importance sampling (Veach 1997, section 9.2.4, balance heuristic).
+// Chooses directions from the guide and the BSDF or phase function, and weighs them by the density
+// of both: one-sample multiple importance sampling (Veach 1997, section 9.2.4, balance heuristic).
 class Guided {
   public:
     // `usual` is the luminance of which found light is a multiple.
@@ -30,70 +30,47 @@ class Guided {
         : guide(guide), record(record), usual(usual) {}
 
     // Comes to a vertex, where directions are guided or, with `mayGuide` false, are not.
-    void Enter(const SurfaceInteraction& hit, const Bsdf& bsdf, bool mayGuide) {
-        ++vertices;
-        fraction = 0;
-        mayRecord = false;
-        if (!mayGuide || bsdf.LobeCount(LobeSet::NonSpecular) == 0) return;
-        mayRecord = record && count < kMost;
-        place = guide.Find(hit.p);
-        leaf = guide.Leaf(place);
-        fraction = leaf.fraction;
-        guide.Prefetch(leaf);
+    void Enter(const SurfaceVertex& v, bool mayGuide) {
+        LookUp(v.hit.p, mayGuide && v.bsdf.LobeCount(LobeSet::NonSpecular) > 0);
+    }
+    void Enter(const MediumVertex& v) { LookUp(v.p, true); }
+
+    // Returns the density of sampling w where that of the BSDF, or phase function, alone is `pdf`.
+    // What these cannot sample is not sampled.
+    float Pdf(float pdf, const Vec3f& w) const {
+        if (fraction == 0 || !(pdf > 0)) return pdf;
+        return fraction * guide.Pdf(leaf, w) + (1 - fraction) * pdf;
     }
 
-    // Comes to a point in a medium.
-    void EnterMedium() { ++vertices; }
-
-    // Returns the density of sampling w where the BSDF's alone is `bsdfPdf`. What BSDFs cannot
-    // sample is not sampled.
-    float Pdf(float bsdfPdf, const Vec3f& w) const {
-        if (fraction == 0 || !(bsdfPdf > 0)) return bsdfPdf;
-        return fraction * guide.Pdf(leaf, w) + (1 - fraction) * bsdfPdf;
-    }
-
-    // Inlined, so that the path needs not lie in memory.
-    [[gnu::always_inline]] bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit,
-                                        const Rgb& L, Sampler& sampler, Path* path,
+    // Continues the path, which has found L so far; returns false where it ends. Inlined, so that
+    // the path needs not lie in memory.
+    template <typename Vertex>
+    [[gnu::always_inline]] bool Scatter(const Vertex& v, const Rgb& L, Sampler& sampler, Path* path,
                                         bool* isTransmission) {
-        *isTransmission = false;
         Vec2f u = sampler.Get2D();
-        float bsdfPdf, guidePdf = 0;
-        Vec3f w;
-        Rgb f;
+        BsdfSample sample;
+        float guidePdf = 0;
         if (u.x() < fraction) {
             u.x() = std::min(u.x() / fraction, kOneMinusEpsilon);
-            w = guide.Sample(leaf, u, &guidePdf);
-            const BsdfValue value = bsdf.Evaluate(hit.wo, w, LobeSet::All);
+            const Vec3f w = guide.Sample(leaf, u, &guidePdf);
+            const BsdfValue value = v.Evaluate(w, LobeSet::All);
             if (!(value.pdf > 0) || IsBlack(value.f)) return false;
-            f = value.f;
-            bsdfPdf = value.pdf;
+            sample = {value.f, value.pdf, w, false, false};
         } else {
             if (fraction > 0)
                 u.x() = std::min((u.x() - fraction) / (1 - fraction), kOneMinusEpsilon);
-            const auto sample = bsdf.Sample(hit.wo, u, LobeSet::All);
-            if (!sample) return false;
-            w = sample->wi;
-            *isTransmission = sample->isTransmission;
-            if (sample->isSpecular) {
-                Continue(bsdf, hit, *sample, sample->pdf * (1 - fraction), path);
-                density *= 1 - fraction;
-                return true;
-            }
-            f = sample->f;
-            bsdfPdf = sample->pdf;
-            if (fraction > 0 || mayRecord) guidePdf = guide.Pdf(leaf, w);
+            const auto chosen = v.Sample(u, LobeSet::All);
+            if (!chosen) return false;
+            sample = *chosen;
+            if ((fraction > 0 || mayRecord) && !sample.isSpecular)
+                guidePdf = guide.Pdf(leaf, sample.wi);
         }
-        const float pdf = fraction * guidePdf + (1 - fraction) * bsdfPdf;
-        const float cosine = std::abs(w.dot(hit.ns));
-        path->beta *= f * (cosine / pdf);
-        density *= pdf / bsdfPdf;
-        path->seesLights = false;
-        path->pdf = pdf;
-        path->origin = hit.p;
-        path->ray = hit.SpawnRay(w);
-        if (mayRecord) {
-            visited[count] = {hit.p, w, place, pdf, bsdfPdf, guidePdf, 0};
+        const float pdf = fraction * guidePdf + (1 - fraction) * sample.pdf;
+        Continue(v, sample, pdf, path);
+        *isTransmission = sample.isTransmission;
+        density *= pdf / sample.pdf;
+        if (mayRecord && !sample.isSpecular) {
+            visited[count] = {v.Position(), sample.wi, place, pdf, sample.pdf, guidePdf, 0};
             before[count++] = L;
         }
         return true;
@@ -118,6 +95,18 @@ class Guided {
 
   private:
     static constexpr int kMost = 32;  // of a path's vertices that are recorded
+
+    void LookUp(const Vec3f& p, bool mayGuide) {
+        ++vertices;
+        fraction = 0;
+        mayRecord = false;
+        if (!mayGuide) return;
+        mayRecord = record && count < kMost;
+        place = guide.Find(p);
+        leaf = guide.Leaf(place);
+        fraction = leaf.fraction;
+        guide.Prefetch(leaf);
+    }
 
     const Guide& guide;
     GuideRecord* record;

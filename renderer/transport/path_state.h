@@ -3,6 +3,7 @@
 
 #include "renderer/base/sampling.h"
 #include "renderer/transport/path_tracer.h"
+#include "renderer/transport/path_vertex.h"
 
 namespace lull {
 
@@ -61,29 +62,26 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
     return sum;
 }
 
-// Continues the path with a sample of the BSDF that was chosen with density (specular: probability)
-// `pdf`.
-inline void Continue(const Bsdf& bsdf, const SurfaceInteraction& hit, const BsdfSample& sample,
-                     float pdf, Path* path) {
-    path->beta *= sample.f * (std::abs(sample.wi.dot(hit.ns)) / pdf);
+// Continues the path with a sample of the BSDF, or phase function, that was chosen with density
+// (specular: probability) `pdf`.
+template <typename Vertex>
+void Continue(const Vertex& v, const BsdfSample& sample, float pdf, Path* path) {
+    path->beta *= sample.f * (v.Cosine(sample.wi) / pdf);
     path->seesLights = sample.isSpecular;
     path->pdf = pdf;
-    path->origin = hit.p;
-    if (sample.isSpecular && sample.isTransmission) {
-        const float eta2 = Sqr(bsdf.Eta());
-        path->etaScale *= hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
-    }
-    path->ray = hit.SpawnRay(sample.wi);
+    path->origin = v.Position();
+    if (sample.isSpecular && sample.isTransmission) path->etaScale *= v.EtaScale();
+    path->ray = v.SpawnRay(sample.wi);
 }
 
-// Continues the path with a BSDF sample. Returns false where it ends. `isTransmission`, if given,
-// receives whether it goes through the surface.
-inline bool Scatter(const Bsdf& bsdf, const SurfaceInteraction& hit, Sampler& sampler, Path* path,
-                    bool* isTransmission = nullptr) {
-    const auto sample = bsdf.Sample(hit.wo, sampler.Get2D(), LobeSet::All);
+// Continues the path with a sample of the BSDF or phase function. Returns false where it ends.
+// `isTransmission` receives whether it goes through the surface.
+template <typename Vertex>
+bool Scatter(const Vertex& v, Sampler& sampler, Path* path, bool* isTransmission) {
+    const auto sample = v.Sample(sampler.Get2D(), LobeSet::All);
     if (!sample) return false;
-    Continue(bsdf, hit, *sample, sample->pdf, path);
-    if (isTransmission) *isTransmission = sample->isTransmission;
+    Continue(v, *sample, sample->pdf, path);
+    *isTransmission = sample->isTransmission;
     return true;
 }
 

@@ -12,9 +12,9 @@ namespace {
 
 // Continues the path, which the surface has let in, from where it leaves the solid; adds the light
 // that arrives there directly. Returns false where it ends.
-template <typename Media>
-[[gnu::noinline]] bool ScatterBelow(PathContext<Media>* context, const SurfaceVertex& v, Path* path,
-                                    Rgb* L) {
+template <typename Media, typename Guiding>
+[[gnu::noinline]] bool ScatterBelow(PathContext<Media>* context, const SurfaceVertex& v,
+                                    Guiding& guiding, Path* path, Rgb* L) {
     const Scene& scene = context->scene;
     const auto profile = scene.materials.Profile(scene.textures, v.hit);
     if (!profile) {
@@ -27,20 +27,13 @@ template <typename Media>
     path->beta *= exit->weight;
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     const SurfaceVertex last{exit->hit, out, exit->shape};
+    guiding.Enter(last, true);
     if (scene.lights.Count() > 0)
-        *L += path->beta * SampleDirectLight(*context, last, Unguided(), path);
-    if (!Scatter(out, exit->hit, context->sampler, path)) return false;
+        *L += path->beta * SampleDirectLight(*context, last, guiding, path);
+    bool isTransmission;
+    if (!guiding.Scatter(last, *L, context->sampler, path, &isTransmission)) return false;
     context->media.Leave(last, path->ray.d);
     return true;
-}
-
-// Continues the path from a point in a medium.
-void ScatterInMedium(const MediumVertex& v, Sampler& sampler, Path* path) {
-    const auto sample = v.Sample(sampler.Get2D(), LobeSet::All);
-    path->pdf = sample->pdf;
-    path->origin = v.p;
-    path->seesLights = false;
-    path->ray = {v.p, sample->wi, kInfinity};
 }
 
 // Follows a path along `ray`, the camera's. Compiled for each kind of Media, Guiding and Recorder,
@@ -76,11 +69,12 @@ template <typename Media, typename Guiding, typename Recorder>
                 scene.lights.Prefetch(v.p);
                 firstHit.MeetMedium(path, v.p);
                 if (isLast) break;
-                guiding.EnterMedium();
+                guiding.Enter(v);
                 if (scene.lights.Count() > 0)
-                    L += path.beta * SampleDirectLight(context, v, Unguided(), &path);
+                    L += path.beta * SampleDirectLight(context, v, guiding, &path);
                 firstHit.Light(L);
-                ScatterInMedium(v, sampler, &path);
+                bool isTransmission;
+                if (!guiding.Scatter(v, L, sampler, &path, &isTransmission)) break;
                 firstHit.Scatter(path, true);
                 if (bounces > 3 && !guiding.SurvivesRoulette(scene.rrThreshold, sampler, &path))
                     break;
@@ -121,24 +115,24 @@ template <typename Media, typename Guiding, typename Recorder>
         firstHit.MeetSurface(path, found, hit, bsdf);
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
-        guiding.Enter(hit, bsdf, !(needs & kScattersBelow));
         const SurfaceVertex v{hit, bsdf, found.shape};
+        guiding.Enter(v, !(needs & kScattersBelow));
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
             L += path.beta * SampleDirectLight(context, v, guiding, &path);
         firstHit.Light(L);
 
         bool isTransmission;
-        if (!guiding.Scatter(bsdf, hit, L, sampler, &path, &isTransmission)) break;
+        if (!guiding.Scatter(v, L, sampler, &path, &isTransmission)) break;
         if ((needs & kScattersBelow) && isTransmission) [[unlikely]] {
             // Works on copies, as all that is not inlined here: what it has a pointer to would lie
             // in memory all along.
             PathContext<Media> contextBelow = context;
             Path below = path;
-            Rgb arriving = Rgb::Zero();
-            const bool leaves = ScatterBelow(&contextBelow, v, &below, &arriving);
+            Rgb sum = L;
+            const bool leaves = ScatterBelow(&contextBelow, v, guiding, &below, &sum);
             context.media = contextBelow.media;
             path = below;
-            L += arriving;
+            L = sum;
             if (!leaves) break;
         } else {
             context.media.Leave(v, path.ray.d);

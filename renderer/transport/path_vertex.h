@@ -32,6 +32,12 @@ struct SurfaceVertex {
     Vec3f OriginTowards(const Vec3f& d) const {
         return OffsetRayOrigin(hit.p, hit.pError, hit.n, d);
     }
+    Ray SpawnRay(const Vec3f& d) const { return hit.SpawnRay(d); }
+    // Returns what radiance is scaled by when it is refracted from wo's side to the other.
+    float EtaScale() const {
+        const float eta2 = Sqr(bsdf.Eta());
+        return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+    }
     // Says whether both leave the surface on the same side.
     bool IsSameSide(const Vec3f& a, const Vec3f& b) const {
         return (a.dot(hit.n) < 0) == (b.dot(hit.n) < 0);
@@ -54,11 +60,13 @@ struct MediumVertex {
     std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet) const {
         const Vec3f wi = SampleHenyeyGreenstein(wo, g, u);
         const BsdfValue value = Evaluate(wi, LobeSet::All);
-        return BsdfSample{value.f, value.pdf, wi, false, false};
+        return BsdfSample{value.f, value.pdf, wi, false, true};
     }
     float Cosine(const Vec3f&) const { return 1; }
+    float EtaScale() const { return 1; }
 
     Vec3f OriginTowards(const Vec3f&) const { return p; }
+    Ray SpawnRay(const Vec3f& d) const { return {p, d, kInfinity}; }
     bool IsSameSide(const Vec3f&, const Vec3f&) const { return true; }
 };
 

@@ -1,6 +1,7 @@
 // Checks renders that learn a guide as they go on: the same mean, less variance, the same bits.
 #include "renderer/render/guide_learning.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -33,7 +34,7 @@ std::unique_ptr<const Scene> MakeScene(const std::string& world, int size = 16,
 }
 
 // A closed room with walls of several materials, lit by a lamp that shines at its ceiling alone.
-constexpr const char* kRoom = R"(
+constexpr const char* kWalls = R"(
 AttributeBegin
   AreaLightSource "diffuse" "rgb L" [90 80 60]
   Translate .6 .6 .6  Rotate -90 1 0 0
@@ -49,6 +50,9 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7]
 Material "uber" "rgb Kd" [.3 .4 .5] "rgb Ks" [.1 .1 .1] "rgb Kr" [.1 .1 .1]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7]
   "point P" [-1 -1 -1  -1 -1 1  -1 1 1  -1 1 -1   1 -1 -1  1 -1 1  1 1 1  1 1 -1]
+)";
+// With balls of glass and metal in it.
+const std::string kRoom = kWalls + std::string(R"(
 AttributeBegin
   Translate -.4 -.6 .3
   Material "glass"
@@ -59,7 +63,7 @@ AttributeBegin
   Material "metal" "float roughness" [.05]
   Shape "sphere" "float radius" [.3]
 AttributeEnd
-)";
+)");
 
 PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
 
@@ -108,6 +112,7 @@ std::vector<std::byte> BytesOf(const GuideLearner& learner) {
 struct Estimate {
     double mean = 0, variance = 0;  // of the mean of all pixels; of a sample, in all pixels
     double error = 0;
+    double noise = 0;  // standard deviation of a sample, summed over all pixels
     int rejected = 0;
 };
 
@@ -126,7 +131,9 @@ Estimate Measure(const Scene& scene, const SampleSource& source, int spp, uint64
                 squares += value * value;
             }
             e.mean += sum / spp;
-            e.variance += (squares - sum * sum / spp) / (spp - 1);
+            const double variance = (squares - sum * sum / spp) / (spp - 1);
+            e.variance += variance;
+            e.noise += std::sqrt(std::max(0., variance));
         }
     const double pixels = double(region.Area());
     e.error = std::sqrt(e.variance / spp) / pixels;
@@ -186,7 +193,7 @@ TEST(Learning, KeepsTheMeanOfTheWholeImage) {
     }
 }
 
-// A ball of fog in that room, and fog about the camera.
+// A ball of fog in the room, and fog about the camera.
 TEST(Learning, KeepsTheMeanInMedia) {
     const std::string fog =
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.05 .1 .2] "
@@ -196,19 +203,39 @@ TEST(Learning, KeepsTheMeanInMedia) {
         "Shape \"sphere\" \"float radius\" .6\nAttributeEnd\n";
     const std::string view = "0 0 -0.9  0 0 0  0 1 0\n";
     const auto inside =
-        MakeScene(kRoom, 16, view + fog + "MediumInterface \"\" \"fog\"", 30, "volpath");
-    const auto outside = MakeScene(fog + ball + kRoom, 16, view, 30, "volpath");
+        MakeScene(kWalls, 32, view + fog + "MediumInterface \"\" \"fog\"", 30, "volpath");
+    const auto outside = MakeScene(fog + ball + kWalls, 32, view, 30, "volpath");
     for (const Scene* scene : {inside.get(), outside.get()}) {
         ASSERT_TRUE(scene->isVolumetric);
         ASSERT_FALSE(WhyNotGuided(*scene, Estimator::Combined));
-        LearningRender render(*scene, RenderFor(130));
+        LearningRender render(*scene, RenderFor(300));
         render.Run();
-        const Estimate pbrt = Measure(*scene, SamplesOf(*scene, Estimator::PbrtV3), 200, 4);
-        const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 120, 5);
-        const Estimate guided = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 120, 6);
+        const Estimate pbrt = Measure(*scene, SamplesOf(*scene, Estimator::PbrtV3), 80, 4);
+        const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 60, 5);
+        const Estimate guided = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 60, 6);
         EXPECT_EQ(guided.rejected, 0);
         EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
         EXPECT_NEAR(guided.mean, pbrt.mean, 4 * std::hypot(pbrt.error, guided.error));
+        EXPECT_LT(guided.noise, 0.85 * plain.noise);
+    }
+}
+
+// A large ball of wax in the room, smooth and rough: paths that leave it are guided.
+TEST(Learning, KeepsTheMeanBelowSurfaces) {
+    for (const char* rough : {"", "\"float uroughness\" .3 \"float vroughness\" .2"}) {
+        const auto scene = MakeScene(
+            fmt::format("{}AttributeBegin\nMaterial \"subsurface\" \"rgb sigma_a\" [.1 .2 "
+                        ".4] \"rgb sigma_s\" [20 18 15] {}\nTranslate -.1 -.1 .4\n"
+                        "Shape \"sphere\" \"float radius\" .6\nAttributeEnd\n",
+                        kWalls, rough),
+            32);
+        LearningRender render(*scene, RenderFor(300));
+        render.Run();
+        const Estimate plain = Measure(*scene, SamplesOf(*scene, Estimator::Combined), 60, 5);
+        const Estimate guided = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 60, 6);
+        EXPECT_EQ(guided.rejected, 0);
+        EXPECT_NEAR(guided.mean, plain.mean, 4 * std::hypot(plain.error, guided.error));
+        EXPECT_LT(guided.noise, 0.85 * plain.noise);
     }
 }
 
