@@ -1,6 +1,7 @@
 #include "renderer/render/block_judge_internal.h"
 
 #include "renderer/base/thread_clock.h"
+#include "renderer/render/guide_learning.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/signals/lightness_noise.h"
@@ -84,6 +85,7 @@ std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOpt
 BlockJudge::BlockJudge(const RenderOptions& options, const Film& film,
                        std::span<const Block> blocks, const RenderState* interrupted)
     : film(film),
+      learner(options.learner),
       schedule(options.schedule),
       hasClock(options.secondsLeft),
       criteria(MakeCriteria(options, film.Region(), blocks, interrupted)) {}
@@ -103,7 +105,8 @@ Judgement BlockJudge::Judge(int index, const Block& block, int spp, double secon
     BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
     view.spp = spp;
     view.seconds = seconds;
-    Judgement judgement;
+    if (learner) view.variance = learner->Variance(film, block.pixels);
+    Judgement judgement{.variance = view.variance};
     if (criterion) judgement.decision = criterion->Observe(view);
     judgement.answer.stop = judgement.decision.stop;
     if (hasClock)

@@ -10,8 +10,9 @@ namespace lull {
 // Holds what is said of a block after a pass.
 struct Judgement {
     BlockAnswer answer;
-    Decision decision;   // of the criterion, which may not have looked at the block
-    double seconds = 0;  // of processors, that it took, the view of the pixels included
+    Decision decision;    // of the criterion, which may not have looked at the block
+    double variance = 1;  // as the criterion was told, see BlockView
+    double seconds = 0;   // of processors, that it took, the view of the pixels included
 };
 
 // Nobody else touches a block between the end of its pass and the decision, so that blocks can be
@@ -37,6 +38,7 @@ class BlockJudge {
                      const std::function<void(int block, FilmView*)>& complete);
 
     const Film& film;
+    const GuideLearner* learner;  // null: paths are not guided
     const ScheduleOptions schedule;
     const bool hasClock;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote

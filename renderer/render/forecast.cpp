@@ -62,7 +62,7 @@ double UsualSlope(std::span<const StopTrend> trends, double certain) {
 }
 
 // Returns 1/N, and 0 where there is no picture at N spp that noise is compared with.
-double InverseOf(int reference) { return reference > 0 ? 1.0 / reference : 0; }
+double InverseOf(double reference) { return reference > 0 ? 1.0 / reference : 0; }
 
 // Says at which spp a block stops, without regard to the cap.
 struct Stop {
@@ -90,15 +90,17 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
 }  // namespace
 
 double StopTrend::Abscissa(double spp) const {
-    return -std::log(std::max(1 / spp - InverseOf(rule.reference), 1e-9));
+    return -std::log(std::max(1 / spp - InverseOf(Reference()), 1e-9));
 }
 
 double StopTrend::SppAt(double abscissa) const {
-    return 1 / (std::exp(-abscissa) + InverseOf(rule.reference));
+    return 1 / (std::exp(-abscissa) + InverseOf(Reference()));
 }
 
-void StopTrend::Add(int spp, const Decision& decision) {
+void StopTrend::Add(int spp, const Decision& decision, double newVariance) {
     if (rule.undecided > 0 && !decision.noise) return;
+    if (newVariance != variance) bins = {};
+    variance = newVariance;
     const double level = Level(rule, decision);
     Bin& bin = bins[size_t(PlaceOf(spp))];
     bin.abscissa += float(Abscissa(spp));

@@ -19,8 +19,10 @@ class StopTrend {
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
     // Notes what the criterion said when it looked at the block at `spp` > 0, which increases. A
-    // decision without the noise that is followed (one from a checkpoint) says nothing.
-    void Add(int spp, const Decision& decision);
+    // decision without the noise that is followed (one from a checkpoint) says nothing. `variance`
+    // is what the criterion was told (BlockView); once it is another, what went before is
+    // forgotten.
+    void Add(int spp, const Decision& decision, double variance = 1);
 
     // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
     // above `certain` are left out: a network that is as sure as it can be does not say by how
@@ -48,6 +50,8 @@ class StopTrend {
     int VotesLeft() const;
 
   private:
+    double Reference() const { return variance * rule.reference; }
+
     static constexpr int kBinsPerOctave = 8, kBins = 24 * kBinsPerOctave;
     static int PlaceOf(int spp);
 
@@ -56,6 +60,7 @@ class StopTrend {
     };
 
     RuleTrend rule;
+    double variance = 1;
     std::array<Bin, kBins> bins = {};
     int lastSpp = 0, spacing = 0, votes = 0;
     double threshold = 0, highest = 0;

@@ -65,7 +65,8 @@ struct Learning {
     int64_t samples = 0;  // of the film when the round began
     GuideState state;     // empty while nothing is recorded
     Guide guide;          // when learning is done and it is to be used
-    GuideTally tally;     // of auto, until it has decided
+    GuideTally tally;     // of auto, until learning is done
+    std::vector<TileNoise> noise;  // of auto: of the last round; empty until it has decided
     GuideFigures figures;
 
     bool IsDone() const { return end == noRoundEnd; }
@@ -94,6 +95,10 @@ class GuideLearner {
     int RoundEnd() const { return learning.end; }
     bool IsDone() const { return learning.IsDone(); }
 
+    // Returns the variance of a sample in a part of the film, as things are now, over that without
+    // a guide: at the most, see SureVariance(); 1 where that is not known, as with `on`.
+    double Variance(const Film&, const PixelRect& part) const;
+
     // Returns where the samples of this round are to be counted, by tiles of the film; null: nobody
     // wants to know. Has to be asked once a pass, with no thread at work in that tile.
     SampleSpread* SpreadOf(const Film&, const PixelRect& tile);
@@ -110,6 +115,7 @@ class GuideLearner {
     bool Begin(const Film&);
     bool Learn(const Film&);
     bool IsTrial() const;
+    bool Compares() const;
     bool Decide(const Film&);
     int RoundLength(int round) const;
     bool Finish(bool isUsed, const std::string& why);

@@ -8,7 +8,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t kTag = 0x33756c67;
+constexpr uint32_t kTag = 0x34756c67;
 
 constexpr const char* kDamaged = "its guide is damaged";
 
@@ -116,6 +116,7 @@ std::vector<std::byte> SaveLearning(const Learning& learning) {
     writer.PutVector(learning.state.record.leaves);
     writer.PutVector(learning.tally.unguided);
     writer.PutVector(learning.tally.guided);
+    writer.PutVector(learning.noise);
     return std::move(writer.bytes);
 }
 
@@ -139,6 +140,10 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
     learning.tally.unguided = reader.GetVector<SampleSpread>(kDamaged);
     learning.tally.guided = reader.GetVector<SampleSpread>(kDamaged);
+    learning.noise = reader.GetVector<TileNoise>(kDamaged);
+    for (const TileNoise& tile : learning.noise)
+        if (!(tile.unguided >= 0 && tile.guided >= 0 && tile.unguided + tile.guided < kInfinity))
+            Refuse();
     reader.Finish();
     const bool records = !learning.IsDone() && learning.round > 0;
     const bool fits =

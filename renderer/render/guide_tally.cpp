@@ -26,38 +26,73 @@ std::vector<double> LuminanceOf(const Film& film) {
     return luminance;
 }
 
+// Compares the noise of tiles. The error of a ratio of means is to first order (Cochran 1977, eq.
+// 2.39).
+struct NoiseRatio {
+    double ratio = 1, error = 0;  // of noise
+    int tiles = 0;                // that have both
+};
+
+NoiseRatio RatioOf(std::span<const TileNoise> noise) {
+    NoiseRatio r;
+    double unguided = 0, guided = 0;
+    for (const TileNoise& tile : noise) {
+        r.tiles += tile.unguided > 0 || tile.guided > 0;
+        unguided += double(tile.unguided);
+        guided += double(tile.guided);
+    }
+    if (r.tiles < 2 || !(unguided > 0)) return r;
+    r.ratio = guided / unguided;
+    double squares = 0;
+    for (const TileNoise& tile : noise)
+        squares += Sqr(double(tile.guided) - r.ratio * double(tile.unguided));
+    r.error = std::sqrt(squares * r.tiles / (r.tiles - 1)) / unguided;
+    return r;
+}
+
 }  // namespace
 
-GuideComparison GuideTally::Compare(const Film& film) const {
-    struct Noise {
-        double unguided, guided;
-    };
-    std::vector<Noise> noise;
-    Noise sum{0, 0}, vertices{0, 0};
+std::vector<TileNoise> GuideTally::Noise(const Film& film) const {
+    std::vector<TileNoise> noise(std::min(unguided.size(), guided.size()));
     const std::vector<double> luminance = LuminanceOf(film);
+    for (size_t i = 0; i < noise.size(); ++i) {
+        const SampleSpread &a = unguided[i], &b = guided[i];
+        if (a.freedom <= 0 || b.freedom <= 0) continue;
+        const double slope = SlopeUpToWhite(luminance[i]);
+        const TileNoise both{float(slope * std::sqrt(a.squares / double(a.freedom))),
+                             float(slope * std::sqrt(b.squares / double(b.freedom)))};
+        if (both.unguided + both.guided < kInfinity) noise[i] = both;
+    }
+    return noise;
+}
+
+GuideComparison GuideTally::Compare(const Film& film) const {
+    double unguidedVertices = 0, guidedVertices = 0;
     for (size_t i = 0; i < unguided.size() && i < guided.size(); ++i) {
         const SampleSpread &a = unguided[i], &b = guided[i];
         if (a.freedom <= 0 || b.freedom <= 0) continue;
-        vertices.unguided += double(a.vertices) / double(a.samples);
-        vertices.guided += double(b.vertices) / double(b.samples);
-        const double slope = SlopeUpToWhite(luminance[i]);
-        const Noise both{slope * std::sqrt(a.squares / double(a.freedom)),
-                         slope * std::sqrt(b.squares / double(b.freedom))};
-        if (!(both.unguided + both.guided < INFINITY)) continue;
-        noise.push_back(both);
-        sum.unguided += both.unguided;
-        sum.guided += both.guided;
+        unguidedVertices += double(a.vertices) / double(a.samples);
+        guidedVertices += double(b.vertices) / double(b.samples);
     }
     GuideComparison comparison;
-    if (vertices.unguided > 0) comparison.vertices = vertices.guided / vertices.unguided;
-    if (noise.size() < 2 || !(sum.unguided > 0)) return comparison;
-    // The error of a ratio of means, to first order (Cochran 1977, eq. 2.39).
-    const double ratio = sum.guided / sum.unguided, count = double(noise.size());
-    double squares = 0;
-    for (const Noise& tile : noise) squares += Sqr(tile.guided - ratio * tile.unguided);
-    comparison.variance = ratio * ratio;
-    comparison.error = 2 * ratio * std::sqrt(squares * count / (count - 1)) / sum.unguided;
+    if (unguidedVertices > 0) comparison.vertices = guidedVertices / unguidedVertices;
+    const NoiseRatio noise = RatioOf(Noise(film));
+    comparison.variance = Sqr(noise.ratio);
+    comparison.error = 2 * noise.ratio * noise.error;
     return comparison;
+}
+
+double SureVariance(std::span<const TileNoise> noise, const Film& film, const PixelRect& part) {
+    std::vector<char> isIn(noise.size());
+    for (int y = part.min.y(); y < part.max.y(); ++y)
+        for (int x = part.min.x(); x < part.max.x(); ++x)
+            if (const size_t tile = film.TileAt({x, y}); tile < isIn.size()) isIn[tile] = 1;
+    std::vector<TileNoise> of;
+    for (size_t i = 0; i < noise.size(); ++i)
+        if (isIn[i]) of.push_back(noise[i]);
+    const NoiseRatio r = RatioOf(of);
+    if (r.tiles < kTilesEnough) return 1;
+    return std::clamp(Sqr(r.ratio) + 2 * 2 * r.ratio * r.error, 1e-3, 1.);
 }
 
 }  // namespace lull

@@ -1,7 +1,7 @@
 // Compares guided samples with unguided ones: how noisy they are, and how long their paths.
 #pragma once
 
-#include <array>
+#include <span>
 #include <vector>
 
 #include "renderer/film/film.h"
@@ -23,14 +23,27 @@ struct GuideComparison {
     double vertices = 1;  // of a path
 };
 
+// Standard deviations of a sample of a tile, in lightness; both 0 where there are not samples of
+// both kinds, and where the display is saturated.
+struct TileNoise {
+    float unguided = 0, guided = 0;
+};
+
 // Samples of both kinds, tile by tile, as the film has tiles.
 struct GuideTally {
     std::vector<SampleSpread> unguided, guided;
 
-    // Noise is the standard deviation in lightness of a sample, the mean over tiles: so the few
-    // tiles where fireflies are do not decide, nor those that the display saturates. Only tiles
-    // that have samples of both kinds count.
+    // Returns the noise of each tile.
+    std::vector<TileNoise> Noise(const Film&) const;
+    // Compares all of them. Noise is the mean over tiles, of both kinds: so the few where fireflies
+    // are do not decide.
     GuideComparison Compare(const Film&) const;
 };
+
+// Returns what is surely, to two standard errors, no less than the variance of guided samples over
+// that of unguided ones in a part of the film, whose tiles are `noise`: in (0, 1], and 1 where
+// fewer than kTilesEnough say so.
+double SureVariance(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
+inline constexpr int kTilesEnough = 8;
 
 }  // namespace lull

@@ -51,7 +51,7 @@ void ProgressLedger::AddJudgement(int block, int spp, const Judgement& judgement
     if (!judgement.decision.judged) return;
     result.decisions.push_back({spp, judgement.decision});
     std::lock_guard lock(mutex);
-    if (!trends.empty()) trends[size_t(block)].Add(spp, judgement.decision);
+    if (!trends.empty()) trends[size_t(block)].Add(spp, judgement.decision, judgement.variance);
 }
 
 TileEffort ProgressLedger::TakeEffort() {

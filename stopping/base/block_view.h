@@ -13,6 +13,9 @@ struct BlockView {
     // finite (other values lead to no NaN, but to meaningless results). The half mean is the mean
     // over one fixed half of the samples.
     std::span<const float> mean = {}, halfMean = {};
+    // The variance of a sample over that of samples as people judged them, in lightness, where it
+    // is known to be less: in (0, 1].
+    double variance = 1;
     // What the samples so far and this view have cost, in seconds of processors, for those who
     // measure rules. A rule that used them would not give the same image twice.
     double seconds = 0, viewSeconds = 0;

@@ -22,8 +22,8 @@ bool BlockMemory::Complete(BlockMeasures* measures) {
         const std::vector<double>& entropies = measures->Of(EntropyOf(kDrops[i]));
         auto drop =
             kDrops[i] == Feature::VisibleDrop
-                ? AddVisible(measures->spp, entropies, measures->lightness, settings.visibility,
-                             &drops[i])
+                ? AddVisible(measures->spp, entropies, measures->lightness,
+                             VisibilityWith(measures->variance, settings.visibility), &drops[i])
                 : drops[i].Add(measures->spp, entropies, std::vector<double>(entropies.size(), 1));
         complete = complete && drop;
         if (drop) measures->Of(kDrops[i]) = std::move(*drop);

@@ -108,7 +108,7 @@ ViewNeed NeedOf(const ModelSettings& settings) {
 
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
     CheckView(view, NeedOf(settings));
-    BlockMeasures measures{.spp = view.spp};
+    BlockMeasures measures{.spp = view.spp, .variance = view.variance};
     if (NeedsDisplayed(settings)) MeasureDisplayed(view, settings, &measures);
     if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
     if (Needs(settings, Feature::VisibleDrop))

@@ -18,6 +18,7 @@ inline constexpr int kMeasuredSubBlocks = 100;
 // empty if it is not asked for, and always for LogSpp.
 struct BlockMeasures {
     int spp = 0;
+    double variance = 1;  // as in BlockView
     std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
     SubBlockLightness lightness = {};  // for visible_drop
 

@@ -26,8 +26,8 @@ class EntropyGauge final : public Gauge {
     bool Add(int spp, Signals signals) override {
         looks.last = spp;
         const BlockMeasures& measures = std::get<BlockMeasures>(signals);
-        const auto visible =
-            AddVisible(spp, measures.Of(Feature::H), measures.lightness, visibility, &history);
+        const auto visible = AddVisible(spp, measures.Of(Feature::H), measures.lightness,
+                                        VisibilityWith(measures.variance, visibility), &history);
         if (visible) value = MeanVisible(*visible);
         return visible.has_value();
     }

@@ -34,6 +34,10 @@ struct NoiseVisibility {
 // not change what they saw.
 NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
 
+// Returns the visibility for samples that have `variance`, in (0, 1], times the variance of those
+// that people judged: here, variance * N spp have as little noise as what they compared with.
+NoiseVisibility VisibilityWith(double variance, NoiseVisibility visibility);
+
 // Holds the entropies of the sub-blocks of a picture, row-major, at some spp.
 struct EntropyState {
     int spp = 0;

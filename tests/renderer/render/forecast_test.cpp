@@ -45,6 +45,20 @@ TEST(PredictStops, FollowsAPowerOfTheSamples) {
     }
 }
 
+// From some spp on, samples have a quarter of the variance, and as much less of it is to be seen.
+TEST(PredictStops, FollowsWhatSamplesHaveBecome) {
+    const RuleTrend rule{.reference = 10000};
+    StopTrend trend(rule);
+    const auto value = [](int spp, double variance) {
+        return kThreshold * std::sqrt(variance * (1. / spp - 1 / (variance * 10000)) * 6000);
+    };
+    for (int spp = 20; spp < 300; spp += 20)
+        trend.Add(spp, {.judged = true, .value = value(spp, 1), .threshold = kThreshold});
+    for (int spp = 300; spp <= 700; spp += 20)
+        trend.Add(spp, {.judged = true, .value = value(spp, 0.25), .threshold = kThreshold}, 0.25);
+    EXPECT_NEAR(PredictOne(trend), 1 / (1 / 2500. + 1 / 1500.), 40);
+}
+
 TEST(PredictStops, BearsSinglePassesThatAreFarOff) {
     const auto value = [](int spp) {
         const double clean = kThreshold * std::sqrt(2000.0 / spp);

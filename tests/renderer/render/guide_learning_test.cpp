@@ -461,6 +461,7 @@ TEST(Learning, AutoGuidesWhereThatPays) {
     EXPECT_FALSE(plain.learner.Figures().isUsed);
     EXPECT_EQ(plain.learner.Figures().rounds, 3);
     EXPECT_EQ(plain.learner.Paths().guide, nullptr);
+    EXPECT_EQ(plain.learner.Variance(plain.film, RegionOf(*floor)), 1);
 
     const auto room = MakeScene(kRoom, 64);
     LearningRender guided(*room, RenderFor(320), {.mode = GuideMode::Auto});
@@ -469,6 +470,9 @@ TEST(Learning, AutoGuidesWhereThatPays) {
     EXPECT_TRUE(guided.learner.Figures().isUsed) << c.variance;
     EXPECT_LT(c.variance + 2 * c.error, 0.9);
     EXPECT_NEAR(c.vertices, 1, 0.2);
+    const double variance = guided.learner.Variance(guided.film, RegionOf(*room));
+    EXPECT_LT(variance, 0.95);
+    EXPECT_GT(variance, c.variance / 2);
 
     // What stops early is what it is without.
     LearningRender few(*room, RenderFor(200), {.mode = GuideMode::Auto});

@@ -59,6 +59,25 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
     EXPECT_NEAR(half / once, 4, 0.8);
 }
 
+// Blocks with as little noise at a quarter of the spp stop at about a quarter, if the rule knows.
+TEST(EntropyRule, HeedsTheVarianceOfSamples) {
+    const auto stop = [](double variance, double told) {
+        const auto rule = MakeVoting(EntropyRule(0.4, {}, 20));
+        for (int spp = 20; spp <= 10000; spp += 20) {
+            BlockImage block = NoisyBlock(100, 100, 0.5, int(spp / variance), unsigned(spp));
+            BlockView view = block.At(spp);
+            view.variance = told;
+            if (rule->Observe(view).stop) return spp;
+        }
+        return 10020;
+    };
+    const int judged = stop(1, 1);
+    EXPECT_GT(judged, 4000);
+    EXPECT_LT(judged, 10000);
+    EXPECT_NEAR(4. * stop(0.25, 0.25) / judged, 1, 0.06);
+    EXPECT_GT(4. * stop(0.25, 1) / judged, 1.25);
+}
+
 TEST(EntropyRule, LooksWhereRecordingsHavePasses) {
     for (const int spp : {20, 60, 100, 420, 9980}) EXPECT_TRUE(EntropyRuleLooks(spp, 20)) << spp;
     for (const int spp : {40, 80, 400, 10000}) EXPECT_FALSE(EntropyRuleLooks(spp, 20)) << spp;
