@@ -11,7 +11,7 @@ Film TwoBlocks() {
     return film;
 }
 
-constexpr PixelRect kLeft = {{0, 0}, {16, 16}}, kRight = {{16, 0}, {32, 16}};
+const PixelRect kLeft = {{0, 0}, {16, 16}}, kRight = {{16, 0}, {32, 16}};
 
 // Calls set(tile's noise, whether it is in the right block) for each tile.
 std::vector<TileNoise> NoiseOf(const Film& film, const auto& set) {

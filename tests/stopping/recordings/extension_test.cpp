@@ -94,7 +94,7 @@ struct Prediction {
 Prediction PredictFrom(double share, const Simulator& rule) {
     double sum = 0, squares = 0;
     int count = 0;
-    for (const char* name : {"living-room-view0", "contemporary-bathroom-view0"})
+    for (const char* name : {"living-room-view0", "contemporary-bathroom"})
         for (const ViewpointRecording& viewpoint :
              ReadDataset(LULL_SOURCE_DIR "/stopping/data/" + std::string(name) + ".h5"))
             for (const auto& [number, recording] : viewpoint.blocks) {
