@@ -103,11 +103,9 @@ int GuideLearner::RoundLength(int round) const {
     return learning.decided > 0 ? pace << (round - learning.decided) : pace;
 }
 
-bool GuideLearner::IsTrial() const { return Compares() && learning.decided == 0; }
-
-// Says whether samples are counted.
-bool GuideLearner::Compares() const {
-    return options.mode == GuideMode::Auto && learning.round > 0 && !IsDone();
+bool GuideLearner::IsTrial() const {
+    return options.mode == GuideMode::Auto && learning.round > 0 && learning.decided == 0 &&
+           !IsDone();
 }
 
 double GuideLearner::Variance(const Film& film, const PixelRect& part) const {
@@ -115,7 +113,7 @@ double GuideLearner::Variance(const Film& film, const PixelRect& part) const {
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
-    if (!Compares()) return nullptr;
+    if (!IsTrial()) return nullptr;
     const int round = learning.round;
     if (round == 1) return &learning.tally.unguided[film.TileAt(tile.min)];
     if (round >= kFirstDecision) return &learning.tally.guided[film.TileAt(tile.min)];
@@ -160,14 +158,18 @@ bool GuideLearner::Decide(const Film& film) {
         learning.decided = learning.round;
     else if ((c.variance - 2 * c.error) * work > 1 || learning.round >= kLastDecision)
         return false;
+    if (learning.decided > 0) {
+        learning.noise = learning.tally.Noise(film);
+        learning.tally = {};
+    } else {
+        learning.tally.guided.assign(learning.tally.guided.size(), {});
+    }
     return true;
 }
 
 bool GuideLearner::Learn(const Film& film) {
     if (IsTrial() && learning.round >= kFirstDecision && !Decide(film))
         return Finish(false, "variance times work is not surely below what it is without");
-    if (learning.decided > 0) learning.noise = learning.tally.Noise(film);
-    learning.tally.guided.assign(learning.tally.guided.size(), {});
     GuideFigures& figures = learning.figures;
     const bool isUsed = options.mode == GuideMode::On || learning.decided > 0;
     const int most = options.isShort ? kMostWithClock : kMost;
@@ -217,7 +219,8 @@ std::vector<std::byte> GuideLearner::Save() const { return SaveLearning(learning
 void GuideLearner::Take(std::span<const std::byte> bytes, const Film& film) {
     Learning taken = RestoreLearning(bytes);
     const bool isAuto = options.mode == GuideMode::Auto;
-    const size_t compared = isAuto && taken.round > 0 && !taken.IsDone() ? film.TileCount() : 0;
+    const bool compares = isAuto && taken.round > 0 && taken.decided == 0 && !taken.IsDone();
+    const size_t compared = compares ? film.TileCount() : 0;
     const size_t known = isAuto && taken.decided > 0 ? film.TileCount() : 0;
     if (taken.tally.unguided.size() != compared || taken.tally.guided.size() != compared ||
         taken.noise.size() != known)

@@ -65,8 +65,8 @@ struct Learning {
     int64_t samples = 0;  // of the film when the round began
     GuideState state;     // empty while nothing is recorded
     Guide guide;          // when learning is done and it is to be used
-    GuideTally tally;     // of auto, until learning is done
-    std::vector<TileNoise> noise;  // of auto: of the last round; empty until it has decided
+    GuideTally tally;     // of auto, until it has decided
+    std::vector<TileNoise> noise;  // what the tally then said, where guides pay
     GuideFigures figures;
 
     bool IsDone() const { return end == noRoundEnd; }
@@ -115,7 +115,6 @@ class GuideLearner {
     bool Begin(const Film&);
     bool Learn(const Film&);
     bool IsTrial() const;
-    bool Compares() const;
     bool Decide(const Film&);
     int RoundLength(int round) const;
     bool Finish(bool isUsed, const std::string& why);
