@@ -9,7 +9,7 @@ std::span<const TrainingPreset> TrainingPresets() {
                                                            .pools = {{Pool::PowerMean, 1}},
                                                            .spacing = Spacing::Geometric,
                                                            .ratio = 1.4142,
-                                                           .visibility = {.mask = 1e9}},
+                                                           .visibility = {.mask = 1e9, .flare = 0}},
                                               .training = {.units = {8, 4},
                                                            .dropout = 0,
                                                            .learningRate = 0.003,
