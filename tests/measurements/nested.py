@@ -63,7 +63,7 @@ def nested(o):
 if __name__ == '__main__':
     p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     p.add_argument('lull'), p.add_argument('human'), p.add_argument('data', nargs='+')
-    p.add_argument('--grid', default='mask 24 40 1e9; noisy-weight 1 1.4 2; nearness 0.25 0.35 0.5')
+    p.add_argument('--grid', default='mask 40 1e9; noisy-weight 1 1.4; nearness 0.25 0.35 0.5; flare 0 0.02 0.05')
     p.add_argument('--keep', default='nested')
     o = p.parse_args()
     os.makedirs(o.keep, exist_ok=True)
