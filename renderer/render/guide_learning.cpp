@@ -109,7 +109,7 @@ bool GuideLearner::IsTrial() const {
 }
 
 double GuideLearner::Variance(const Film& film, const PixelRect& part) const {
-    return learning.noise.empty() ? 1 : SureVariance(learning.noise, film, part);
+    return learning.noise.empty() ? 1 : VarianceOf(learning.noise, film, part);
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {

@@ -96,7 +96,7 @@ class GuideLearner {
     bool IsDone() const { return learning.IsDone(); }
 
     // Returns the variance of a sample in a part of the film, as things are now, over that without
-    // a guide: at the most, see SureVariance(); 1 where that is not known, as with `on`.
+    // a guide, see VarianceOf(); 1 where that is not known, as with `on`.
     double Variance(const Film&, const PixelRect& part) const;
 
     // Returns where the samples of this round are to be counted, by tiles of the film; null: nobody

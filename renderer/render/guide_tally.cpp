@@ -82,7 +82,7 @@ GuideComparison GuideTally::Compare(const Film& film) const {
     return comparison;
 }
 
-double SureVariance(std::span<const TileNoise> noise, const Film& film, const PixelRect& part) {
+double VarianceOf(std::span<const TileNoise> noise, const Film& film, const PixelRect& part) {
     std::vector<char> isIn(noise.size());
     for (int y = part.min.y(); y < part.max.y(); ++y)
         for (int x = part.min.x(); x < part.max.x(); ++x)
@@ -92,7 +92,7 @@ double SureVariance(std::span<const TileNoise> noise, const Film& film, const Pi
         if (isIn[i]) of.push_back(noise[i]);
     const NoiseRatio r = RatioOf(of);
     if (r.tiles < kTilesEnough) return 1;
-    return std::clamp(Sqr(r.ratio) + 2 * 2 * r.ratio * r.error, 1e-3, 1.);
+    return std::clamp(Sqr(r.ratio) + 2 * r.ratio * r.error, 1e-3, 1.);
 }
 
 }  // namespace lull

@@ -40,10 +40,10 @@ struct GuideTally {
     GuideComparison Compare(const Film&) const;
 };
 
-// Returns what is surely, to two standard errors, no less than the variance of guided samples over
-// that of unguided ones in a part of the film, whose tiles are `noise`: in (0, 1], and 1 where
-// fewer than kTilesEnough say so.
-double SureVariance(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
+// Returns the variance of guided samples over that of unguided ones in a part of the film, whose
+// tiles are `noise`, and its standard error on top: in (0, 1], and 1 where fewer than kTilesEnough
+// say so.
+double VarianceOf(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
 inline constexpr int kTilesEnough = 8;
 
 }  // namespace lull

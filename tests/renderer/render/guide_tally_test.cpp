@@ -21,19 +21,19 @@ std::vector<TileNoise> NoiseOf(const Film& film, const auto& set) {
     return noise;
 }
 
-TEST(SureVariance, IsThatOfThePart) {
+TEST(VarianceOf, IsThatOfThePart) {
     const Film film = TwoBlocks();
     const auto noise = NoiseOf(film, [](TileNoise* tile, bool isRight) {
         *tile = {.unguided = 4, .guided = isRight ? 3.f : 2.f};
     });
-    EXPECT_DOUBLE_EQ(SureVariance(noise, film, kLeft), 0.25);
-    EXPECT_DOUBLE_EQ(SureVariance(noise, film, kRight), 0.5625);
-    const double both = SureVariance(noise, film, film.Region());
+    EXPECT_DOUBLE_EQ(VarianceOf(noise, film, kLeft), 0.25);
+    EXPECT_DOUBLE_EQ(VarianceOf(noise, film, kRight), 0.5625);
+    const double both = VarianceOf(noise, film, film.Region());
     EXPECT_GT(both, 0.390625);  // the ratio of the means, and doubt
     EXPECT_LT(both, 0.55);
 }
 
-TEST(SureVariance, AllowsForDoubt) {
+TEST(VarianceOf, AllowsForDoubt) {
     const Film film = TwoBlocks();
     for (const float scatter : {0.2f, 0.8f}) {
         int n = 0;
@@ -42,24 +42,24 @@ TEST(SureVariance, AllowsForDoubt) {
         });
         // 16 tiles with this deviation: the ratio has an error of scatter / 4 / sqrt(15).
         const double error = double(scatter) / 4 / std::sqrt(15);
-        EXPECT_NEAR(SureVariance(noise, film, kLeft), 0.25 + 4 * 0.5 * error, 1e-6);
+        EXPECT_NEAR(VarianceOf(noise, film, kLeft), 0.25 + 2 * 0.5 * error, 1e-6);
     }
 }
 
-TEST(SureVariance, IsOneWhereNothingIsSure) {
+TEST(VarianceOf, IsOneWhereNothingIsSure) {
     const Film film = TwoBlocks();
-    EXPECT_EQ(SureVariance({}, film, kLeft), 1);
+    EXPECT_EQ(VarianceOf({}, film, kLeft), 1);
     const auto worse =
         NoiseOf(film, [](TileNoise* tile, bool) { *tile = {.unguided = 2, .guided = 4}; });
-    EXPECT_EQ(SureVariance(worse, film, kLeft), 1);
+    EXPECT_EQ(VarianceOf(worse, film, kLeft), 1);
     int n = 0;
     const auto few = NoiseOf(film, [&](TileNoise* tile, bool isRight) {
         if (!isRight && n++ < kTilesEnough - 1) *tile = {.unguided = 4, .guided = 2};
     });
-    EXPECT_EQ(SureVariance(few, film, kLeft), 1);
-    EXPECT_EQ(SureVariance(few, film, kRight), 1);
+    EXPECT_EQ(VarianceOf(few, film, kLeft), 1);
+    EXPECT_EQ(VarianceOf(few, film, kRight), 1);
     const auto dark = NoiseOf(film, [](TileNoise* tile, bool) { *tile = {.unguided = 4}; });
-    EXPECT_GT(SureVariance(dark, film, kLeft), 0);
+    EXPECT_GT(VarianceOf(dark, film, kLeft), 0);
 }
 
 // Samples of two kinds, counted in tiles; what has samples of one kind only counts for nothing.
@@ -89,8 +89,8 @@ TEST(GuideTally, TellsNoiseInLightness) {
     EXPECT_NEAR(c.variance, 0.25, 1e-6);
     EXPECT_NEAR(c.error, 0, 1e-6);
     EXPECT_NEAR(c.vertices, 1.1, 1e-9);
-    EXPECT_NEAR(SureVariance(noise, film, kLeft), 0.25, 1e-6);
-    EXPECT_EQ(SureVariance(noise, film, kRight), 1);
+    EXPECT_NEAR(VarianceOf(noise, film, kLeft), 0.25, 1e-6);
+    EXPECT_EQ(VarianceOf(noise, film, kRight), 1);
 }
 
 }  // namespace
