@@ -138,7 +138,7 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
                   full = RunLull(directory, judge +
                                                 "--features visible_drop --pool mean --spacing "
                                                 "geometric --ratio 1.4142 --k 2 --units 8,4 "
-                                                "--dropout 0 --learning-rate 0.003 "
+                                                "--dropout 0 --learning-rate 0.003 --flare 0 "
                                                 "--balance-viewpoints --no-class-weights "
                                                 "--noisy-weight 1 --mask 1e9 --preset paper");
     EXPECT_EQ(brief.exitCode, 0) << brief.err;
