@@ -106,7 +106,8 @@ Judgement BlockJudge::Judge(int index, const Block& block, int spp, double secon
     view.spp = spp;
     view.seconds = seconds;
     if (learner) view.variance = learner->Variance(film, block.pixels);
-    Judgement judgement{.variance = view.variance};
+    Judgement judgement;
+    judgement.variance = view.variance;
     if (criterion) judgement.decision = criterion->Observe(view);
     judgement.answer.stop = judgement.decision.stop;
     if (hasClock)
