@@ -152,14 +152,15 @@ bool GuideLearner::Begin(const Film& film) {
 
 // Decides whether guides pay, if that is known by now. Returns false if they do not.
 bool GuideLearner::Decide(const Film& film) {
-    const GuideComparison c = learning.figures.comparison = learning.tally.Compare(film);
+    std::vector<TileNoise> noise = learning.tally.Noise(film);
+    const GuideComparison c = learning.figures.comparison = learning.tally.Compare(noise);
     const double work = c.vertices * kVertexCost;
     if ((c.variance + 2 * c.error) * work < 1)
         learning.decided = learning.round;
     else if ((c.variance - 2 * c.error) * work > 1 || learning.round >= kLastDecision)
         return false;
     if (learning.decided > 0) {
-        learning.noise = learning.tally.Noise(film);
+        learning.noise = std::move(noise);
         learning.tally = {};
     } else {
         learning.tally.guided.assign(learning.tally.guided.size(), {});

@@ -66,7 +66,7 @@ std::vector<TileNoise> GuideTally::Noise(const Film& film) const {
     return noise;
 }
 
-GuideComparison GuideTally::Compare(const Film& film) const {
+GuideComparison GuideTally::Compare(std::span<const TileNoise> noise) const {
     double unguidedVertices = 0, guidedVertices = 0;
     for (size_t i = 0; i < unguided.size() && i < guided.size(); ++i) {
         const SampleSpread &a = unguided[i], &b = guided[i];
@@ -76,9 +76,9 @@ GuideComparison GuideTally::Compare(const Film& film) const {
     }
     GuideComparison comparison;
     if (unguidedVertices > 0) comparison.vertices = guidedVertices / unguidedVertices;
-    const NoiseRatio noise = RatioOf(Noise(film));
-    comparison.variance = Sqr(noise.ratio);
-    comparison.error = 2 * noise.ratio * noise.error;
+    const NoiseRatio r = RatioOf(noise);
+    comparison.variance = Sqr(r.ratio);
+    comparison.error = 2 * r.ratio * r.error;
     return comparison;
 }
 

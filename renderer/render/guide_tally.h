@@ -35,9 +35,9 @@ struct GuideTally {
 
     // Returns the noise of each tile.
     std::vector<TileNoise> Noise(const Film&) const;
-    // Compares all of them. Noise is the mean over tiles, of both kinds: so the few where fireflies
-    // are do not decide.
-    GuideComparison Compare(const Film&) const;
+    // Compares all tiles, whose noise is `noise`. It counts as its mean over tiles, of both kinds:
+    // so the few where fireflies are do not decide.
+    GuideComparison Compare(std::span<const TileNoise> noise) const;
 };
 
 // Returns the variance of guided samples over that of unguided ones in a part of the film, whose

@@ -7,8 +7,7 @@ namespace {
 
 // A film of 16 tiles in each of two blocks.
 Film TwoBlocks() {
-    Film film({{0, 0}, {32, 16}}, {.grid = {.blockSize = 16, .tileSize = 4}, .withHalf = false});
-    return film;
+    return Film({{0, 0}, {32, 16}}, {.grid = {.blockSize = 16, .tileSize = 4}, .withHalf = false});
 }
 
 const PixelRect kLeft = {{0, 0}, {16, 16}}, kRight = {{16, 0}, {32, 16}};
@@ -85,7 +84,7 @@ TEST(GuideTally, TellsNoiseInLightness) {
     EXPECT_NEAR(grey.unguided, 2 * 116. / 3 * std::pow(0.5, -2. / 3), 1e-3);
     EXPECT_NEAR(grey.guided, grey.unguided / 2, 1e-4);
     EXPECT_EQ(white.unguided, 0);
-    const GuideComparison c = tally.Compare(film);
+    const GuideComparison c = tally.Compare(noise);
     EXPECT_NEAR(c.variance, 0.25, 1e-6);
     EXPECT_NEAR(c.error, 0, 1e-6);
     EXPECT_NEAR(c.vertices, 1.1, 1e-9);
