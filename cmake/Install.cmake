@@ -12,7 +12,7 @@ install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull COMPONENT 
 install(FILES ${models} DESTINATION ${lull_data}/models COMPONENT python)
 install(TARGETS lull_stopping lull_denoising EXPORT lullTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT python)
-install(FILES stopping/embedding/include/lull/stopping.h renderer/embedding/include/lull/denoising.h
+install(FILES stopping/embedding/include/lull/stopping.h renderer/denoise/embedding/include/lull/denoising.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
 install(EXPORT lullTargets NAMESPACE lull:: DESTINATION ${lull_cmake})
 set(LULL_INSTALLED_MODELS ${lull_data}/models)

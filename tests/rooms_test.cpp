@@ -14,10 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // Returns the room of a path relative to the project: renderer/scene of
-// renderer/scene/geometry/shapes/mesh.h.
+// renderer/scene/geometry/shapes/mesh.h, stopping/lab/training of stopping/lab/training/training.h.
 std::string RoomOf(const std::string& path) {
-    const size_t folder = path.find('/');
-    return path.substr(0, path.find('/', folder + 1));
+    static const std::regex room("[^/]+/(lab/)?[^/]+");
+    std::smatch match;
+    return std::regex_search(path, match, room) ? match.str() : path;
 }
 
 bool IsPrivate(const std::string& header) {
@@ -99,12 +100,28 @@ TEST(Rooms, HaveAnOrderWithinScene) {
     EXPECT_EQ(LastFolderOf("renderer/scene/geometry/shapes/mesh.h"), 4);
 }
 
+// The laboratories stand beside what they examine: only they, their commands and the program's
+// table of commands may know of them.
+TEST(Rooms, DoWithoutTheLaboratories) {
+    int count = 0;
+    for (const char* house : {"renderer", "stopping"})
+        for (const std::string& file : SourcesIn(house)) {
+            if (file.find("/lab/") != std::string::npos) continue;
+            ++count;
+            for (const std::string& header : IncludesOf(file))
+                EXPECT_EQ(header.find("/lab/"), std::string::npos)
+                    << file << " includes " << header;
+        }
+    EXPECT_GT(count, 400);
+}
+
 TEST(Rooms, KnowWhatIsPrivate) {
     EXPECT_TRUE(IsPrivate("renderer/scene/geometry/shapes/mesh.h"));
     EXPECT_TRUE(IsPrivate("renderer/render/executor_internal.h"));
     EXPECT_FALSE(IsPrivate("renderer/scene/scene.h"));
     EXPECT_FALSE(IsPrivate("stopping/rules/criterion.h"));
     EXPECT_EQ(RoomOf("renderer/main.cpp"), "renderer/main.cpp");
+    EXPECT_EQ(RoomOf("stopping/lab/training/training.h"), "stopping/lab/training");
 }
 
 }  // namespace

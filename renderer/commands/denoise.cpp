@@ -8,8 +8,8 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/files/outputs.h"
-#include "renderer/measure/image_files.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/results/image_files.h"
 
 namespace lull {
 

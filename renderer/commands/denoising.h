@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/commands/talk.h"
-#include "renderer/measure/denoised_image.h"
+#include "renderer/results/denoised_image.h"
 
 namespace lull {
 

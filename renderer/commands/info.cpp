@@ -9,8 +9,8 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/scene_options.h"
 #include "renderer/files/file_contents.h"
-#include "renderer/measure/report.h"
 #include "renderer/render/progress.h"
+#include "renderer/results/report.h"
 
 namespace lull {
 

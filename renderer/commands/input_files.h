@@ -5,7 +5,7 @@
 
 #include "renderer/commands/scene_options.h"
 #include "renderer/files/outputs.h"
-#include "stopping/training/training_plan.h"
+#include "stopping/lab/training/training_plan.h"
 
 namespace lull {
 

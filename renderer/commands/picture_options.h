@@ -6,7 +6,7 @@
 
 #include "renderer/commands/talk.h"
 #include "renderer/film/display.h"
-#include "renderer/measure/image_files.h"
+#include "renderer/results/image_files.h"
 
 namespace lull {
 

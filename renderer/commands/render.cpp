@@ -21,11 +21,11 @@
 #include "renderer/commands/render_talk.h"
 #include "renderer/commands/session_options.h"
 #include "renderer/input/scene_hash.h"
-#include "renderer/measure/report.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/block_denoiser.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/render/half_buffer.h"
+#include "renderer/results/report.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 

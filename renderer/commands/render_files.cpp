@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "renderer/files/file_io.h"
-#include "renderer/measure/block_files.h"
-#include "renderer/measure/report.h"
 #include "renderer/pages/html_page.h"
+#include "renderer/results/block_files.h"
+#include "renderer/results/report.h"
 
 namespace lull {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "renderer/files/outputs.h"
-#include "renderer/measure/block_observer.h"
-#include "renderer/measure/image_files.h"
+#include "renderer/results/block_observer.h"
+#include "renderer/results/image_files.h"
 
 namespace lull {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "renderer/base/say.h"
-#include "renderer/measure/report.h"
-#include "renderer/measure/shortfall.h"
 #include "renderer/render/progress.h"
+#include "renderer/results/report.h"
+#include "renderer/results/shortfall.h"
 
 namespace lull {
 

@@ -1,8 +1,8 @@
 // Writes reports for people: one HTML file with everything in it, which opens from disk.
 #pragma once
 
-#include "renderer/measure/comparison.h"
-#include "renderer/measure/report_json.h"
+#include "renderer/results/block_observer.h"
+#include "renderer/results/report_json.h"
 
 namespace lull {
 

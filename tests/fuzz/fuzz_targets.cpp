@@ -11,12 +11,12 @@
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
-#include "stopping/evaluation/single_answers.h"
+#include "stopping/lab/evaluation/single_answers.h"
+#include "stopping/lab/observers/observers.h"
+#include "stopping/lab/training/search.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
-#include "stopping/observers/observers.h"
 #include "stopping/rules/thresholds.h"
-#include "stopping/training/search.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

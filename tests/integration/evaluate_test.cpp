@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "renderer/files/file_io.h"
-#include "stopping/recordings/dataset.h"
+#include "stopping/lab/recordings/dataset.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"
-#include "tests/stopping/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/channel_recordings.h"
 
 namespace lull {
 namespace {

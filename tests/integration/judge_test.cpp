@@ -1,10 +1,10 @@
 // Makes studies and collects answers; the page itself is used in judge_page.py.
 #include <gtest/gtest.h>
 
-#include "stopping/recordings/dataset.h"
+#include "stopping/lab/recordings/dataset.h"
 #include "stopping/rules/thresholds.h"
 #include "tests/integration/run_and_signal.h"
-#include "tests/stopping/observers/example_answers.h"
+#include "tests/stopping/lab/observers/example_answers.h"
 
 namespace lull {
 namespace {

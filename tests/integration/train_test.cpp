@@ -7,7 +7,7 @@
 #include "renderer/files/file_io.h"
 #include "stopping/network/model_file.h"
 #include "tests/integration/run_and_signal.h"
-#include "tests/stopping/recordings/made_up_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull {
 namespace {

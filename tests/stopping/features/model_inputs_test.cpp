@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "stopping/recordings/training_samples.h"
+#include "stopping/lab/recordings/training_samples.h"
 #include "stopping/rules/learned.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/signals/block_images.h"

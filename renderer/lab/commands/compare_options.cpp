@@ -1,0 +1,85 @@
+#include "renderer/lab/commands/compare_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFooter =
+    R"(With a scene and --snapshots, one render to the cap gives three images: "automatic", where RULE
+stopped each block, "human", where a thresholds file says, and the "reference" at the cap. Sample k
+of a pixel is always the same, so they are the images that three renders would give, bit for bit.
+With --reference instead, blocks are only rendered as far as the last of both. Without a scene,
+images rendered before are compared.
+
+With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
+denoised as a whole; its samples are rendered again for that. What looking and denoising take is
+counted as the rule's.
+
+Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
+lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
+8-bit image that a display shows; "seams", how much more the noise jumps across the borders of
+blocks than inside (1: not at all). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for
+displays, of which there are no linear figures. Seconds are of processors; "~" marks those that are
+estimated.
+
+Files, beside each other:
+  OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
+                       were rendered
+  OUT.thresholds.csv   samples per pixel at which the rule stopped each block
+  OUT.compare.json     all figures
+
+Examples:
+  lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
+  lull compare scene.pbrt --snapshots --denoise -o room
+  lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
+  lull compare --automatic a.exr --human h.exr --reference r.exr -o room
+  lull compare --automatic a.png --reference photo.jpg -o room
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+}  // namespace
+
+void AddCompareOptions(CLI::App& app, CompareOptions* o) {
+    AddRenderSettings(app, &o->render);
+    CLI::Option* scene = app.get_option("SCENE")->required(false);
+    auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")
+                     ->type_name("RULE")
+                     ->needs(scene)
+                     ->capture_default_str();
+    AddCautionOption(app, &o->render.caution);
+    app.add_option("--human", o->human, "Thresholds of people, or an image rendered with them")
+        ->type_name("H.csv[:NAME]|H.exr|H.png");
+    app.add_option("--automatic", o->automatic, "Image rendered before by an automatic rule")
+        ->type_name("A.exr|A.png")
+        ->excludes(scene)
+        ->excludes(stop);
+    auto* reference = app.add_option("--reference", o->reference, "Image to compare with")
+                          ->type_name("R.exr|R.png");
+    app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
+        ->needs(scene)
+        ->excludes(reference);
+    app.add_flag("--denoise", o->denoise,
+                 "Also make the image that `lull render --denoise` gives, \"denoised\"")
+        ->needs(scene);
+    app.add_option("--verify", o->verify,
+                   "Render the automatic image by itself as well, on each of these numbers of\n"
+                   "threads (0: all), and measure what the rule costs and saves")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 4096))
+        ->needs(scene)
+        ->type_name("N,N,...");
+    app.add_option("-o,--output", o->output,
+                   "Beginning of the names of the files to write, or their folder")
+        ->type_name("OUT|DIR/");
+    app.add_option("--report", o->report, "Write a page to look at")
+        ->check([](const std::string& file) {
+            return file.ends_with(".html") ? "" : file + " does not end in .html";
+        })
+        ->type_name("R.html");
+    AddCheckpointOptions(app, &o->render.checkpoint);
+    app.footer(kFooter);
+}
+
+}  // namespace lull

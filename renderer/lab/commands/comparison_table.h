@@ -1,0 +1,11 @@
+// Prints a comparison for people.
+#pragma once
+
+#include "renderer/lab/pages/comparison_page.h"
+
+namespace lull {
+
+// Returns the figures of the images, a line an image, and below what was saved.
+std::string ComparisonTable(const ComparisonReport&);
+
+}  // namespace lull

@@ -1,0 +1,159 @@
+// `lull dataset`: records what stopping rules can learn from.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "renderer/base/say.h"
+#include "renderer/commands/command.h"
+#include "renderer/commands/input_files.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/session_options.h"
+#include "renderer/files/file_io.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/lab/viewpoints/recorded_viewpoint.h"
+#include "renderer/mpi/job.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    RenderSettings render;
+    std::string name, output, human;
+    std::vector<int> blocks;  // empty: all
+    double past = 0;          // 0: every block goes on to the cap
+};
+
+constexpr const char* kFooter =
+    R"(Renders as the human thresholds were measured, with pbrt-v3's random sampler and its noise per
+sample, and records SVD-entropies, lightness and noise of every block at all passes up to 400 spp and
+at every second one after. Thresholds are no part of the file: `lull train` and `lull evaluate` join
+them by the viewpoint's name.
+
+Blocks that the file has already are left out, so the same command can be given again. Interrupted,
+it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
+
+Examples:
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
+  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+void AddOptions(CLI::App& app, Options* o) {
+    AddSceneOptions(app, &o->render.scene);
+    app.add_option("--name", o->name, "Name of the viewpoint, as in thresholds files")
+        ->required()
+        ->check(CheckViewpointName);
+    app.add_option("-o,--output", o->output, "Data set to make or add to")
+        ->required()
+        ->type_name("OUT.h5");
+    app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
+        ->delimiter(',')
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N,N,...");
+    auto* human = app.add_option("--human", o->human, "Thresholds of people, for --past")
+                      ->check(CLI::ExistingFile)
+                      ->type_name("H.csv");
+    app.add_option("--past", o->past, "End each block at this times its human threshold")
+        ->check(CLI::Range(0.1, 100.0))
+        ->type_name("X")
+        ->needs(human);
+    app.add_option("--cap", o->render.schedule.cap, "Samples per pixel at which all recordings end")
+        ->check(CLI::Range(1, 1 << 24))
+        ->type_name("N")
+        ->capture_default_str();
+    AddEstimatorOption(app, &o->render.estimator);
+    app.add_option("--seed", o->render.seed, "Another seed gives other, equally good, samples")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--checkpoint-interval", o->render.checkpoint.interval,
+                   "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors");
+    app.add_flag("--json-progress", o->render.jsonProgress,
+                 "Print progress as JSON, an object a line");
+    app.footer(kFooter);
+}
+
+std::string CheckpointName(const Options& options) {
+    return fmt::format("{}.{}.checkpoint", options.output, options.name);
+}
+
+ExitCode RunDataset(const Options& options, Job* job) {
+    const bool leads = job->Rank() == 0;  // prints, and writes files
+    const RenderSettings& settings = options.render;
+    SetWording(settings, job);
+    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
+    const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
+    if (leads) {
+        std::vector<NamedFile> inputs = InputsOf(settings.scene, input.description);
+        inputs.push_back({"--human", options.human});
+        CheckOutputs(std::vector<NamedFile>{{"-o", options.output},
+                                            {"the checkpoint", CheckpointName(options)}},
+                     inputs);
+    }
+    CheckRecordable(blocks, settings.schedule);
+
+    // Leave out what is there already.
+    std::vector<int> limits = RecordingLimits(blocks.size(), options.blocks, settings.schedule.cap);
+    if (options.past > 0) LimitByHuman(options.human, options.name, options.past, &limits);
+    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
+    const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
+    if (old != dataset.end())
+        for (const auto& [number, block] : old->blocks) limits.at(size_t(number)) = 0;
+    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
+        job->Begin("nothing");
+        job->End();
+        TalkOf(settings).Note(
+            fmt::format("{} has all blocks of '{}' already", options.output, options.name));
+        return kDone;
+    }
+
+    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
+    Provenance provenance = MakeProvenance(settings, *scene, input.film);
+    provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
+    const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
+    ViewpointRecording viewpoint =
+        MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
+    AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
+
+    ProgressPrinter printer = MakePrinter(settings, false);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
+    how.checkpoint = ResumeIfThere(CheckpointName(options), settings.checkpoint.interval);
+    how.identity = identity;
+    Session session(*scene, input.region, how);
+    session.Resume();
+    CatchInterrupts();
+    const RenderResult result =
+        session.Run([&](auto&&... render) { return RecordBlocks(render..., limits, &viewpoint); });
+    job->End();
+    if (!leads) return kDone;
+    printer.Finish(result.progress);
+    if (result.cancelled) return SayInterrupted(settings, CheckpointName(options));
+
+    AddToDataset(viewpoint, &dataset);
+    WriteFileAtomically(options.output, EncodeDataset(dataset));
+    std::filesystem::remove(CheckpointName(options));
+    fmt::print("{}\n", options.output);
+    return kDone;
+}
+
+}  // namespace
+
+void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
+    CLI::App* dataset = app.add_subcommand(
+        "dataset", "Records what stopping rules can learn from, viewpoint by viewpoint.");
+    auto options = std::make_shared<Options>();
+    // What people judged is pbrt-v3's own noise.
+    options->render.sampler = SamplerKind::Random;
+    options->render.estimator = Estimator::PbrtV3;
+    AddOptions(*dataset, options.get());
+    dataset->callback([=] { *command = [=] { return RunDataset(*options, job); }; });
+}
+
+}  // namespace lull

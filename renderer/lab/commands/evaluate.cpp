@@ -1,0 +1,222 @@
+// `lull evaluate`: judges stopping rules by the thresholds of people.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "renderer/commands/choice_option.h"
+#include "renderer/commands/command.h"
+#include "renderer/commands/input_files.h"
+#include "renderer/commands/render_settings.h"
+#include "renderer/commands/talk.h"
+#include "renderer/files/file_io.h"
+#include "renderer/lab/commands/answers_table.h"
+#include "renderer/lab/commands/evaluation_table.h"
+#include "stopping/lab/evaluation/judged_rules.h"
+#include "stopping/rules/rule_table.h"
+
+namespace lull {
+
+namespace {
+
+struct Options {
+    std::vector<std::string> datasets, predicted, rules, without;
+    std::string human, answers, csv;
+    bool rivals = false, brief = false;
+    ChooseBy chooseBy = ChooseBy::AbsoluteError;
+    JudgeOptions judge;
+    double caution = 1;
+};
+
+constexpr const char* kFooter =
+    R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
+have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
+rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
+
+--stop takes the rules of lull render. --rivals runs those that have one setting, each with the one
+that is best on the other viewpoints (leave one out); "setting" says which, and for all what would
+be best on all of them. "entropy, mask" is entropy with two settings that are chosen so: its
+threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
+
+Columns:
+  views   how many viewpoints, and in them
+  blocks  how many blocks were judged
+  open    recordings that ended, before 10,000 spp, when the rule had not stopped the block. Such
+          rules have two rows: "at least", with blocks taken to stop at these ends, which is the
+          least error if people wanted no more than was recorded; and "extended", with recordings
+          that go on by the laws that their own noise and entropies follow. Predicted thresholds
+          are taken as they are, and clipped to the ends in a row of their own.
+  ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
+          not, against the judgement of people, in %
+  error   mean distance from the human threshold, in spp, and in % of 10,000 spp
+  early   % of the blocks that stop below 80 % of the human threshold
+  late    % of the blocks that stop above 125 % of it
+  acc     accuracy of the decisions (noisy or not, by block and spp) in %, classes balanced
+  auc     area under their ROC curve in %, by the number that the rule compares; for those that
+          have none (fixed, thresholds, cycles) by its stop / spp
+All are means over the viewpoints, but acc and auc are of all decisions together.
+
+--answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
+The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
+spp of the picture that was shown, 1 where noise was seen. All rules are judged by the same answers.
+  loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
+          the rule's number (of its odds, for a network), with a location and a slope to be fitted
+  share   % of the way from one threshold for all blocks to one threshold a block, both with one
+          scatter in log spp
+  auc     area under the ROC curve in %, of the number
+  early   % of the blocks that stop below 80 % of the fitted threshold of the block, where noise is
+  late    seen half of the time, and above 125 % of it; level: mean stop / threshold (geometric)
+  open    stops beyond recordings, which go on by their own laws for them
+
+Examples:
+  lull evaluate --human human.csv --predicted predicted.csv --grid 40
+  lull evaluate data.h5 more.h5 --human human.csv --stop lnoise:0.5 --stop learned:model.h5
+  lull evaluate data.h5 more.h5 --human human.csv --rivals --predicted predicted.csv --brief
+  lull evaluate data.h5 --answers answers.csv --stop entropy --stop learned
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+
+void AddOptions(CLI::App& app, Options* o) {
+    app.add_option("DATASET.h5", o->datasets, "Recordings to run rules on")
+        ->check(CLI::ExistingFile);
+    CLI::Option* human = app.add_option("--human", o->human, "Thresholds of people")
+                             ->check(CLI::ExistingFile)
+                             ->type_name("H.csv");
+    app.add_option("--answers", o->answers, "Single answers of people to judge by instead")
+        ->check(CLI::ExistingFile)
+        ->excludes(human)
+        ->type_name("A.csv");
+    app.add_option("--predicted", o->predicted, "Thresholds to judge; can be given again")
+        ->check(CLI::ExistingFile)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("P.csv");
+    app.add_option("--stop", o->rules, "Rule to judge; can be given again")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("RULE");
+    AddCautionOption(app, &o->caution);
+    app.add_flag("--rivals", o->rivals,
+                 "Judge the rules that have one setting:\n" +
+                     RuleNames([](const Rule& rule) { return rule.sweep.largest > 0; }));
+    AddChoiceOption<ChooseBy>(
+        app, "--choose-by", &o->chooseBy,
+        {{"error", ChooseBy::AbsoluteError}, {"critical", ChooseBy::CriticalError}},
+        "error|critical",
+        "What the setting of a rival makes least: the error, or the critical error at 2 %");
+    app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME");
+    app.add_option("--grid", o->judge.grid, "Spp between the judgements of the critical error")
+        ->check(CLI::Range(1, kJudgedCap))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--margins", o->judge.margins, "Margins of the critical error in %")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 100.0))
+        ->type_name("M,M,...")
+        ->default_str("2,6,10");
+    app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
+    app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
+}
+
+std::vector<JudgedRule> JudgeFiles(const Options& options) {
+    const std::vector<ThresholdsRow> people = ReadHumanThresholds(options.human, options.without);
+    std::vector<JudgedRule> rules;
+    for (const std::string& path : options.predicted)
+        rules.push_back(
+            JudgeThresholds(path, options.human, people, options.judge.grid, PrintTalk));
+    return rules;
+}
+
+std::vector<JudgedRule> JudgeRecordings(const Options& options) {
+    const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+    return JudgeOnBlocks(ReadJudgedBlocks(viewpoints, options.human, options.without, PrintTalk),
+                         {.rivals = options.rivals,
+                          .chooseBy = options.chooseBy,
+                          .rules = options.rules,
+                          .context = {.models = ModelFolder(), .caution = options.caution},
+                          .predicted = options.predicted,
+                          .grid = options.judge.grid});
+}
+
+// Reads the recordings of the one viewpoint that answers are to.
+ViewpointRecording ReadViewpoint(const Options& options) {
+    std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+    for (const std::string& name : options.without)
+        if (std::erase_if(viewpoints, [&](const auto& v) { return v.name == name; }) == 0)
+            throw Error(fmt::format("--without: there is no viewpoint '{}'", name));
+    if (viewpoints.size() == 1) return std::move(viewpoints[0]);
+    std::string names;
+    for (const ViewpointRecording& v : viewpoints)
+        names += (names.empty() ? "'" : ", '") + v.name + "'";
+    throw Error(
+        fmt::format("--answers are to one viewpoint, but the data sets have {}; leave "
+                    "out others by --without",
+                    viewpoints.empty() ? "none" : names));
+}
+
+std::vector<NamedFile> InputsOf(const Options& options) {
+    std::vector<NamedFile> inputs = {{"--human", options.human}, {"--answers", options.answers}};
+    for (const std::string& file : options.datasets) inputs.push_back({"DATASET.h5", file});
+    for (const std::string& file : options.predicted) inputs.push_back({"--predicted", file});
+    for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
+    return inputs;
+}
+
+void RunByAnswers(const Options& options) {
+    const std::vector<SingleAnswer> answers = ReadSingleAnswers(options.answers);
+    const ViewpointRecording viewpoint = ReadViewpoint(options);
+    CheckBlocks(answers, viewpoint.blockCount, options.answers);
+    const AnswerJudgement judgement = JudgeByAnswers(
+        viewpoint, answers, options.rules, {.models = ModelFolder(), .caution = options.caution});
+    PrintAnswerJudgement(stdout, judgement, !options.brief);
+    if (!options.csv.empty()) WriteFileAtomically(options.csv, AnswerJudgementCsv(judgement));
+}
+
+ExitCode RunEvaluate(const Options& options) {
+    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv}}, InputsOf(options));
+    if (!options.answers.empty()) {
+        RunByAnswers(options);
+        return kDone;
+    }
+    const std::vector<JudgedRule> rules =
+        options.datasets.empty() ? JudgeFiles(options) : JudgeRecordings(options);
+    PrintEvaluation(stdout, rules, options.judge, !options.brief);
+    if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
+    return kDone;
+}
+
+// Throws a usage error if there is nothing to judge, or nothing to judge it on.
+void CheckUsage(const Options& options) {
+    const bool runs = options.rivals || !options.rules.empty();
+    if (!options.answers.empty()) {
+        if (options.datasets.empty() || options.rules.empty())
+            throw CLI::ValidationError("--answers", "needs DATASET.h5, and --stop for its rules");
+        if (options.rivals || !options.predicted.empty())
+            throw CLI::ValidationError("--answers", "judges the rules of --stop alone");
+        return;
+    }
+    if (options.human.empty())
+        throw CLI::ValidationError("evaluate", "needs --human, or --answers");
+    if (options.datasets.empty() && runs)
+        throw CLI::ValidationError("--stop and --rivals", "need DATASET.h5 to run rules on");
+    if (!runs && options.predicted.empty())
+        throw CLI::ValidationError("evaluate", "needs --predicted, --stop or --rivals");
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& app, Command* command) {
+    CLI::App* evaluate =
+        app.add_subcommand("evaluate", "Judges stopping rules by the thresholds of people.");
+    auto options = std::make_shared<Options>();
+    AddOptions(*evaluate, options.get());
+    evaluate->footer(kFooter);
+    evaluate->callback([=] {
+        CheckUsage(*options);
+        *command = [=] { return RunEvaluate(*options); };
+    });
+}
+
+}  // namespace lull

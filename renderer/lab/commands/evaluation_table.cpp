@@ -1,0 +1,95 @@
+#include "renderer/lab/commands/evaluation_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <span>
+
+#include "stopping/base/csv.h"
+
+namespace lull {
+
+namespace {
+
+// Holds the row of a table.
+struct Row {
+    std::string rule, viewpoint, setting;
+    Judgement judgement;
+};
+
+// Makes the rows of a rule: one for each viewpoint, and one for all of them.
+std::vector<Row> MakeRows(const JudgedRule& rule, const JudgeOptions& options) {
+    std::vector<Row> rows;
+    for (const ViewpointOutcome& viewpoint : rule.viewpoints)
+        rows.push_back({LabelOf(rule), viewpoint.name, viewpoint.setting,
+                        Judge(std::span(&viewpoint, 1), options)});
+    rows.push_back({LabelOf(rule), "all", rule.setting, Judge(rule.viewpoints, options)});
+    return rows;
+}
+
+std::string PercentText(std::optional<double> share, int digits) {
+    return share ? fmt::format("{:.{}f}", 100 * *share, digits) : "-";
+}
+
+// Prints a table whose first column is the rule or the viewpoint.
+void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first,
+               const std::vector<Row>& rows, const JudgeOptions& options) {
+    size_t width = label.size(), settingWidth = std::string("setting").size();
+    for (const Row& row : rows) {
+        width = std::max(width, (row.*first).size());
+        settingWidth = std::max(settingWidth, row.setting.size());
+    }
+    fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", label, width, "setting", settingWidth,
+               "views", "blocks", "open");
+    for (const double margin : options.margins)
+        fmt::print(out, "  {:>6}", fmt::format("ce{:g}", margin));
+    fmt::print(out, "  {:>6}  {:>5}  {:>5}  {:>5}  {:>5}  {:>5}\n", "error", "err%", "early",
+               "late", "acc", "auc");
+    for (const Row& row : rows) {
+        const Judgement& j = row.judgement;
+        fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", row.*first, width, row.setting,
+                   settingWidth, j.viewpoints, j.blocks, j.open);
+        for (const double error : j.criticalErrors) fmt::print(out, "  {:>6.2f}", 100 * error);
+        fmt::print(out, "  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}\n", j.absoluteError,
+                   100 * j.absoluteError / kJudgedCap, 100 * j.early, 100 * j.late,
+                   PercentText(j.accuracy, 1), PercentText(j.auc, 1));
+    }
+}
+
+}  // namespace
+
+void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
+                     const JudgeOptions& options, bool each) {
+    std::vector<Row> overall;
+    for (const JudgedRule& rule : rules) {
+        const std::vector<Row> rows = MakeRows(rule, options);
+        overall.push_back(rows.back());
+        if (!each) continue;
+        fmt::print(out, "{}\n", LabelOf(rule));
+        PrintRows(out, "viewpoint", &Row::viewpoint, rows, options);
+        fmt::print(out, "\n");
+    }
+    if (each && rules.size() == 1) return;
+    PrintRows(out, "rule", &Row::rule, overall, options);
+}
+
+std::string EvaluationCsv(const std::vector<JudgedRule>& rules, const JudgeOptions& options) {
+    std::string csv = "rule,viewpoint,setting,viewpoints,blocks,open";
+    const auto out = std::back_inserter(csv);
+    for (const double margin : options.margins) fmt::format_to(out, ",critical_error_{:g}", margin);
+    csv += ",absolute_error_spp,early,late,accuracy,auc\n";
+    for (const JudgedRule& rule : rules)
+        for (const Row& row : MakeRows(rule, options)) {
+            const Judgement& j = row.judgement;
+            fmt::format_to(out, "{},{},{},{},{},{}", CsvField(row.rule), CsvField(row.viewpoint),
+                           CsvField(row.setting), j.viewpoints, j.blocks, j.open);
+            for (const double error : j.criticalErrors) fmt::format_to(out, ",{:.6f}", error);
+            fmt::format_to(out, ",{:.2f},{:.6f},{:.6f},{},{}\n", j.absoluteError, j.early, j.late,
+                           CsvField(j.accuracy), CsvField(j.auc));
+        }
+    return csv;
+}
+
+}  // namespace lull

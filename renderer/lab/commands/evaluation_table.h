@@ -1,0 +1,21 @@
+// Prints how rules were judged.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/evaluation/evaluation.h"
+
+namespace lull {
+
+// Prints a table of the rules over all viewpoints and, if `each`, one of each rule before, with a
+// row a viewpoint.
+void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
+                     const JudgeOptions& options, bool each);
+
+// Returns all rows as a CSV file with a head line: one for each rule and viewpoint, and for each
+// rule one with the viewpoint "all". Fields of what is not defined are empty.
+std::string EvaluationCsv(const std::vector<JudgedRule>& rules, const JudgeOptions& options);
+
+}  // namespace lull

@@ -1,0 +1,107 @@
+// `lull judge --collect`: makes thresholds of what observers said.
+#include <fmt/format.h>
+
+#include <map>
+#include <sstream>
+
+#include "renderer/base/say.h"
+#include "renderer/files/file_io.h"
+#include "renderer/files/outputs.h"
+#include "renderer/lab/commands/judge_options.h"
+#include "renderer/lab/pages/collected_page.h"
+#include "stopping/lab/observers/agreement.h"
+#include "stopping/lab/observers/observer_tables.h"
+
+namespace lull {
+
+namespace {
+
+void Tell(const Collected& collected) {
+    for (const RefusedAnswers& refused : collected.refused)
+        Say("lull: {}: {}; left out\n", refused.file, refused.reason);
+    for (const JudgedObserver& observer : collected.observers)
+        if (!observer.leftOut.empty())
+            Say("lull: {}: {} {}; left out\n", observer.answers.file, observer.answers.observer,
+                observer.leftOut);
+        else if (!observer.doubts.empty())
+            Say("lull: {}: {} counts, but {}\n", observer.answers.file, observer.answers.observer,
+                observer.doubts);
+}
+
+std::string AgreementOf(const CollectedViewpoint& viewpoint) {
+    if (!viewpoint.agreement) return "not known";
+    const std::string word = AgreementInAWord(*viewpoint.agreement);
+    return fmt::format(
+        "{:.2f} ({}{})", *viewpoint.agreement, word,
+        word == "poor" ? ": these thresholds say more of the observers than of the picture" : "");
+}
+
+// Says how far the thresholds of a viewpoint can be relied on.
+void SayCertainty(const CollectedViewpoint& viewpoint) {
+    Say("lull: {}: {} observer{}, agreement {}\n", viewpoint.name, viewpoint.observers,
+        viewpoint.observers == 1 ? "" : "s", AgreementOf(viewpoint));
+    if (const int fewest = FewestAnswers(viewpoint); fewest < kEnoughAnswers)
+        Say("lull: {}: thresholds of blocks rest on as few as {} answer{}; they are rough with "
+            "fewer than {}\n",
+            viewpoint.name, fewest, fewest == 1 ? "" : "s", kEnoughAnswers);
+}
+
+// Returns the names of the files of single answers and what goes there; of more than one viewpoint
+// each has its own.
+std::map<std::string, std::string> SingleAnswers(const Collected& collected,
+                                                 const std::string& base) {
+    std::map<std::string, std::string> files;
+    for (const CollectedViewpoint& viewpoint : collected.viewpoints) {
+        const std::string name =
+            collected.viewpoints.size() > 1 ? base + "." + viewpoint.name : base;
+        const std::string text = SingleAnswersCsv(collected, viewpoint.name);
+        if (!text.empty()) files.emplace(name + ".answers.csv", text);
+    }
+    return files;
+}
+
+}  // namespace
+
+void CollectAnswers(const JudgeSettings& settings) {
+    const std::string base = settings.output.substr(0, settings.output.rfind('.'));
+    const std::string details = base + ".details.csv", observers = base + ".observers.csv";
+    std::vector<NamedFile> inputs = {{"--study", settings.studyPage}};
+    for (const std::string& file : settings.collect) inputs.push_back({"--collect", file});
+    CheckOutputs(std::vector<NamedFile>{{"-o", settings.output},
+                                        {"-o", details},
+                                        {"-o", observers},
+                                        {"--report", settings.report}},
+                 inputs);
+
+    CollectOptions options;
+    Json study;
+    if (!settings.studyPage.empty()) {
+        study = ReadStudyPage(settings.studyPage);
+        options.study = study.at("id").get<std::string>();
+        options.procedure = study.at("procedure").get<std::string>();
+    }
+    const Collected collected = CollectFiles(settings.collect, options);
+    Tell(collected);
+    if (collected.viewpoints.empty())
+        throw Error(fmt::format("--collect: none of {} files has answers that count",
+                                settings.collect.size()));
+
+    const std::map<std::string, std::string> singles = SingleAnswers(collected, base);
+    for (const auto& [file, text] : singles)
+        CheckOutputs(std::vector<NamedFile>{{"-o", file}}, inputs);
+    std::ostringstream thresholds;
+    WriteThresholds(thresholds, ThresholdsOf(collected));
+    WriteFileAtomically(settings.output, thresholds.str());
+    WriteFileAtomically(details, DetailsCsv(collected));
+    WriteFileAtomically(observers, ObserversCsv(collected));
+    for (const auto& [file, text] : singles) WriteFileAtomically(file, text);
+    if (!settings.report.empty())
+        WriteFileAtomically(settings.report, MakeCollectedPage(collected, study));
+    if (!settings.render.quiet)
+        for (const CollectedViewpoint& viewpoint : collected.viewpoints) SayCertainty(viewpoint);
+    for (const std::string& file : {settings.output, details, observers}) fmt::print("{}\n", file);
+    for (const auto& [file, text] : singles) fmt::print("{}\n", file);
+    if (!settings.report.empty()) fmt::print("{}\n", settings.report);
+}
+
+}  // namespace lull

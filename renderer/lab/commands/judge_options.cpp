@@ -1,0 +1,126 @@
+#include "renderer/lab/commands/judge_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "renderer/commands/choice_option.h"
+#include "renderer/lab/viewpoints/recorded_viewpoint.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFooter =
+    R"(Makes a page on which people say where they still see noise, and collects what they said.
+
+The scene is rendered to the cap once, and each block kept at a ladder of samples per pixel, each
+level a quarter above the last. STUDY.html opens from disk in any browser and asks for nothing from
+anywhere; an observer ends with a small file of answers. Interrupted, the render leaves
+STUDY.html.checkpoint, and the same command goes on from there. The noise is that of `lull render`
+with the same --sampler and --estimator.
+
+Procedures:
+  adjust      the image beside the reference: observers point where they differ, and the block gets
+              one level better, until both look the same (Buisine et al. 2021)
+  staircase   one block at a time beside its reference: which of both has the noise? Levels are
+              chosen by QUEST (Watson and Pelli 1983)
+Start levels differ between observers, some blocks are asked twice, and some show the reference on
+both sides, to find out who does not look.
+
+--collect writes, beside each other:
+  HUMAN.csv             mean thresholds over observers, in the format of the published ones
+  HUMAN.details.csv     of each block: spread, 95 % confidence interval of the mean; of each
+                        viewpoint: how far observers agree
+  HUMAN.observers.csv   of each observer: consistency, checks failed, who was left out or is in
+                        doubt, and why
+  HUMAN.answers.csv     what was said one by one, for `lull evaluate --answers`; not of staircases,
+                        whose answers are half right by chance
+Files that are damaged, foreign or contradict each other are named and left out.
+
+Examples:
+  lull judge scene.pbrt -o study.html --record data.h5
+  lull judge scene.pbrt -o study.html --resolution 800x800 --cap 2000 --procedure staircase
+  lull judge --images pictures/ --name kitchen-view0 -o study.html
+  lull judge --collect answers/*.json -o human.csv --study study.html --report collected.html
+  lull train data.h5 --human human.csv -o model.h5
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+void AddStudyOptions(CLI::App& app, StudySettings* s) {
+    AddChoiceOption<StudyProcedure>(
+        app, "--procedure", &s->procedure,
+        {{"adjust", StudyProcedure::Adjust}, {"staircase", StudyProcedure::Staircase}},
+        "adjust|staircase", "How people are asked");
+    app.add_option("--repeats", s->repeats, "Share of the blocks that are asked twice")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("X")
+        ->capture_default_str();
+    app.add_option("--catches", s->catches,
+                   "Share of the blocks (of the trials of a staircase) that check the observer")
+        ->check(CLI::Range(0.0, 0.5))
+        ->type_name("X")
+        ->capture_default_str();
+    app.add_option("--answers", s->answers, "Answers to each block of a staircase")
+        ->check(CLI::Range(2, 100))
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+[[noreturn]] void Refuse(const std::string& message) {
+    throw CLI::ValidationError("judge", message);
+}
+
+}  // namespace
+
+void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
+    AddRenderSettings(app, &s->render);
+    app.get_option("SCENE")->required(false);
+    app.add_option("--images", s->images,
+                   "Pictures of another renderer, with their spp in the file names, not a scene")
+        ->type_name("DIR");
+    app.add_option("--collect", s->collect, "Collect these files of answers")
+        ->type_name("ANSWERS.json ...");
+    app.add_option("-o,--output", s->output, "The page to make, or the thresholds to write")
+        ->required()
+        ->type_name("STUDY.html|HUMAN.csv");
+    app.add_option("--name", s->name, "Name of the viewpoint in thresholds and data [the scene's]")
+        ->check(CheckViewpointName);
+    app.add_option("--levels", s->levels, "Levels of the ladder [each 1.25 times the last]")
+        ->check(CLI::Range(2, 200))
+        ->type_name("N");
+    app.add_option("--record", s->record,
+                   "Record what rules can learn from, of the same render, in this data set")
+        ->type_name("DATA.h5");
+    app.add_option("--checkpoint-interval", s->render.checkpoint.interval,
+                   "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    AddStudyOptions(app, &s->study);
+    app.add_option(
+           "--text", s->textFile,
+           "Your own text, which observers read and agree to first (consent, whom to write\n"
+           "to, the task in their language): # headings, - lists, **bold**, *italics*")
+        ->type_name("TEXT.md");
+    app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
+        ->type_name("STUDY.html");
+    app.add_option("--report", s->report, "With --collect: write a page that shows the answers")
+        ->type_name("PAGE.html");
+    app.footer(kFooter);
+}
+
+void CheckJudgeOptions(const JudgeSettings& s) {
+    const bool hasScene = !s.render.scene.file.empty();
+    if (int(hasScene) + int(!s.images.empty()) + int(!s.collect.empty()) != 1)
+        Refuse("a SCENE is needed, or --images, or --collect; one of them");
+    if (s.collect.empty() && !s.output.ends_with(".html"))
+        Refuse("-o " + s.output + ": a study is a page, STUDY.html");
+    if (!s.collect.empty() && !s.output.ends_with(".csv"))
+        Refuse("-o " + s.output + ": collected thresholds are a table, HUMAN.csv");
+    if (!s.textFile.empty() && !s.collect.empty()) Refuse("--text is for a study that is made");
+    if (!s.record.empty() && !hasScene) Refuse("--record needs a SCENE, which is rendered");
+    if (s.collect.empty() && !(s.report.empty() && s.studyPage.empty()))
+        Refuse("--report and --study need --collect");
+    if (!s.report.empty() && !s.report.ends_with(".html"))
+        Refuse("--report " + s.report + ": the report is a page, PAGE.html");
+}
+
+}  // namespace lull

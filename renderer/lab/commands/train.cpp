@@ -1,0 +1,102 @@
+// `lull train`: learns from people when to stop.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "renderer/commands/command.h"
+#include "renderer/commands/input_files.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/commands/talk.h"
+#include "renderer/files/file_io.h"
+#include "renderer/lab/commands/evaluation_table.h"
+#include "renderer/lab/commands/search.h"
+#include "renderer/lab/commands/training_printer.h"
+#include "stopping/base/parallel.h"
+#include "stopping/network/model_file.h"
+
+namespace lull {
+
+namespace {
+
+// Shows a training.
+TrainingEvents PrintTo(TrainingPrinter* printer, const Talk& talk, const BlockSplit& split,
+                       bool quiet) {
+    return {
+        .begin =
+            [=, &split](const TrainingSamples& samples, const TrainingProgress& progress) {
+                const auto noisy = std::ranges::count(samples.noisy, char(1));
+                if (!quiet)
+                    talk.Note(fmt::format("{}{} windows of {} blocks to train on, {:.1f}% noisy",
+                                          split.name.empty() ? "" : split.name + ": ",
+                                          samples.Count(), split.training.size(),
+                                          100.0 * double(noisy) / double(samples.Count())));
+                printer->Begin(split.name, progress);
+            },
+        .step =
+            [=](const Trainer& trainer) {
+                if (printer->IsDue()) printer->Print(trainer.Progress());
+            },
+        .end = [=](const TrainingProgress& progress) { printer->Finish(progress); },
+        .isCancelled = Interrupted};
+}
+
+ExitCode RunTrain(const TrainOptions& options) {
+    const TrainingPlan& plan = options.plan;
+    const std::string checkpointName = options.output.empty() ? "" : options.output + ".checkpoint";
+    CheckOutputs(
+        std::vector<NamedFile>{
+            {"-o", options.output}, {"the checkpoint", checkpointName}, {"--csv", options.csv}},
+        InputsOf(plan));
+    const Talk talk{.isJson = options.jsonProgress};
+    const auto note = [&](const std::string& message) { talk.Note(message); };
+    const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
+    const std::vector<JudgedBlock> blocks = KeepRecordedForAll(
+        ReadJudgedBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
+    CheckSpacing(plan.settings, blocks.front().passSpp);
+    const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
+    TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
+    if (options.resume) checkpoint.Read();
+    TrainingPrinter printer(StyleOf(options), stderr);
+    CatchInterrupts();
+
+    const std::optional<TrainingResult> result = TrainAll(
+        plan, splits, &checkpoint,
+        [&](const BlockSplit& split) { return PrintTo(&printer, talk, split, options.quiet); });
+    if (!result) {
+        if (!options.quiet && !checkpoint.Path().empty())
+            talk.Note("interrupted; --resume goes on from " + checkpoint.Path());
+        return kInterrupted;
+    }
+    const JudgeOptions judge{.grid = plan.settings.n};
+    if (!options.output.empty()) {
+        WriteModel(options.output, result->network, plan.settings,
+                   MakeRecord(plan, splits.back(), *result, judge), result->logRatios);
+        checkpoint.Remove();
+    }
+    PrintEvaluation(stdout, result->rules, judge, true);
+    if (const std::string certainty = CertaintyText(*result); !certainty.empty())
+        fmt::print("\n{}\n", certainty);
+    if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(result->rules, judge));
+    return kDone;
+}
+
+}  // namespace
+
+void AddTrainCommand(CLI::App& app, Command* command) {
+    CLI::App* train = app.add_subcommand("train", "Learns from people when to stop.");
+    auto options = std::make_shared<TrainOptions>();
+    AddTrainOptions(*train, options.get());
+    train->callback([=] {
+        CompleteTrainOptions(options.get());
+        *command = [=] {
+            ExitCode code = kDone;
+            RunWithThreads(options->threads, [&] {
+                code = options->search.empty() ? RunTrain(*options) : RunSearch(*options);
+            });
+            return code;
+        };
+    });
+}
+
+}  // namespace lull

@@ -1,0 +1,320 @@
+#include "renderer/lab/commands/train_options.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <stdexcept>
+
+#include "renderer/commands/choice_option.h"
+#include "stopping/lab/training/training_preset.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFooter =
+    R"(Learns from recordings (see lull dataset) and the thresholds of people when these stop to see
+noise. The defaults are those of the model `entropy`: a small LSTM network on the noise that falls of
+SVD-entropies make visible, a number for the block. --preset paper takes the configuration of Buisine
+et al. 2021, a large one on windows of 8 SVD-entropies of 100 sub-blocks; other options change either.
+Viewpoints are joined by their exact names; those without thresholds are left aside.
+
+Features for --features (also --channels), a list with commas:
+  H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
+  noise, noise_mean, masked_noise, detail_masked_noise, half_noise, lightness, deviation, texture
+                     statistics of 10x10 sub-blocks, never normalised over the window
+  entropy_drop, entropy_drop_h1, entropy_drop_h2
+                     the fall of these entropies since half as many samples
+  visible_drop       the noise in lightness that the fall of H makes visible, of 10x10 sub-blocks
+  attributes26       how much 13 filters take out of the block, means and deviations; blocks that were
+                     recorded without are left aside
+  logspp             the logarithm of the samples per pixel
+--pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
+rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %; none gives it
+the value of each sub-block.
+
+--units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
+
+The same options and seed give the same weights for any number of threads. Interrupted, a training
+with -o leaves MODEL.h5.checkpoint, and goes on from there with --resume.
+
+With --cross-validate each viewpoint is judged by a network that was trained on all others; with
+-o, a network trained on all of them is written as well, with the distance of people's thresholds from
+the stops on what was left out, from which renders say how sure a stop is. For the columns of the tables see
+lull evaluate --help.
+
+With --search GRID every combination of the values in a file is trained, on networks that never see
+the blocks they are judged by: those of each viewpoint in turn, or of --leave-out or --split. A line
+of GRID is an option from --k to --class-weights without its dashes, and values: k 4 8 16. The table
+goes to F.csv of --csv, and as Markdown to F.md, the largest AUC on the blocks left out first, and is
+there after each combination. Interrupted, it leaves F.csv.checkpoint; --resume goes on from there.
+
+Examples:
+  lull train data.h5 --human human.csv -o model.h5
+  lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
+  lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
+      --pool rms,q90 --units 16,8
+  lull train data.h5 --human human.csv --cross-validate --preset paper
+  lull train data.h5 --human human.csv --search grid.txt --csv search.csv --preset paper
+      --units 32 --epochs 10
+
+Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+
+bool ParseUnits(const std::string& text, std::vector<int>* units) {
+    units->clear();
+    if (text == "none") return true;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (true) {
+        int value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || value < 1 || value > 16384) return false;
+        units->push_back(value);
+        if (next == end) return true;
+        if (*next != ',') return false;
+        at = next + 1;
+    }
+}
+
+std::string UnitsText(const std::vector<int>& units) {
+    std::string text;
+    for (const int n : units) text.append(text.empty() ? "" : ",").append(std::to_string(n));
+    return text.empty() ? "none" : text;
+}
+
+void AddUnits(CLI::App& app, const std::string& name, std::vector<int>* units,
+              const std::string& help) {
+    app.add_option_function<std::string>(
+           name,
+           [=](const std::string& text) {
+               if (!ParseUnits(text, units))
+                   throw CLI::ValidationError(name, text + " is not a list as 512,128,32, or none");
+           },
+           help)
+        ->type_name("N,N,...")
+        ->default_str(UnitsText(*units));
+}
+
+// Adds an option whose text is parsed by a function that throws std::invalid_argument.
+template <typename T>
+void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::string&), T* value,
+              const std::string& help, const std::string& standard) {
+    app.add_option_function<std::string>(
+           names,
+           [=](const std::string& text) {
+               try {
+                   *value = parse(text);
+               } catch (const std::invalid_argument& error) {
+                   throw CLI::ValidationError(names, error.what());
+               }
+           },
+           help)
+        ->type_name("A,B,...")
+        ->default_str(standard);
+}
+
+// Reads and writes a list that may be empty.
+std::vector<Pool> ParsePoolsOrNone(const std::string& text) {
+    return text == "none" ? std::vector<Pool>() : ParsePools(text);
+}
+std::string PoolsText(const std::vector<Pool>& pools) {
+    return pools.empty() ? "none" : PoolNames(pools);
+}
+
+std::string DefaultNote(bool isDefault) { return isDefault ? " [the default]" : ""; }
+
+template <typename T>
+void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most,
+               const std::string& help) {
+    app.add_option(name, *value, help)
+        ->check(CLI::Range(least, most))
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+void AddReal(CLI::App& app, const std::string& name, double* value, double least, double most,
+             const std::string& help) {
+    app.add_option(name, *value, help)
+        ->check(CLI::Range(least, most))
+        ->type_name("X")
+        ->capture_default_str();
+}
+
+void AddSettings(CLI::App& app, ModelSettings* s) {
+    AddNumber(app, "--k", &s->k, 1, 1000, "Steps in a window");
+    AddNumber(app, "--n", &s->n, 1, 1000000, "Spp between the steps");
+    app.add_option("--m", s->m, "Sub-blocks that entropies are computed of")
+        ->check(OneOf(std::set{4, 25, 100, 400}))
+        ->type_name("4|25|100|400")
+        ->capture_default_str();
+    AddNames(app, "--features,--channels", ParseFeatures, &s->features, "What the network is given",
+             FeatureNames(s->features));
+    AddNames(app, "--pool", ParsePoolsOrNone, &s->pools, "Statistics in place of all sub-blocks",
+             PoolsText(s->pools));
+    app.add_flag("--snorm,!--no-snorm", s->snorm,
+                 "Normalise entropies, attributes26 too, over the window" + DefaultNote(s->snorm));
+    app.add_flag("--bnorm", s->bnorm, "Normalise the entropies, or attributes26, of each step");
+    AddNames(app, "--spacing", ParseSpacing, &s->spacing,
+             "Steps of a window n spp apart (fixed), or each at --ratio times\nthe spp of the one "
+             "before, looked at every n spp (geometric)",
+             SpacingName(s->spacing));
+    AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Ratio of geometric spacing");
+    NoiseVisibility* v = &s->visibility;
+    AddReal(app, "--mask", &v->mask, 1e-3, 1e9,
+            "visible_drop: detail of deviation d hides noise, 1 / (1 + d / X)");
+    AddReal(app, "--flare", &v->flare, 0.0, 1.0,
+            "visible_drop: light that the screen reflects, as a share of white");
+    AddNumber(app, "--reference", &v->reference, 1, 1 << 30,
+              "visible_drop: spp N of the picture that people compared with");
+    AddReal(app, "--nearness", &v->nearness, 0.0, 10.0,
+            "visible_drop: noise counts (1 - spp / N)^X");
+    AddNumber(app, "--votes", &s->votes, 1, 1000, "Noiseless votes in a row that stop a block");
+    app.add_option("--vote-spacing", s->voteSpacing, "Spp between votes [n]")
+        ->check(CLI::Range(1, 1000000))
+        ->type_name("N");
+}
+
+void AddTraining(CLI::App& app, TrainingOptions* t) {
+    AddUnits(app, "--units", &t->units, "Units of the LSTM layers, or none");
+    AddUnits(app, "--dense", &t->dense, "Units of dense layers before the last one");
+    app.add_option("--dropout", t->dropout, "Share of each LSTM layer's inputs that is dropped")
+        ->check(CLI::Range(0.0, 0.99))
+        ->type_name("X")
+        ->capture_default_str();
+    app.add_option("--learning-rate", t->learningRate, "Learning rate of RMSprop")
+        ->check(CLI::PositiveNumber)
+        ->type_name("X")
+        ->capture_default_str();
+    AddNumber(app, "--batch", &t->batch, 1, 1 << 20, "Samples in a batch");
+    AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "How often all samples are shown");
+    app.add_option("--seed", t->seed, "Another seed gives another network")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
+    app.add_flag("--balance-viewpoints,!--no-balance-viewpoints", t->balanceViewpoints,
+                 "Let each viewpoint count the same, however many blocks of\nit there are" +
+                     DefaultNote(t->balanceViewpoints));
+    app.add_flag("--class-weights,!--no-class-weights", t->balanceClasses,
+                 "Let noisy and noiseless samples count the same, as in the paper" +
+                     DefaultNote(t->balanceClasses));
+    AddReal(app, "--noisy-weight", &t->noisyWeight, 1e-3, 1e3,
+            "What noisy samples count more: fewer stops too early");
+}
+
+void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
+             const std::string& help) {
+    app.add_option(name, *list, help)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME");
+}
+
+// Adds the option that sets all of a model and its training. It has to be added before those that
+// change single ones: what was given is applied in this order.
+void AddPreset(CLI::App& app, TrainingPlan* plan) {
+    std::set<std::string> names;
+    for (const TrainingPreset& preset : TrainingPresets()) names.insert(preset.name);
+    const auto set = [plan](const std::string& name) {
+        const auto preset = std::ranges::find(TrainingPresets(), name, &TrainingPreset::name);
+        plan->settings = preset->settings;
+        plan->training = preset->training;
+    };
+    const std::string& standard = TrainingPresets().front().name;
+    set(standard);
+    app.add_option_function<std::string>("--preset", set, "Defaults of the options from --k on")
+        ->check(OneOf(names))
+        ->type_name("entropy|paper")
+        ->default_str(standard);
+}
+
+}  // namespace
+
+void AddTrainOptions(CLI::App& app, TrainOptions* o) {
+    app.add_option("DATASET.h5", o->plan.datasets, "Recordings to learn from")
+        ->required()
+        ->check(CLI::ExistingFile);
+    app.add_option("--human", o->plan.human, "Thresholds of people")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("H.csv");
+    app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
+    AddPreset(app, &o->plan);
+    AddSettings(app, &o->plan.settings);
+    AddTraining(app, &o->plan.training);
+    AddList(app, "--leave-out", &o->plan.leaveOut,
+            "Viewpoint to judge by, not to train on; can be given again");
+    AddList(app, "--without", &o->plan.without, "Viewpoint to ignore; can be given again");
+    app.add_option_function<std::string>(
+           "--split",
+           [o](const std::string& text) {
+               if (!text.starts_with("paper:") || text.size() == 6)
+                   throw CLI::ValidationError("--split", text + " is not paper:FILE");
+               o->plan.split = text.substr(6);
+           },
+           "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others")
+        ->type_name("paper:FILE");
+    app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
+    app.add_option("--search", o->search, "Try all combinations of values in a file; see below")
+        ->check(CLI::ExistingFile)
+        ->type_name("GRID");
+    app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint, or F.csv.checkpoint");
+    app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    app.add_option("--csv", o->csv, "Write the judgement to a CSV file")->type_name("F.csv");
+    AddNumber(app, "--threads", &o->threads, 0, 4096, "Threads; 0: one for each core");
+    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the judgement");
+    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    app.footer(kFooter);
+}
+
+void CompleteTrainOptions(TrainOptions* o) {
+    if (!o->search.empty()) {
+        if (!o->output.empty()) throw CLI::ValidationError("--search", "writes no model: no -o");
+        if (o->csv.empty()) throw CLI::ValidationError("--search", "needs --csv F.csv");
+        if (o->plan.leaveOut.empty() && o->plan.split.empty()) o->plan.crossValidate = true;
+    } else if (o->output.empty() && !o->plan.crossValidate) {
+        throw CLI::ValidationError("train", "needs -o MODEL.h5, --cross-validate or --search");
+    } else if (o->resume && o->output.empty())
+        throw CLI::ValidationError("--resume", "needs -o MODEL.h5, beside which the checkpoint is");
+    if (o->plan.crossValidate && (!o->plan.leaveOut.empty() || !o->plan.split.empty()))
+        throw CLI::ValidationError("--cross-validate",
+                                   "chooses blocks itself, without --leave-out and --split");
+    TrainingPlan& plan = o->plan;
+    plan.withLast = !o->output.empty() || (!o->search.empty() && !plan.crossValidate);
+    plan.version = LULL_VERSION;
+    // Recordings have every second pass, and so has a rule that votes as often as it was trained.
+    if (plan.settings.voteSpacing == 0 && o->search.empty())
+        plan.settings.voteSpacing = plan.settings.n;
+}
+
+void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan) {
+    CLI::App app;
+    AddSettings(app, &plan->settings);
+    AddTraining(app, &plan->training);
+    std::vector<std::string> arguments;  // the first last, as the parser wants them
+    for (const OptionValue& option : values)
+        arguments.insert(arguments.begin(), "--" + option.name + "=" + option.value);
+    try {
+        app.parse(arguments);
+        CheckSettings(plan->settings);
+    } catch (const CLI::ExtrasError&) {
+        throw std::invalid_argument("this is no option that a search can vary");
+    } catch (const CLI::ParseError& error) {
+        throw std::invalid_argument(error.what());
+    }
+    if (plan->settings.voteSpacing == 0) plan->settings.voteSpacing = plan->settings.n;
+}
+
+ProgressStyle StyleOf(const TrainOptions& options) {
+    return options.jsonProgress    ? ProgressStyle::Json
+           : options.quiet         ? ProgressStyle::Silent
+           : isatty(STDERR_FILENO) ? ProgressStyle::Line
+                                   : ProgressStyle::Plain;
+}
+
+}  // namespace lull

@@ -1,0 +1,175 @@
+#include "renderer/lab/comparison/compared_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "renderer/base/color.h"
+#include "renderer/base/error.h"
+#include "renderer/image/image_io.h"
+
+namespace lull {
+
+namespace {
+
+std::string ExtensionOf(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) { return std::tolower(c); });
+    return extension;
+}
+
+bool IsTiff(const std::string& path) {
+    const std::string extension = ExtensionOf(path);
+    return extension == ".tif" || extension == ".tiff";
+}
+
+bool IsDisplayFile(const std::string& path) {
+    const std::string extension = ExtensionOf(path);
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || IsTiff(path);
+}
+
+std::string SizeOf(const PixelRect& region) {
+    return fmt::format("{}x{} pixels", region.Width(), region.Height());
+}
+
+bool HaveOneSize(const PixelRect& a, const PixelRect& b) {
+    return a.Width() == b.Width() && a.Height() == b.Height();
+}
+
+ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
+    const Image picture = ReadImage(path);
+    // Whether larger numbers in a TIFF are linear is not known.
+    if (IsTiff(path) && !std::holds_alternative<std::vector<uint8_t>>(picture.texels))
+        throw Error(path + ": of TIFF files, only those of 8 bits are compared; make it an EXR");
+    ComparedFile file;
+    file.region = {{0, 0}, {picture.width, picture.height}};
+    file.image.name = name;
+    file.image.isDisplay = true;
+    const size_t channels = size_t(picture.channels);
+    const auto at = [&](size_t i) {
+        return std::visit(
+            [&](const auto& texels) {
+                constexpr bool isBytes = std::is_same_v<decltype(texels[0]), const uint8_t&>;
+                return float(texels[i]) / (isBytes ? 255.f : 1.f);
+            },
+            picture.texels);
+    };
+    RgbImage& image = file.image.image;
+    image = {picture.width, picture.height, {}};
+    for (size_t i = 0; i < size_t(file.region.Area()); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            image.values.push_back(LinearFromSrgb(at(channels * i + (channels < 3 ? 0 : c))));
+    return file;
+}
+
+}  // namespace
+
+bool IsImageFile(const std::string& path) {
+    return ExtensionOf(path) == ".exr" || IsDisplayFile(path);
+}
+
+ComparedFile ReadComparedFile(const std::string& path, const std::string& name) {
+    if (IsDisplayFile(path)) return ReadDisplayFile(path, name);
+    const ExrImage exr = ReadExr(path);
+    ComparedFile file;
+    file.region = {exr.origin, exr.origin + Vec2i(exr.width, exr.height)};
+    file.image.name = name;
+    RgbImage& image = file.image.image;
+    image = {exr.width, exr.height, std::vector<float>(size_t(file.region.Area()) * 3)};
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        const ExrChannel* found = exr.Find(channel);
+        if (!found) throw Error(path + ": has no channel " + channel);
+        for (size_t i = 0; i < found->values.size(); ++i)
+            image.values[3 * i + c] = found->values[i];
+    }
+    if (const ExrChannel* spp = exr.Find("spp")) file.spp = spp->values;
+    if (const auto at = exr.attributes.find("criterion"); at != exr.attributes.end())
+        if (const auto* text = std::get_if<std::string>(&at->second)) file.image.rule = *text;
+    if (const auto at = exr.attributes.find("seconds"); at != exr.attributes.end())
+        if (const auto* seconds = std::get_if<float>(&at->second))
+            file.image.wallSeconds = double(*seconds);
+    return file;
+}
+
+PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference) {
+    const auto isPlaced = [](const ComparedFile& file) { return !file.image.isDisplay; };
+    const auto first = std::ranges::find_if(files, isPlaced);
+    const PixelRect region = first == files.end() ? files.back().region : first->region;
+    for (const ComparedFile& file : files) {
+        if (!HaveOneSize(file.region, region))
+            throw Error(fmt::format("{}: images of different sizes: {} has {}, {} has {}",
+                                    reference, files.front().image.name,
+                                    SizeOf(files.front().region), files.back().image.name,
+                                    SizeOf(files.back().region)));
+        if (isPlaced(file) && !(file.region == region))
+            throw Error(fmt::format("{}: shows another part of the image than the {} one",
+                                    reference, files.front().image.name));
+    }
+    return region;
+}
+
+std::string DisplayNote(const Comparison& comparison) {
+    std::string names;
+    for (const ComparedImage& image : comparison.images)
+        if (image.isDisplay) names += (names.empty() ? "" : ", ") + image.name;
+    return names.empty() ? ""
+                         : "Pictures for displays: " + names +
+                               ". They hold no radiance, so that RMSE and relMSE are left out; "
+                               "other figures are those of the 8-bit display image.";
+}
+
+void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
+    if (file->spp.empty()) return;
+    const PixelRect& region = file->region;
+    const auto sppAt = [&](int x, int y) {
+        return file
+            ->spp[size_t(y - region.min.y()) * size_t(region.Width()) + size_t(x - region.min.x())];
+    };
+    std::vector<BlockCost> costs;
+    for (const PixelRect& block : blocks) {
+        const float spp = sppAt(block.min.x(), block.min.y());
+        for (int y = block.min.y(); y < block.max.y(); ++y)
+            for (int x = block.min.x(); x < block.max.x(); ++x)
+                if (sppAt(x, y) != spp) return;  // rendered in other blocks
+        costs.push_back({.spp = int(spp)});
+    }
+    file->image.costs = std::move(costs);
+}
+
+RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region) {
+    RgbImage image = ReadComparedFile(path, path).image.image;
+    if (const PixelRect own = {{0, 0}, {image.width, image.height}}; !HaveOneSize(own, region))
+        throw Error(fmt::format("{}: has {}, not {}", path, SizeOf(own), SizeOf(region)));
+    return image;
+}
+
+ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
+                              const Comparison& comparison) {
+    ComparedFile file = ReadComparedFile(path, name);
+    const PixelRect& region = comparison.region;
+    if (!HaveOneSize(file.region, region))
+        throw Error(fmt::format("{}: has {}, the scene's image {}", path, SizeOf(file.region),
+                                SizeOf(region)));
+    if (file.image.isDisplay) file.region = region;
+    if (!(file.region == region))
+        throw Error(path + ": shows another part of the image than the scene would");
+    SetCosts(comparison.blocks, &file);
+    if (!file.image.wallSeconds) file.image.wallSeconds = 0;
+    return std::move(file.image);
+}
+
+Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
+                        const ScheduleOptions& schedule) {
+    Comparison comparison = BeginComparison(CommonRegion(files, reference), schedule);
+    for (ComparedFile& file : files) {
+        SetCosts(comparison.blocks, &file);
+        comparison.images.push_back(std::move(file.image));
+    }
+    for (const BlockCost& cost : comparison.images.back().costs)
+        comparison.cap = std::max(comparison.cap, cost.spp);
+    return comparison;
+}
+
+}  // namespace lull

@@ -1,0 +1,47 @@
+// Reads images rendered before, to be compared.
+#pragma once
+
+#include "renderer/lab/comparison/comparison.h"
+
+namespace lull {
+
+struct ComparedFile {
+    ComparedImage image;
+    PixelRect region;        // of the whole image that it covers
+    std::vector<float> spp;  // of each pixel; empty: not known
+};
+
+// Says whether a name is that of an image: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in any case.
+bool IsImageFile(const std::string& path);
+
+// Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds; or a picture
+// for displays, taken as sRGB whatever profile it has, without its alpha, whose region begins at
+// (0, 0). Throws Error, also for a TIFF of more than 8 bits, which may be linear or not.
+ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
+
+// Reads an image as ReadComparedFile() does. Throws Error if it does not have the size of the
+// region.
+RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region);
+
+// Reads an image to be compared with others of a region and blocks that are known; a picture for
+// displays of the same size can be of any part. Its wall seconds are 0 if the file has none. Throws
+// Error if it shows another part of the image.
+ComparedImage ReadImageBeside(const std::string& path, const std::string& name, const Comparison&);
+
+// Returns a comparison of files, the last of which is the reference, read from the file of that
+// name; the cap is the most samples that it has. Throws Error if they do not fit together.
+Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
+                        const ScheduleOptions&);
+
+// Returns the region of the files: that of the EXRs among them; a picture for displays of the same
+// size can be of any part. The last of `files` is the reference, from the file of that name. Throws
+// Error if they do not fit together.
+PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);
+
+// Says what is not measured of pictures for displays; empty if there are none among the images.
+std::string DisplayNote(const Comparison&);
+
+// Sets the cost of each block whose pixels all took the same number of samples.
+void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file);
+
+}  // namespace lull

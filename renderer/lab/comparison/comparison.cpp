@@ -1,0 +1,268 @@
+#include "renderer/lab/comparison/comparison.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "renderer/base/error.h"
+#include "renderer/base/thread_clock.h"
+#include "renderer/render/film_picture.h"
+#include "renderer/results/denoised_image.h"
+#include "stopping/rules/baselines.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+
+namespace lull {
+
+namespace {
+
+std::vector<float> LightnessError(const RgbImage& image, const RgbImage& reference) {
+    const std::vector<double> a = LightnessOf(image.values), b = LightnessOf(reference.values);
+    std::vector<float> error(a.size());
+    for (size_t i = 0; i < a.size(); ++i) error[i] = float(a[i] - b[i]);
+    return error;
+}
+
+// Copies a block's rows into an image; `channels` values a pixel.
+void Paste(std::span<const float> block, const PixelRect& rect, int channels, int imageWidth,
+           std::vector<float>* image) {
+    const size_t row = size_t(rect.Width()) * channels;
+    for (int y = 0; y < rect.Height(); ++y)
+        std::copy_n(&block[size_t(y) * row], row,
+                    &(*image)[(size_t(rect.min.y() + y) * imageWidth + rect.min.x()) * channels]);
+}
+
+Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
+    FilmView view;
+    film.Extract(rect, true, &view);
+    const BlockView block{.width = view.width,
+                          .height = view.height,
+                          .spp = spp,
+                          .mean = view.mean,
+                          .halfMean = view.halfMean};
+    return {.mean = view.mean, .noise = ComputeLightnessNoise(block).noise};
+}
+
+// Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
+void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film,
+                  FeatureFilm* features = nullptr) {
+    RenderState state;
+    RenderOptions options;
+    if (features) options.layers = {.features = features, .source = render.options.layers.source};
+    options.schedule = render.options.schedule;
+    options.schedule.smallestSide = 0;
+    options.sampler = render.options.sampler;
+    options.seed = render.options.seed;
+    options.threads = render.options.threads;
+    options.makeCriterion = [&](const BlockInfo& info) {
+        return MakeFixed(spp[size_t(info.index)]);
+    };
+    state.criteria.resize(spp.size());
+    for (size_t i = 0; i < spp.size(); ++i) {
+        Block& block = state.blocks.emplace_back().block;
+        block.pixels = render.result.blocks[i].block.pixels;
+        block.stopped = spp[i] == 0;
+    }
+    Render(render.source, options, film, &state);
+}
+
+// Makes an image of the right size, black, with the noise known.
+ComparedImage EmptyImage(const PixelRect& region, const std::string& name,
+                         const std::string& rule) {
+    ComparedImage image;
+    image.name = name;
+    image.rule = rule;
+    image.image = {region.Width(), region.Height(), std::vector<float>(size_t(region.Area()) * 3)};
+    image.noise.resize(size_t(region.Area()));
+    return image;
+}
+
+void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelRect& region,
+                   ComparedImage* image) {
+    const PixelRect local{rect.min - region.min, rect.max - region.min};
+    Paste(snapshot.mean, local, 3, region.Width(), &image->image.values);
+    if (snapshot.noise.empty())
+        image->noise.clear();
+    else if (!image->noise.empty())
+        Paste(snapshot.noise, local, 1, region.Width(), &image->noise);
+}
+
+// Denoises the image of the samples that its blocks took.
+void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& blocks,
+                    ComparedImage* image) {
+    const PixelRect& region = render.film.Region();
+    std::vector<int> spp;
+    for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
+    NoisyPicture picture;
+    {
+        Film film(region);
+        FeatureFilm features(region);
+        RenderBlocks(render, spp, &film, &features);
+        picture = PictureOf(film, features, region);
+    }
+    const double start = ProcessSeconds();
+    image->image = DenoiseImage(std::move(picture), region, blocks).image;
+    const double seconds = ProcessSeconds() - start;
+    for (size_t i = 0; i < blocks.size(); ++i)
+        image->costs[i].ruleSeconds +=
+            seconds * double(blocks[i].pixels.Area()) / double(region.Area());
+    image->noise.clear();
+}
+
+// Leaves only the figures of the display image.
+void ForgetLinear(ComparedImage* image) {
+    const auto forget = [](ErrorFigures* figures) {
+        figures->rmse = figures->relMse = std::numeric_limits<double>::quiet_NaN();
+    };
+    forget(&*image->figures);
+    for (ErrorFigures& figures : image->blockFigures) forget(&figures);
+}
+
+ScheduleOptions ScheduleFor(const ObservedRule& rule, ScheduleOptions schedule) {
+    schedule.smallestSide = rule.smallestSide;
+    return schedule;
+}
+
+}  // namespace
+
+const ComparedImage* Comparison::Find(const std::string& name) const {
+    for (const ComparedImage& image : images)
+        if (image.name == name) return &image;
+    return nullptr;
+}
+
+PixelRect Comparison::Local(size_t block) const {
+    return {blocks[block].min - region.min, blocks[block].max - region.min};
+}
+
+Comparison BeginComparison(const PixelRect& region, const ScheduleOptions& schedule) {
+    Comparison comparison;
+    comparison.region = region;
+    for (const Block& block : MakeBlocks(region, schedule))
+        comparison.blocks.push_back(block.pixels);
+    comparison.hasReference = true;
+    return comparison;
+}
+
+void Measure(Comparison* comparison) {
+    std::vector<PixelRect> blocks;
+    for (size_t i = 0; i < comparison->blocks.size(); ++i) blocks.push_back(comparison->Local(i));
+    const bool hasReference = comparison->hasReference;
+    const RgbImage* reference = hasReference ? &comparison->images.back().image : nullptr;
+    for (ComparedImage& image : comparison->images) {
+        if (reference && &image.image != reference) {
+            const ErrorMaps maps = CompareImages(image.image, *reference);
+            image.figures = Average(maps);
+            for (const PixelRect& block : blocks)
+                image.blockFigures.push_back(Average(maps, block));
+            if (image.isDisplay || comparison->images.back().isDisplay) ForgetLinear(&image);
+            image.flip = maps.flip;
+            if (image.noise.empty()) image.noise = LightnessError(image.image, *reference);
+        }
+        if (!image.noise.empty())
+            image.seams = MeasureSeams(image.noise, image.image.width, blocks);
+    }
+}
+
+TotalCost SumCosts(const Comparison& comparison, const ComparedImage& image) {
+    TotalCost total;
+    for (size_t i = 0; i < image.costs.size(); ++i) {
+        const BlockCost& cost = image.costs[i];
+        total.samples += cost.spp * comparison.blocks[i].Area();
+        total.seconds += cost.seconds;
+        total.ruleSeconds += cost.ruleSeconds;
+        total.isEstimated |= cost.isEstimated;
+    }
+    return total;
+}
+
+std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
+    const std::vector<ObservedRule>& rules, const PixelRect& region,
+    const ScheduleOptions& schedule, const ObserverOptions& options,
+    std::vector<BlockHistory>* histories) {
+    std::vector<std::vector<Block>> blocks;  // by rule
+    for (const ObservedRule& rule : rules)
+        blocks.push_back(MakeBlocks(region, ScheduleFor(rule, schedule)));
+    return [&rules, blocks, options, histories](const BlockInfo& info) {
+        std::vector<std::unique_ptr<Criterion>> criteria;
+        for (size_t r = 0; r < rules.size(); ++r)
+            criteria.push_back(blocks[r][size_t(info.index)].votes ? rules[r].make(info) : nullptr);
+        return std::make_unique<BlockObserver>(std::move(criteria), options,
+                                               &(*histories)[size_t(info.index)]);
+    };
+}
+
+ComparedImage TakeImage(const ObservedRender& render, const std::vector<ObservedRule>& rules,
+                        size_t index) {
+    const ObservedRule& rule = rules[index];
+    const PixelRect& region = render.film.Region();
+    const int cap = render.options.schedule.cap;
+    const std::vector<Block> blocks =
+        MakeBlocks(region, ScheduleFor(rule, render.options.schedule));
+    ComparedImage image = EmptyImage(region, rule.name, rule.text);
+
+    // Find how far each block went; what nobody has kept is rendered once more.
+    std::vector<int> again(blocks.size(), 0);
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const BlockResult& whole = render.result.blocks[i];
+        const int judge = blocks[i].votes ? int(i) : blocks[i].leader;
+        const RuleStop stop = judge < 0 ? RuleStop() : render.histories[size_t(judge)].stops[index];
+        BlockCost cost{.spp = stop.spp > 0 ? stop.spp : cap};
+        if (blocks[i].votes && stop.spp > 0) {
+            cost.seconds = stop.seconds;
+        } else {
+            cost.seconds = whole.seconds / whole.block.spp * cost.spp;
+            cost.isEstimated = whole.block.spp != cost.spp;
+        }
+        if (blocks[i].votes) cost.ruleSeconds = stop.ruleSeconds;
+        image.costs.push_back(cost);
+        if (rule.isDenoised) continue;
+
+        const auto& kept = render.histories[i].snapshots;
+        if (const auto snapshot = kept.find(cost.spp); snapshot != kept.end())
+            PasteSnapshot(snapshot->second, blocks[i].pixels, region, &image);
+        else if (whole.block.spp == cost.spp)
+            PasteSnapshot(SnapshotOf(render.film, blocks[i].pixels, cost.spp), blocks[i].pixels,
+                          region, &image);
+        else
+            again[i] = cost.spp;
+    }
+    if (rule.isDenoised) DenoiseSamples(render, blocks, &image);
+    if (std::ranges::none_of(again, [](int spp) { return spp > 0; })) return image;
+    Film film(region);
+    RenderBlocks(render, again, &film);
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (again[i] > 0)
+            PasteSnapshot(SnapshotOf(film, blocks[i].pixels, again[i]), blocks[i].pixels, region,
+                          &image);
+    return image;
+}
+
+ComparedImage TakeWholeImage(const ObservedRender& render) {
+    const PixelRect& region = render.film.Region();
+    ComparedImage image = EmptyImage(region, "reference", "");
+    for (const BlockResult& result : render.result.blocks) {
+        PasteSnapshot(SnapshotOf(render.film, result.block.pixels, result.block.spp),
+                      result.block.pixels, region, &image);
+        image.costs.push_back({.spp = result.block.spp, .seconds = result.seconds});
+    }
+    return image;
+}
+
+EstimateError JudgeEstimates(const ComparedImage& image, const ComparedImage& atCap) {
+    EstimateError error;
+    double estimated = 0, measured = 0;
+    for (size_t i = 0; i < image.costs.size(); ++i) {
+        const BlockCost &part = image.costs[i], &whole = atCap.costs[i];
+        if (part.isEstimated || part.spp >= whole.spp || whole.seconds <= 0) continue;
+        const double estimate = part.seconds / part.spp * whole.spp;
+        ++error.blocks;
+        estimated += estimate;
+        measured += whole.seconds;
+        const double relative = estimate / whole.seconds - 1;
+        if (std::abs(relative) > std::abs(error.worst)) error.worst = relative;
+    }
+    if (measured > 0) error.total = estimated / measured - 1;
+    return error;
+}
+
+}  // namespace lull

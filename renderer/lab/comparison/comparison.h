@@ -1,0 +1,108 @@
+// Compares the images that stopping rules give with each other and with a reference: error, seams,
+// samples and seconds.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/lab/metrics/image_error.h"
+#include "renderer/lab/metrics/seams.h"
+#include "renderer/render/render.h"
+#include "renderer/results/block_observer.h"
+
+namespace lull {
+
+// Says what a block took; seconds are of processors.
+struct BlockCost {
+    int spp = 0;
+    double seconds = 0;
+    double ruleSeconds = 0;
+    bool isEstimated = false;  // from the block's seconds per sample, as not all of it was rendered
+};
+
+// Holds an image and all that is measured of it.
+struct ComparedImage {
+    std::string name;  // automatic, human, reference, or as the user calls it
+    std::string rule;  // empty: not known
+    RgbImage image;
+    bool isDisplay = false;    // was a picture for displays, so that its linear values are rounded
+    std::vector<float> noise;  // of the lightness, with its sign; empty: not known
+    std::vector<BlockCost> costs;       // of each block; empty: not known
+    std::optional<double> wallSeconds;  // as the header of its file says
+
+    // Set by Measure(); the reference has no figures.
+    std::optional<ErrorFigures> figures;
+    std::vector<ErrorFigures> blockFigures;
+    std::vector<float> flip;
+    std::optional<Seams> seams;
+};
+
+struct Comparison {
+    PixelRect region;
+    std::vector<PixelRect> blocks;      // in pixels of the whole image
+    int cap = 0;                        // 0: not known
+    std::vector<ComparedImage> images;  // the last is the reference, if there is one
+    bool hasReference = false;
+
+    const ComparedImage* Find(const std::string& name) const;
+    // Returns a block's place within the images.
+    PixelRect Local(size_t block) const;
+};
+
+// Returns a comparison with a reference, in the blocks of a schedule, that has no images yet.
+Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
+
+// Fills in figures by the reference, and seams. If the noise of an image is not known, its error in
+// lightness stands for it. Throws Error if images differ in size.
+void Measure(Comparison*);
+
+// Adds up what the blocks took.
+struct TotalCost {
+    int64_t samples = 0;
+    double seconds = 0, ruleSeconds = 0;
+    bool isEstimated = false;
+};
+TotalCost SumCosts(const Comparison&, const ComparedImage&);
+
+// Names a rule that observers have run over all blocks of a render.
+struct ObservedRule {
+    std::string name, text;
+    int smallestSide = 0;  // pixels; smaller blocks follow a neighbour
+    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
+    bool isDenoised = false;  // its image is to be denoised
+};
+
+// Makes the observers of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
+// must be 0. `rules` and `histories`, one per block, must outlive the render.
+std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
+    const std::vector<ObservedRule>& rules, const PixelRect& region, const ScheduleOptions&,
+    const ObserverOptions&, std::vector<BlockHistory>* histories);
+
+// Holds an observed render that is complete.
+struct ObservedRender {
+    const SampleSource& source;
+    const RenderOptions& options;
+    const Film& film;
+    const RenderResult& result;
+    const std::vector<BlockHistory>& histories;
+};
+
+// Returns the image that rule number `index` would have rendered by itself, bit for bit. Blocks too
+// small to be judged are rendered again, as only their neighbour determined how far. So are all of
+// an image to be denoised, for which the render must have collected features; it has no `noise`,
+// and denoising it is among the rule's seconds, of which the work of other threads must be no part.
+ComparedImage TakeImage(const ObservedRender&, const std::vector<ObservedRule>& rules,
+                        size_t index);
+// Returns the image of all samples that were taken.
+ComparedImage TakeWholeImage(const ObservedRender&);
+
+// Compares the seconds to the cap, estimated from what the blocks took until the rule stopped them,
+// with those they took: estimated / measured - 1, over all blocks and for the worst one. Blocks
+// that had not stopped before the cap are left out.
+struct EstimateError {
+    int blocks = 0;
+    double total = 0, worst = 0;
+};
+EstimateError JudgeEstimates(const ComparedImage& image, const ComparedImage& atCap);
+
+}  // namespace lull

@@ -1,0 +1,13 @@
+// Writes the page that shows what observers said.
+#pragma once
+
+#include "renderer/results/report_json.h"
+#include "stopping/lab/observers/observers.h"
+
+namespace lull {
+
+// Returns the page. `study` is what ReadStudyPage() returns for the viewpoint, or null: then there
+// are tables, but no image.
+std::string MakeCollectedPage(const Collected&, const Json& study);
+
+}  // namespace lull

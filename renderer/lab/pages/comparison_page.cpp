@@ -1,0 +1,174 @@
+#include "renderer/lab/pages/comparison_page.h"
+
+namespace lull {
+
+namespace {
+
+// JSON has no infinity and no NaN: both become null.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json CostJson(const TotalCost& cost) {
+    return {{"samples", cost.samples},
+            {"seconds", cost.seconds},
+            {"ruleSeconds", cost.ruleSeconds},
+            {"estimated", cost.isEstimated}};
+}
+
+// Returns the share of `whole` that `part` saves, null where there is nothing to save from.
+Json Saved(double part, double whole) { return whole > 0 ? Json(1 - part / whole) : Json(nullptr); }
+
+Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
+    Json json = {{"name", image.name},
+                 {"label", image.rule.empty() ? image.name : image.name + " (" + image.rule + ")"},
+                 {"rule", image.rule}};
+    if (image.isDisplay) json["display"] = true;
+    if (image.wallSeconds) json["wallSeconds"] = *image.wallSeconds;
+    if (image.figures) json["figures"] = FiguresJson(*image.figures);
+    if (image.seams)
+        json["seams"] = {{"border", image.seams->border},
+                         {"inside", image.seams->inside},
+                         {"ratio", Number(image.seams->Ratio())}};
+    if (!image.costs.empty()) {
+        const TotalCost cost = SumCosts(comparison, image);
+        json["cost"] = CostJson(cost);
+        if (comparison.cap > 0) {
+            const TotalCost atCap = CostAtCap(comparison);
+            json["saved"] = {{"samples", Saved(double(cost.samples), double(atCap.samples))},
+                             {"seconds", Saved(cost.seconds + cost.ruleSeconds, atCap.seconds)},
+                             {"estimated", cost.isEstimated || atCap.isEstimated}};
+        }
+    }
+    json["blocks"] = Json::array();
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) {
+        Json block =
+            i < image.blockFigures.size() ? FiguresJson(image.blockFigures[i]) : Json::object();
+        if (i < image.costs.size()) {
+            const BlockCost& cost = image.costs[i];
+            block["spp"] = cost.spp;
+            block["seconds"] = cost.seconds;
+            block["ruleSeconds"] = cost.ruleSeconds;
+            block["estimated"] = cost.isEstimated;
+        }
+        json["blocks"].push_back(std::move(block));
+    }
+    return json;
+}
+
+// Compares the automatic image with the human one, block by block and in all.
+Json AgainstHuman(const Comparison& comparison) {
+    const ComparedImage *automatic = comparison.Find("automatic"),
+                        *human = comparison.Find("human");
+    if (!automatic || !human || automatic->costs.empty() || human->costs.empty()) return nullptr;
+    int earlier = 0, later = 0;
+    double distance = 0;
+    Json differences = Json::array();
+    for (size_t i = 0; i < automatic->costs.size(); ++i) {
+        const int difference = automatic->costs[i].spp - human->costs[i].spp;
+        earlier += difference < 0;
+        later += difference > 0;
+        distance += std::abs(difference);
+        differences.push_back(difference);
+    }
+    const TotalCost a = SumCosts(comparison, *automatic), h = SumCosts(comparison, *human);
+    return {{"earlier", earlier},
+            {"later", later},
+            {"meanDistance", distance / double(std::max<size_t>(1, automatic->costs.size()))},
+            {"spp", differences},
+            {"savedSamples", Saved(double(a.samples), double(h.samples))},
+            {"savedSeconds", Saved(a.seconds + a.ruleSeconds, h.seconds)}};
+}
+
+// Says what part of the saving in samples is left in seconds, on each number of threads.
+Json VerificationJson(const ComparisonReport& report, const Verification& v) {
+    Json json = {
+        {"threads", v.threads},       {"wallSeconds", v.wallSeconds},
+        {"seconds", v.seconds},       {"ruleSeconds", v.ruleSeconds},
+        {"samePixels", v.samePixels}, {"ruleShare", v.ruleSeconds / (v.seconds + v.ruleSeconds)}};
+    const TotalCost taken = SumCosts(report.comparison, report.comparison.images.front());
+    const TotalCost atCap = CostAtCap(report.comparison);
+    // Scale the seconds of this very run, as others may have had another share of the machine.
+    const double capSeconds = v.seconds * atCap.seconds / taken.seconds;
+    const double savedSamples = 1 - double(taken.samples) / double(atCap.samples);
+    const double savedWall = 1 - v.wallSeconds / (capSeconds / v.threads);
+    json["wallSecondsToCap"] = capSeconds / v.threads;
+    json["savedWall"] = savedWall;
+    json["kept"] = savedSamples > 0 ? Json(savedWall / savedSamples) : Json(nullptr);
+    return json;
+}
+
+}  // namespace
+
+Json FiguresJson(const ErrorFigures& f) {
+    return {{"rmse", Number(f.rmse)},
+            {"relMse", Number(f.relMse)},
+            {"rmseLightness", Number(f.rmseLightness)},
+            {"psnr", Number(f.psnr)},
+            {"ssim", Number(f.ssim)},
+            {"flip", Number(f.flip)}};
+}
+
+TotalCost CostAtCap(const Comparison& comparison) {
+    TotalCost total;
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) {
+        // Take the block's seconds from the image that has most of them.
+        const BlockCost* most = nullptr;
+        for (const ComparedImage& image : comparison.images)
+            if (i < image.costs.size() && image.costs[i].seconds > 0 &&
+                (!most || image.costs[i].spp > most->spp))
+                most = &image.costs[i];
+        total.samples += comparison.blocks[i].Area() * comparison.cap;
+        if (!most) continue;
+        total.seconds += most->seconds / most->spp * comparison.cap;
+        total.isEstimated |= most->spp != comparison.cap || most->isEstimated;
+    }
+    return total;
+}
+
+Json ComparisonJson(const ComparisonReport& report) {
+    const Comparison& comparison = report.comparison;
+    Json json = {{"kind", "compare"},
+                 {"title", report.title},
+                 {"cap", comparison.cap},
+                 {"width", comparison.region.Width()},
+                 {"height", comparison.region.Height()}};
+    json["reference"] = comparison.hasReference ? Json(comparison.images.back().name) : Json();
+    if (report.provenance) json["provenance"] = ProvenanceJson(*report.provenance);
+    if (comparison.cap > 0) json["atCap"] = CostJson(CostAtCap(comparison));
+    json["againstHuman"] = AgainstHuman(comparison);
+    if (report.estimates)
+        json["estimates"] = {{"blocks", report.estimates->blocks},
+                             {"total", report.estimates->total},
+                             {"worst", report.estimates->worst}};
+    json["verifications"] = Json::array();
+    for (const Verification& verification : report.verifications)
+        json["verifications"].push_back(VerificationJson(report, verification));
+    json["images"] = Json::array();
+    for (const ComparedImage& image : comparison.images)
+        json["images"].push_back(ImageJson(comparison, image));
+    json["blocks"] = Json::array();
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) {
+        Json block = RectJson(comparison.Local(i));
+        if (i < report.decisions.size() && !report.decisions[i].decisions.empty())
+            block["decisions"] = DecisionsJson(report.decisions[i].decisions);
+        if (i < report.histories.size()) block["curves"] = CurvesJson(report.histories[i].curves);
+        json["blocks"].push_back(std::move(block));
+    }
+    json["warnings"] = report.warnings;
+    json["notes"] = report.notes;
+    return json;
+}
+
+std::string MakeComparisonPage(const ComparisonReport& report) {
+    Json page = ComparisonJson(report);
+    for (size_t i = 0; i < report.comparison.images.size(); ++i) {
+        const ComparedImage& image = report.comparison.images[i];
+        page["images"][i]["src"] = PictureUri(image.image);
+        if (!image.flip.empty())
+            page["images"][i]["flipSrc"] =
+                MapUri(image.flip, image.image.width, image.image.height);
+    }
+    NotePictureScale(report.comparison.region.Width(), report.comparison.region.Height(), &page);
+    return MakePage(page);
+}
+
+}  // namespace lull

@@ -1,0 +1,133 @@
+#include "renderer/lab/viewpoints/recorded_viewpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "renderer/base/error.h"
+#include "renderer/render/peers.h"
+#include "stopping/rules/small_blocks.h"
+#include "stopping/rules/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+// Returns how many samples it takes to bring each block to the pass that reaches its limit.
+int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& blocks,
+                    const ScheduleOptions& schedule) {
+    int64_t samples = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const int pass = schedule.passLength;
+        const int spp = std::min((limits[i] + pass - 1) / pass * pass, schedule.cap);
+        samples += spp * blocks[i].pixels.Area();
+    }
+    return samples;
+}
+
+// Returns the state of a render that has not begun, with the blocks left out that have no limit.
+RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& limits) {
+    RenderState state;
+    state.criteria.resize(blocks.size());
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        BlockResult& result = state.blocks.emplace_back();
+        result.block = blocks[i];
+        result.block.stopped = limits[i] == 0;
+    }
+    return state;
+}
+
+}  // namespace
+
+void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions& schedule) {
+    for (const Block& block : blocks)
+        if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
+            throw Error(
+                fmt::format("blocks of less than {} pixels a side cannot be recorded; "
+                            "choose a --resolution that is a multiple of {}",
+                            smallestVotingSide, schedule.blockSize));
+}
+
+std::string CheckViewpointName(const std::string& name) {
+    return !name.empty() && name.find_first_of("/;\n") == std::string::npos
+               ? ""
+               : "a name has at least one character, and none of / and ;";
+}
+
+std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path) {
+    if (!std::filesystem::exists(path)) return {};
+    return ReadDataset(path);
+}
+
+ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions& schedule,
+                                 const RenderIdentity& identity, size_t blockCount) {
+    ViewpointRecording viewpoint;
+    viewpoint.name = name;
+    viewpoint.blockCount = int(blockCount);
+    viewpoint.cap = schedule.cap;
+    viewpoint.passSpp = schedule.passLength;
+    for (const auto& [key, value] : identity)
+        if (key != "stop" && key != "model" && key != "cap" && key != "pass" && key != "version")
+            viewpoint.provenance[key] = value;
+    return viewpoint;
+}
+
+void AddBlock(size_t i, BlockRecording recording, const BlockResult& result,
+              ViewpointRecording* viewpoint) {
+    viewpoint->blocks[int(i)] = std::move(recording);
+    viewpoint->blockNotes[int(i)] =
+        fmt::format("{:.0f} s of threads for {} spp, {:.0f} s for the recording", result.seconds,
+                    result.block.spp, result.criterionSeconds);
+}
+
+std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chosen, int cap) {
+    std::vector<int> limits(blockCount, chosen.empty() ? cap : 0);
+    for (const int block : chosen) {
+        if (size_t(block) >= blockCount)
+            throw Error(fmt::format("--blocks: there is no block {}, the last of the image is {}",
+                                    block, blockCount - 1));
+        limits[size_t(block)] = cap;
+    }
+    return limits;
+}
+
+void LimitByHuman(const std::string& human, const std::string& viewpoint, double past,
+                  std::vector<int>* limits) {
+    const std::vector<ThresholdsRow> rows = ReadThresholds(human);
+    const auto row = std::ranges::find(rows, viewpoint, &ThresholdsRow::name);
+    if (row == rows.end()) throw Error(fmt::format("{}: has no row '{}'", human, viewpoint));
+    if (row->spp.size() != limits->size())
+        throw Error(fmt::format("{}: '{}' has {} blocks, the image {}", human, viewpoint,
+                                row->spp.size(), limits->size()));
+    for (size_t i = 0; i < limits->size(); ++i)
+        (*limits)[i] = std::min((*limits)[i], int(std::ceil(past * row->spp[i])));
+}
+
+RenderResult RecordBlocks(const SampleSource& source, RenderOptions render, Film* film,
+                          const RenderState* interrupted, const std::vector<int>& limits,
+                          ViewpointRecording* viewpoint) {
+    const ScheduleOptions& schedule = render.schedule;
+    const std::vector<Block> blocks = MakeBlocks(film->Region(), schedule);
+    std::vector<BlockRecording> recordings(blocks.size());
+    render.makeCriterion = [&](const BlockInfo& info) {
+        const size_t i = size_t(info.index);
+        return std::make_unique<Recorder>(schedule.passLength, schedule.cap, limits[i],
+                                          &recordings[i]);
+    };
+    const int64_t wanted = SamplesUpTo(limits, blocks, schedule);
+    if (render.onProgress)
+        render.onProgress = [wanted, tell = render.onProgress](RenderProgress progress) {
+            progress.samplesToCap = wanted - progress.samples;
+            tell(progress);
+        };
+    const RenderState beginning = Beginning(blocks, limits);
+    RenderResult result = Render(source, render, film, interrupted ? interrupted : &beginning);
+    if (result.cancelled || (render.peers && render.peers->Rank() > 0)) return result;
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (limits[i] > 0) AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);
+    return result;
+}
+
+}  // namespace lull

@@ -1,0 +1,44 @@
+// Records a viewpoint: renders its blocks and keeps what stopping rules can learn from.
+#pragma once
+
+#include "renderer/render/checkpoint.h"
+#include "stopping/lab/recordings/dataset.h"
+
+namespace lull {
+
+// Throws Error if there are blocks too small to be recorded.
+void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions&);
+
+// Returns "" for a name that viewpoints can have, else what is wrong with it.
+std::string CheckViewpointName(const std::string& name);
+
+// Returns the data set of a file; nothing if there is no such file. Throws std::runtime_error.
+std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path);
+
+// Describes a whole recording, without the blocks themselves.
+ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions&,
+                                 const RenderIdentity&, size_t blockCount);
+
+// Moves the recording of block i into the viewpoint, with a note on what it cost.
+void AddBlock(size_t i, BlockRecording recording, const BlockResult&, ViewpointRecording*);
+
+// Returns the spp at which each block's recording ends: `cap` for those `chosen` by number, or for
+// all if none is chosen; 0 for blocks that are not recorded. Throws Error for a number that does
+// not exist.
+std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chosen, int cap);
+
+// Ends the recording of each block at `past` times its threshold in the file `human`, where that
+// is earlier. Throws Error if the file has no such viewpoint, or with other blocks.
+void LimitByHuman(const std::string& human, const std::string& viewpoint, double past,
+                  std::vector<int>* limits);
+
+// Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
+// where an interrupted recording with the same limits left film and state, and adds what was
+// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and is told of
+// progress towards the limits. Of several ranks, the first has the recordings. Throws as Render()
+// does.
+RenderResult RecordBlocks(const SampleSource&, RenderOptions render, Film*,
+                          const RenderState* interrupted, const std::vector<int>& limits,
+                          ViewpointRecording*);
+
+}  // namespace lull

@@ -1,0 +1,40 @@
+#include "renderer/lab/viewpoints/study_render.h"
+
+namespace lull {
+
+Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vector<int> levels,
+                 const std::vector<Block>& blocks, const RenderIdentity& identity) {
+    Study study{.viewpoint = viewpoint,
+                .width = region.Width(),
+                .height = region.Height(),
+                .levels = std::move(levels),
+                .blocks = {},
+                .provenance = identity};
+    for (const Block& block : blocks)
+        study.blocks.push_back(
+            {{block.pixels.min - region.min, block.pixels.max - region.min}, {}});
+    return study;
+}
+
+RenderResult RenderStudy(const SampleSource& source, RenderOptions render, Film* film,
+                         const RenderState* interrupted, Study* study,
+                         ViewpointRecording* viewpoint) {
+    const ScheduleOptions& schedule = render.schedule;
+    std::vector<BlockRecording> recordings(study->blocks.size());
+    render.makeCriterion = [&](const BlockInfo& info) {
+        const size_t i = size_t(info.index);
+        std::unique_ptr<Criterion> recorder;
+        if (viewpoint)
+            recorder = std::make_unique<Recorder>(schedule.passLength, schedule.cap, schedule.cap,
+                                                  &recordings[i]);
+        return std::make_unique<PictureLadder>(study->levels, std::move(recorder),
+                                               &study->blocks[i].pictures);
+    };
+    RenderResult result = Render(source, render, film, interrupted);
+    if (result.cancelled || !viewpoint) return result;
+    for (size_t i = 0; i < recordings.size(); ++i)
+        AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);
+    return result;
+}
+
+}  // namespace lull

@@ -1,0 +1,136 @@
+#include "renderer/results/block_observer.h"
+
+#include <algorithm>
+
+#include "renderer/base/thread_clock.h"
+#include "stopping/base/state.h"
+#include "stopping/rules/lnoise.h"
+#include "stopping/signals/lightness.h"
+#include "stopping/signals/lightness_noise.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t observerTag = 0x3153424f;  // "OBS1"
+constexpr int curveSubBlocks = 100;
+constexpr int smallestCurveSide = 10;  // pixels: one to each row of sub-blocks
+
+double MeanEntropy(const BlockView& view) {
+    double sum = 0;
+    for (const SvdEntropy& e : PictureEntropies(view, curveSubBlocks)) sum += e.h;
+    return sum / curveSubBlocks;
+}
+
+Snapshot TakeSnapshot(const BlockView& view, bool withNoise) {
+    Snapshot snapshot{.mean = {view.mean.begin(), view.mean.end()}, .noise = {}};
+    if (withNoise) snapshot.noise = ComputeLightnessNoise(view).noise;
+    return snapshot;
+}
+
+constexpr const char* kDamaged = "the saved observations are damaged";
+
+}  // namespace
+
+BlockObserver::BlockObserver(std::vector<std::unique_ptr<Criterion>> rules,
+                             const ObserverOptions& options, BlockHistory* history)
+    : rules(std::move(rules)), options(options), history(history) {
+    *history = {};
+    history->stops.resize(this->rules.size());
+}
+
+ViewNeed BlockObserver::Need(int spp) const {
+    // A rule that only counts needs no view, but where it stops, the snapshot does.
+    ViewNeed need = options.snapshots ? ViewNeed::Mean : ViewNeed::Nothing;
+    if (options.curves || (options.snapshots && options.noise)) need = ViewNeed::MeanAndHalf;
+    for (const std::unique_ptr<Criterion>& rule : rules)
+        if (rule) need = std::max(need, rule->Need(spp));
+    return need;
+}
+
+Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
+    const double start = ThreadSeconds();
+    const bool needsView = rules[i]->Need(view.spp) != ViewNeed::Nothing;
+    const Decision decision = rules[i]->Observe(view);
+    RuleStop& stop = history->stops[i];
+    stop.ruleSeconds += ThreadSeconds() - start + (needsView ? view.viewSeconds : 0);
+    if (!decision.stop) return decision;
+
+    stop.spp = view.spp;
+    stop.seconds = view.seconds;
+    rules[i].reset();
+    if (options.snapshots && !history->snapshots.contains(view.spp))
+        history->snapshots[view.spp] = TakeSnapshot(view, options.noise);
+    return decision;
+}
+
+void BlockObserver::AddToCurves(const BlockView& view) {
+    BlockCurves& curves = history->curves;
+    const bool isDue = curves.spp.empty() || view.spp >= 1.07 * curves.spp.back();
+    if (!isDue || std::min(view.width, view.height) < smallestCurveSide) return;
+    curves.spp.push_back(view.spp);
+    curves.entropy.push_back(float(MeanEntropy(view)));
+    curves.noise.push_back(float(VisibleNoise(view)));
+}
+
+Decision BlockObserver::Observe(const BlockView& view) {
+    Decision first;
+    for (size_t i = 0; i < rules.size(); ++i) {
+        if (!rules[i]) continue;
+        const Decision decision = ObserveRule(i, view);
+        if (i == 0) first = decision;
+    }
+    if (options.curves) AddToCurves(view);
+    first.stop =
+        !options.goesOn && std::ranges::none_of(rules, [](const auto& rule) { return bool(rule); });
+    return first;
+}
+
+std::vector<std::byte> BlockObserver::Save() const {
+    StateWriter writer;
+    writer.Put(observerTag);
+    writer.PutVector(history->stops);
+    for (const std::unique_ptr<Criterion>& rule : rules)
+        writer.PutVector(rule ? rule->Save() : std::vector<std::byte>());
+    writer.Put(uint64_t(history->snapshots.size()));
+    for (const auto& [spp, snapshot] : history->snapshots) {
+        writer.Put(int32_t(spp));
+        writer.PutVector(snapshot.mean);
+        writer.PutVector(snapshot.noise);
+    }
+    writer.PutVector(history->curves.spp);
+    writer.PutVector(history->curves.entropy);
+    writer.PutVector(history->curves.noise);
+    return std::move(writer.bytes);
+}
+
+void BlockObserver::Restore(std::span<const std::byte> state) {
+    StateReader reader(state);
+    reader.Expect(observerTag);
+    history->stops = reader.GetVector<RuleStop>(kDamaged);
+    if (history->stops.size() != rules.size())
+        throw std::runtime_error("the saved observations are of other rules");
+    for (size_t i = 0; i < rules.size(); ++i) {
+        const auto bytes = reader.GetVector<std::byte>(kDamaged);
+        if (history->stops[i].spp > 0)
+            rules[i].reset();
+        else if (rules[i])
+            rules[i]->Restore(bytes);
+    }
+    history->snapshots.clear();
+    for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
+        Snapshot& snapshot = history->snapshots[reader.Get<int32_t>()];
+        snapshot.mean = reader.GetVector<float>(kDamaged);
+        snapshot.noise = reader.GetVector<float>(kDamaged);
+    }
+    history->curves.spp = reader.GetVector<int>(kDamaged);
+    history->curves.entropy = reader.GetVector<float>(kDamaged);
+    history->curves.noise = reader.GetVector<float>(kDamaged);
+    if (history->curves.entropy.size() != history->curves.spp.size() ||
+        history->curves.noise.size() != history->curves.spp.size())
+        throw std::runtime_error(kDamaged);
+    reader.Finish();
+}
+
+}  // namespace lull

@@ -1,0 +1,39 @@
+// Denoises a finished render.
+#pragma once
+
+#include <optional>
+
+#include "renderer/denoise/visible_error.h"
+#include "renderer/film/feature_film.h"
+#include "renderer/image/image_io.h"
+#include "renderer/image/rgb_image.h"
+#include "renderer/render/schedule.h"
+
+namespace lull {
+
+struct DenoisedImage {
+    RgbImage image;
+    std::vector<float> error;  // estimated standard error of each pixel in lightness
+    // Of each block; not known of those below 10 pixels a side.
+    std::vector<std::optional<VisibleError>> blocks;
+};
+
+// Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
+// have had.
+DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&);
+
+// Says how large the visible errors of blocks probably are at most.
+std::string TextOf(const std::vector<std::optional<VisibleError>>&);
+
+// What the header of an EXR says of R, G, B.
+inline constexpr const char* kDenoisedNote =
+    "R, G, B; noisy.R, .G, .B are the means of the samples";
+
+// Returns channels R, G, B of a layer, "noisy." for instance, from the values of each pixel.
+std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb);
+
+// Returns the channels that an EXR has beside R, G, B that are denoised: noisy.R .G .B, the mean of
+// the samples (R, G, B of each pixel), and `error`.
+std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage&, std::span<const float> noisy);
+
+}  // namespace lull

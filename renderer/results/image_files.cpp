@@ -1,0 +1,221 @@
+#include "renderer/results/image_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "renderer/film/matte_film.h"
+#include "renderer/results/report.h"
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kFilmic = "filmic (Hable 2010)";
+
+// Says whether a channel is a colour or a direction, to which 11 bits do no harm.
+bool MayBeHalf(const std::string& name) {
+    return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
+           name.starts_with("N.") || name.starts_with("noisy.");
+}
+
+// Makes the header of an image of a region of the film, with channels R, G, B and spp.
+ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t samples,
+                 double seconds) {
+    const auto& [scene, provenance] = origin;
+    ExrImage exr;
+    exr.width = region.Width();
+    exr.height = region.Height();
+    exr.origin = region.min;
+    exr.displaySize = scene.film.resolution;
+    for (const char* name : {"R", "G", "B", "spp"})
+        exr.channels.push_back({.name = name, .values = {}});
+
+    // Counts go in as text, since an EXR's integers end at 2^31.
+    exr.attributes = {{"renderer", "lull"},
+                      {"version", provenance.version},
+                      {"seed", std::to_string(provenance.seed)},
+                      {"sampler", NameOf(provenance.sampler)},
+                      {"estimator", NameOf(provenance.estimator)},
+                      {"samples", std::to_string(samples)},
+                      {"criterion", provenance.criterion},
+                      {"seconds", float(seconds)},
+                      {"worldToCamera", WorldToCamera(scene.camera)}};
+    if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
+    if (scene.film.exposure != 0) exr.attributes["exposure"] = scene.film.exposure;
+    if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
+    if (provenance.filtering != TextureFiltering::Bilinear)
+        exr.attributes["filtering"] = NameOf(provenance.filtering);
+    if (provenance.guide != GuideMode::Off)
+        exr.attributes["guide"] = fmt::format("{}: {}", NameOf(provenance.guide),
+                                              provenance.guideFigures.isUsed ? "used" : "not used");
+    return exr;
+}
+
+ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResult& result) {
+    const Provenance& provenance = origin.provenance;
+    ExrImage exr = MakeExr(origin, film.Region(), film.SampleCount(), result.progress.seconds);
+    const int atCap = result.progress.blocksAtCap, stopped = result.progress.stoppedBlocks - atCap;
+    exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
+    exr.attributes["blocks"] = std::to_string(result.progress.blocks);
+    exr.attributes["stoppedBlocks"] = std::to_string(stopped);
+    exr.attributes["blocksAtCap"] = std::to_string(atCap);
+    if (result.cancelled)
+        exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
+    if (!provenance.clock.empty()) exr.attributes["clock"] = provenance.clock;
+    if (result.timeUp)
+        exr.attributes["note"] = fmt::format(
+            "the time was up when {} of {} blocks had stopped and {} were at the cap: the samples "
+            "of the others depend on the machine; --stop thresholds: with the file beside the "
+            "image repeats it",
+            stopped, result.progress.blocks, atCap);
+    else if (atCap > 0 && provenance.trend.kind != RuleTrend::Samples)
+        exr.attributes["note"] =
+            fmt::format("{} of {} blocks went to the cap of {} spp, and had not stopped there",
+                        atCap, result.progress.blocks, provenance.schedule.cap);
+    return exr;
+}
+
+// Adds a word on the tone map of the PNG, and sets which channels take 16 bits.
+void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
+    if (wanted.toneMap == ToneMap::Filmic) exr->attributes["pngToneMap"] = kFilmic;
+    if (!wanted.exrHalf) return;
+    for (ExrChannel& channel : exr->channels) channel.isHalf |= MayBeHalf(channel.name);
+}
+
+// Its header tells of a tone map and of the scene's exposure, in stops.
+PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
+    PngFormat format{.bits = wanted.pngBits, .toneMap = wanted.toneMap, .text = {}};
+    if (wanted.toneMap == ToneMap::Filmic) format.text["ToneMap"] = kFilmic;
+    format.hasAlpha = wanted.isTransparent;
+    if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
+    return format;
+}
+
+// Writes means R, G, B as those of an EXR, with the samples of each pixel, and the values of the
+// channels after these four.
+void WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
+              const RowSource& spp) {
+    const size_t stride = exr.channels.size();
+    std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
+    WriteExr(file, exr, [&](int y, std::span<float> row) {
+        means(y, rgb);
+        spp(y, counts);
+        for (size_t x = 0; x < counts.size(); ++x) {
+            std::copy_n(&rgb[3 * x], 3, &row[stride * x]);
+            row[stride * x + 3] = counts[x];
+            for (size_t c = 4; c < stride; ++c)
+                row[stride * x + c] = exr.channels[c].values[size_t(y) * counts.size() + x];
+        }
+    });
+}
+
+// Returns the rows of the image, which is never held as a whole beside its sums.
+RowSource MeansOf(const Film& film) {
+    return [&film, view = std::make_shared<FilmView>()](int y, std::span<float> row) {
+        const PixelRect& all = film.Region();
+        film.Extract({{all.min.x(), all.min.y() + y}, {all.max.x(), all.min.y() + y + 1}}, false,
+                     view.get());
+        std::ranges::copy(view->mean, row.begin());
+    };
+}
+
+// Returns the rows without what samples that met nothing brought, multiplied by alpha therefore.
+// Where they were denoised it can be a little more than they are.
+RowSource WithoutBackground(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
+    return [&, rows](int y, std::span<float> row) {
+        rows(y, row);
+        for (size_t x = 0; x < row.size() / 3; ++x) {
+            const Vec2i p = film.Region().min + Vec2i(int(x), y);
+            const AlphaPixel& pixel = mattes.alpha.At(p);
+            const double count = film.At(p).count;
+            for (size_t c = 0; c < 3 && count > 0; ++c)
+                row[3 * x + c] =
+                    pixel.covered == 0 ? 0 : row[3 * x + c] - float(pixel.background[c] / count);
+        }
+    };
+}
+
+// Adds alpha to rows of R, G, B, which are moved apart for it from the last pixel on.
+RowSource WithAlpha(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
+    return [&, rows](int y, std::span<float> row) {
+        rows(y, row.first(row.size() / 4 * 3));
+        for (size_t x = row.size() / 4; x-- > 0;) {
+            for (size_t c = 3; c-- > 0;) row[4 * x + c] = row[3 * x + c];
+            row[4 * x + 3] = mattes.alpha.At(film.Region().min + Vec2i(int(x), y)).Alpha();
+        }
+    };
+}
+
+RowSource SppOf(const Film& film) {
+    return [&film](int y, std::span<float> row) {
+        for (size_t x = 0; x < row.size(); ++x)
+            row[x] = float(film.At(film.Region().min + Vec2i(int(x), y)).count);
+    };
+}
+
+// Returns the samples of pixels of blocks that have spp[i] each.
+RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
+                const std::vector<int>& spp) {
+    return [&](int y, std::span<float> row) {
+        y += region.min.y();
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            const PixelRect& r = blocks[i].pixels;
+            if (y < r.min.y() || y >= r.max.y()) continue;
+            std::fill_n(row.begin() + (r.min.x() - region.min.x()), r.Width(), float(spp[i]));
+        }
+    };
+}
+
+}  // namespace
+
+RowSource MeansOf(const RgbImage& image) {
+    return [&image](int y, std::span<float> row) {
+        std::copy_n(&image.values[size_t(y) * row.size()], row.size(), row.begin());
+    };
+}
+
+void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
+                const DenoisedImage* denoised, const MatteFilm* mattes, const RenderResult& result,
+                ExtraLayers extra, const PictureFormat& format, ResultFiles* results) {
+    ExrImage exr = MakeExr(origin, film, result);
+    if (denoised) {
+        std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
+                          std::back_inserter(exr.channels));
+        exr.attributes["denoised"] = kDenoisedNote;
+    }
+    std::ranges::move(extra.channels, std::back_inserter(exr.channels));
+    exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
+    ApplyTo(&exr, format);
+    RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
+    if (format.isTransparent) {
+        colours = WithoutBackground(colours, film, *mattes);
+        exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
+    }
+    results->Write(files.exr,
+                   [&](const std::string& file) { WriteExr(file, exr, colours, SppOf(film)); });
+    results->Write(files.png, [&](const std::string& file) {
+        WritePng(file, format.isTransparent ? WithAlpha(colours, film, *mattes) : colours,
+                 film.Region().Width(), film.Region().Height(),
+                 MakePngFormat(format, origin.scene.film.exposure));
+    });
+}
+
+void WriteImage(const PictureFiles& files, const PictureOrigin& origin,
+                const ImageOfBlocks& picture, ResultFiles* results) {
+    const RgbImage& image = picture.image;
+    const PixelRect& region = origin.provenance.crop;
+    int64_t samples = 0;
+    for (size_t i = 0; i < picture.blocks.size(); ++i)
+        samples += picture.blocks[i].pixels.Area() * picture.spp[i];
+    const ExrImage exr = MakeExr(origin, region, samples, picture.seconds);
+    results->Write(files.exr, [&](const std::string& file) {
+        WriteExr(file, exr, MeansOf(image), SppOf(region, picture.blocks, picture.spp));
+    });
+    results->Write(files.png, [&](const std::string& file) {
+        WritePng(file, MeansOf(image), image.width, image.height);
+    });
+}
+
+}  // namespace lull

@@ -1,0 +1,53 @@
+// Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
+#pragma once
+
+#include "renderer/files/result_files.h"
+#include "renderer/image/png_format.h"
+#include "renderer/render/provenance.h"
+#include "renderer/render/render.h"
+#include "renderer/results/denoised_image.h"
+#include "renderer/results/extra_layers.h"
+
+namespace lull {
+
+// Says how pictures are stored.
+struct PictureFormat {
+    ToneMap toneMap = ToneMap::None;  // of the PNG
+    int pngBits = 8;
+    // Colours and normals of the EXR take 16 bits; depths, positions, numbers and counts 32.
+    bool exrHalf = false;
+    // Both lack the background that the camera sees past everything, and the PNG has alpha.
+    bool isTransparent = false;
+};
+
+// Names the files of a picture.
+struct PictureFiles {
+    std::string exr, png;
+};
+
+// Says where a picture comes from.
+struct PictureOrigin {
+    const Scene& scene;
+    const Provenance& provenance;
+};
+
+// Writes the image of a render, each file whole or not at all: the means of the film or, where
+// there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
+// `mattes` are asked for where the format is transparent.
+void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
+                const MatteFilm* mattes, const RenderResult&, ExtraLayers extra,
+                const PictureFormat&, ResultFiles*);
+
+// Returns the rows of an image, which must outlive that.
+RowSource MeansOf(const RgbImage&);
+
+// Writes an image as of a render whose block i, of those in `blocks`, took spp[i].
+struct ImageOfBlocks {
+    const RgbImage& image;
+    const std::vector<Block>& blocks;
+    const std::vector<int>& spp;
+    double seconds;  // of processors
+};
+void WriteImage(const PictureFiles&, const PictureOrigin&, const ImageOfBlocks&, ResultFiles*);
+
+}  // namespace lull

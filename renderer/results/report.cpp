@@ -1,0 +1,181 @@
+#include "renderer/results/report.h"
+
+#include <cmath>
+
+#include "renderer/results/report_json.h"
+#include "renderer/results/shortfall.h"
+#include "stopping/network/human_range.h"
+
+namespace lull {
+
+namespace {
+
+const char* EndOf(const Block& block, bool timeUp) {
+    if (!block.stopped) return timeUp ? "time" : "interrupted";
+    return block.stoppedByVote ? "stopped" : "cap";
+}
+
+// Says between which spp people would have stopped to see noise; null: more than is known.
+Json RangeJson(const Block& block, const std::vector<double>& logRatios) {
+    const HumanRange range = RangeOfPeople(block.spp, block.stoppedByVote, logRatios);
+    return {{"from", range.low}, {"to", range.high ? Json(*range.high) : Json(nullptr)}};
+}
+
+Json BlockJson(const BlockResult& result, int cap, bool timeUp,
+               const std::vector<double>& logRatios) {
+    const Block& block = result.block;
+    Json json = RectJson(block.pixels);
+    json["spp"] = block.spp;
+    json["threshold"] = block.stoppedByVote || (timeUp && !block.stopped) ? block.spp : cap;
+    json["end"] = EndOf(block, timeUp);
+    if (!logRatios.empty() && block.stopped) json["people"] = RangeJson(block, logRatios);
+    if (std::isfinite(block.noise)) json["visibleNoise"] = block.noise;
+    if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
+    json["seconds"] = result.seconds;
+    json["criterionSeconds"] = result.criterionSeconds;
+    if (!result.decisions.empty()) json["decisions"] = DecisionsJson(result.decisions);
+    return json;
+}
+
+// Adds what was missing when the time was up; nobody knows that of blocks within their first pass.
+void AddShortfall(const Provenance& provenance, const RenderResult& result, Json* report) {
+    std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
+    const auto unknown =
+        std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
+    (*report)["totals"]["timeUp"] = true;
+    if (unknown == 0) (*report)["totals"]["neededSeconds"] = NeededSeconds(noisy, result);
+    for (const NoisyBlock& block : noisy) {
+        Json& json = (*report)["blocks"][size_t(block.block)];
+        json["neededSpp"] = block.neededSpp;
+        json["neededSeconds"] = block.neededSeconds;
+    }
+}
+
+// Adds at which spp blocks at the cap would probably have stopped, and which cap would do.
+void AddCapped(const Provenance& provenance, const RenderResult& result, Json* report) {
+    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    for (const CappedBlock& c : capped)
+        if (c.neededSpp > 0) (*report)["blocks"][size_t(c.block)]["neededSpp"] = c.neededSpp;
+    if (capped.empty()) return;
+    if (const int cap = CapFor(capped, provenance.schedule.cap); cap > 0)
+        (*report)["totals"]["neededCap"] = cap;
+}
+
+Json GuideJson(const Provenance& p) {
+    const GuideFigures& f = p.guideFigures;
+    Json json = {{"mode", NameOf(p.guide)}, {"memory", p.guideMegabytes},
+                 {"used", f.isUsed},        {"why", f.why},
+                 {"rounds", f.rounds},      {"from", f.from},
+                 {"spp", f.samples},        {"seconds", f.seconds},
+                 {"bytes", f.bytes},        {"leaves", f.leaves}};
+    if (p.guide == GuideMode::Auto && f.rounds > 0) {
+        json["variance"] = f.comparison.variance;
+        json["varianceError"] = f.comparison.error;
+        json["vertices"] = f.comparison.vertices;
+    }
+    return json;
+}
+
+Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
+    const Savings savings = ComputeSavings(result, provenance.schedule.cap);
+    return {{"blocks", result.blocks.size()},
+            {"stoppedBlocks", result.progress.stoppedBlocks - result.progress.blocksAtCap},
+            {"blocksAtCap", result.progress.blocksAtCap},
+            {"medianSpp", result.progress.medianSpp},
+            {"seconds", result.progress.seconds},
+            {"samples", savings.samples},
+            {"samplesAtCap", savings.samplesAtCap},
+            {"samplesSaved", savings.SampleShare()},
+            {"threadSeconds", savings.seconds},
+            {"threadSecondsAtCap", savings.secondsAtCap},
+            {"secondsSaved", savings.SecondShare()},
+            {"criterionSeconds", savings.criterionSeconds},
+            {"rejectedSamples", rejected},
+            {"interrupted", result.cancelled}};
+}
+
+}  // namespace
+
+Savings ComputeSavings(const RenderResult& result, int cap) {
+    Savings savings;
+    savings.samples = result.progress.samples;
+    for (const BlockResult& b : result.blocks) {
+        savings.samplesAtCap += b.block.pixels.Area() * cap;
+        savings.criterionSeconds += b.criterionSeconds;
+        savings.seconds += b.seconds + b.criterionSeconds;
+        if (b.block.spp > 0) savings.secondsAtCap += b.seconds / b.block.spp * cap;
+    }
+    return savings;
+}
+
+Json RectJson(const PixelRect& r) {
+    return {{"x", r.min.x()}, {"y", r.min.y()}, {"width", r.Width()}, {"height", r.Height()}};
+}
+
+Json ProvenanceJson(const Provenance& p) {
+    Json json = {{"renderer", "lull"},
+                 {"version", p.version},
+                 {"scene", p.scene},
+                 {"seed", p.seed},
+                 {"sampler", NameOf(p.sampler)},
+                 {"estimator", NameOf(p.estimator)},
+                 {"criterion", p.criterion},
+                 {"modelChecksum", p.checksum},
+                 {"cap", p.schedule.cap},
+                 {"pass", p.schedule.passLength},
+                 {"blockSize", p.schedule.blockSize},
+                 {"maxDepth", p.maxDepth},
+                 {"threads", p.threads},
+                 {"substitute", p.substitute},
+                 {"resolution", {p.resolution.x(), p.resolution.y()}},
+                 {"crop", RectJson(p.crop)}};
+    if (!p.clock.empty()) json["clock"] = p.clock;
+    if (p.filtering != TextureFiltering::Bilinear) json["filtering"] = NameOf(p.filtering);
+    if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
+    return json;
+}
+
+Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
+    Json spp = Json::array(), value = Json::array(), votes = Json::array();
+    for (const DecisionRecord& record : decisions) {
+        spp.push_back(record.spp);
+        value.push_back(record.decision.value);
+        votes.push_back(record.decision.votes);
+    }
+    return {{"threshold", decisions.empty() ? 0 : decisions.back().decision.threshold},
+            {"spp", spp},
+            {"value", value},
+            {"votes", votes}};
+}
+
+Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_t rejectedSamples,
+                const std::map<std::string, int>& warnings, const DenoisedImage* denoised) {
+    Json report;
+    report["provenance"] = ProvenanceJson(provenance);
+    report["totals"] = TotalsJson(provenance, result, rejectedSamples);
+    report["blocks"] = Json::array();
+    for (const BlockResult& block : result.blocks)
+        report["blocks"].push_back(
+            BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
+    if (denoised)
+        for (size_t i = 0; i < result.blocks.size(); ++i)
+            if (const auto& error = denoised->blocks[i])
+                report["blocks"][i]["visibleError"] = {{"estimate", error->estimate},
+                                                       {"upper", error->upper}};
+    if (result.timeUp) AddShortfall(provenance, result, &report);
+    AddCapped(provenance, result, &report);
+    report["warnings"] = warnings;
+    return report;
+}
+
+std::string Dump(const Json& json) {
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string MakeReport(const Provenance& provenance, const RenderResult& result,
+                       int64_t rejectedSamples, const std::map<std::string, int>& warnings,
+                       const DenoisedImage* denoised) {
+    return Dump(ReportJson(provenance, result, rejectedSamples, warnings, denoised));
+}
+
+}  // namespace lull

@@ -1,0 +1,252 @@
+#include "stopping/lab/evaluation/answer_judgement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "stopping/lab/evaluation/probit.h"
+#include "stopping/lab/evaluation/roc.h"
+#include "stopping/lab/evaluation/simulation.h"
+#include "stopping/lab/recordings/extension.h"
+#include "stopping/network/human_range.h"
+#include "stopping/rules/rule_table.h"
+
+namespace lull {
+
+namespace {
+
+// Numbers are taken to be no closer to 0, and probabilities no closer to 0 and 1.
+constexpr double kLeastNumber = 1e-4, kLeastProbability = 1e-6;
+
+// Returns what the probit is linear in.
+double Abscissa(double number, bool isProbability) {
+    if (!isProbability) return std::log(std::max(number, kLeastNumber));
+    const double p = std::clamp(number, kLeastProbability, 1 - kLeastProbability);
+    return std::log(p / (1 - p));
+}
+
+// Holds what a rule says of a block at some spp, which increase.
+struct Curve {
+    std::vector<double> logSpp = {}, values = {};
+
+    // Returns the value at `spp`: linear between two, and that of the last one `slack` spp beyond.
+    std::optional<double> At(double spp, double slack) const {
+        const double x = std::log(spp);
+        const size_t next = size_t(std::ranges::lower_bound(logSpp, x) - logSpp.begin());
+        if (next < logSpp.size() && logSpp[next] == x) return values[next];
+        if (next == 0) return {};
+        if (next == logSpp.size()) {
+            if (spp > std::exp(logSpp.back()) + slack) return {};
+            return values.back();
+        }
+        const double share = (x - logSpp[next - 1]) / (logSpp[next] - logSpp[next - 1]);
+        return std::lerp(values[next - 1], values[next], share);
+    }
+};
+
+Curve CurveOf(const RuleOutcome& outcome, int end, bool isProbability) {
+    Curve curve;
+    for (const Verdict& verdict : outcome.verdicts) {
+        if (verdict.spp > end || std::isinf(verdict.score)) continue;
+        curve.logSpp.push_back(std::log(verdict.spp));
+        curve.values.push_back(Abscissa(verdict.score, isProbability));
+    }
+    return curve;
+}
+
+// Holds a rule's runs over all blocks.
+struct RuleRun {
+    std::string rule;
+    bool isKnown = false;  // whether its stops need no recording
+    std::vector<RuleOutcome> outcomes;
+    std::vector<Curve> curves;
+};
+
+RuleRun RunRule(const std::string& rule, const RuleContext& context,
+                std::span<const JudgedBlock> recorded, std::span<const JudgedBlock> extended) {
+    const Simulator simulator = MakeSimulator(rule, context);
+    const Rule* entry = FindRule(rule);
+    RuleRun run{.rule = rule,
+                .isKnown = entry && entry->replay == Replay::Counts,
+                .outcomes = {},
+                .curves = {}};
+    for (size_t i = 0; i < recorded.size(); ++i) {
+        run.outcomes.push_back(simulator(extended[i]));
+        run.curves.push_back(CurveOf(run.outcomes.back(), recorded[i].recording->spp.back(),
+                                     entry && entry->compares == RuleTrend::Probability));
+    }
+    return run;
+}
+
+std::vector<JudgedBlock> BlocksOf(const ViewpointRecording& viewpoint,
+                                  const std::set<int>& answered) {
+    std::vector<JudgedBlock> blocks;
+    for (const auto& [number, recording] : viewpoint.blocks)
+        if (answered.contains(number))
+            blocks.push_back({.viewpoint = viewpoint.name,
+                              .block = number,
+                              .cap = viewpoint.cap,
+                              .passSpp = viewpoint.passSpp,
+                              .recording = &recording});
+    return blocks;
+}
+
+// An answer that counts, with the place of its block, and what each rule says there.
+struct Asked {
+    SingleAnswer answer;
+    size_t place;
+    std::vector<double> values;
+};
+
+std::vector<Asked> AskRules(std::span<const SingleAnswer> answers,
+                            std::span<const JudgedBlock> blocks, std::span<const RuleRun> runs,
+                            AnswersUsed* used) {
+    std::vector<Asked> asked;
+    std::set<int> without;
+    for (const SingleAnswer& answer : answers) {
+        const auto block = std::ranges::find(blocks, answer.block, &JudgedBlock::block);
+        if (block == blocks.end()) {
+            ++used->notRecorded;
+            without.insert(answer.block);
+            continue;
+        }
+        Asked one{.answer = answer, .place = size_t(block - blocks.begin()), .values = {}};
+        for (const RuleRun& run : runs)
+            if (const auto value = run.curves[one.place].At(answer.spp, 2 * blocks.front().passSpp))
+                one.values.push_back(*value);
+        if (one.values.size() == runs.size())
+            asked.push_back(std::move(one));
+        else
+            ++used->withoutNumber;
+    }
+    used->blocksNotRecorded = {without.begin(), without.end()};
+    return asked;
+}
+
+// Fits the answers to a constant for each of `places` places, and a slope in `abscissa`, which is
+// the last coefficient, of the numbers less their mean, over their deviation.
+struct ScaledFit {
+    ProbitFit fit;
+    double mean = 0, deviation = 1;
+
+    double Slope() const { return fit.coefficients[fit.coefficients.size() - 1] / deviation; }
+};
+
+ScaledFit FitAnswers(std::span<const Asked> asked, size_t places, const auto& placeOf,
+                     const auto& abscissaOf) {
+    const auto count = Eigen::Index(asked.size());
+    Eigen::VectorXd x(count), answers(count);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, Eigen::Index(places) + 1);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Asked& one = asked[size_t(i)];
+        x[i] = abscissaOf(one);
+        answers[i] = one.answer.seen;
+        rows(i, Eigen::Index(placeOf(one))) = 1;
+    }
+    ScaledFit scaled{.fit = {}, .mean = x.mean()};
+    const double deviation = std::sqrt((x.array() - scaled.mean).square().mean());
+    if (deviation > 1e-12) scaled.deviation = deviation;
+    rows.col(Eigen::Index(places)) = (x.array() - scaled.mean) / scaled.deviation;
+    scaled.fit = FitProbit(rows, answers);
+    return scaled;
+}
+
+double LogSpp(const Asked& one) { return std::log(one.answer.spp); }
+
+std::vector<AnsweredBlock> ThresholdsOfBlocks(std::span<const Asked> asked,
+                                              std::span<const JudgedBlock> blocks,
+                                              const ScaledFit& best) {
+    std::vector<AnsweredBlock> answered;
+    for (const JudgedBlock& block : blocks) answered.push_back({.block = block.block});
+    for (const Asked& one : asked) {
+        ++answered[one.place].answers;
+        answered[one.place].seen += one.answer.seen;
+    }
+    for (size_t i = 0; i < answered.size(); ++i)
+        // Noise has to be seen less with more samples for there to be a threshold.
+        if (answered[i].seen > 0 && answered[i].seen < answered[i].answers && best.Slope() < 0)
+            answered[i].threshold =
+                std::exp(best.mean - best.fit.coefficients[Eigen::Index(i)] / best.Slope());
+    return answered;
+}
+
+RuleByAnswers JudgeRule(const RuleRun& run, size_t index, std::span<const Asked> asked,
+                        std::span<const JudgedBlock> blocks, const AnswerJudgement& judgement) {
+    const auto valueOf = [&](const Asked& one) { return one.values[index]; };
+    const ScaledFit own = FitAnswers(
+        asked, 1, [](const Asked&) { return size_t(0); }, valueOf);
+    RuleByAnswers result{
+        .rule = run.rule, .logLikelihood = own.fit.logLikelihood, .slope = own.Slope()};
+    if (const double span = judgement.best - judgement.worst; span > 1e-6)
+        result.explained = (result.logLikelihood - judgement.worst) / span;
+    std::vector<float> scores;
+    std::vector<char> labels;
+    for (const Asked& one : asked) {
+        scores.push_back(float(valueOf(one)));
+        labels.push_back(one.answer.seen);
+    }
+    result.auc = AreaUnderRoc(scores, labels);
+
+    double early = 0, late = 0, logs = 0, count = 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        const int stop = run.outcomes[i].stop, end = blocks[i].recording->spp.back();
+        result.stops.push_back(stop);
+        result.open += !run.isKnown && end < kJudgedCap && stop > end;
+        if (!judgement.blocks[i].threshold) continue;
+        const double ratio = std::max(1, stop) / *judgement.blocks[i].threshold;
+        early += ratio < 0.8;
+        late += ratio > 1.25;
+        logs += std::log(ratio);
+        ++count;
+    }
+    if (count > 0) {
+        result.early = early / count;
+        result.late = late / count;
+        result.level = std::exp(logs / count);
+    }
+    return result;
+}
+
+}  // namespace
+
+AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
+                               std::span<const SingleAnswer> answers,
+                               std::span<const std::string> rules, const RuleContext& context) {
+    std::set<int> answered;
+    for (const SingleAnswer& answer : answers) answered.insert(answer.block);
+    const std::vector<JudgedBlock> recorded = BlocksOf(viewpoint, answered);
+    const ExtendedBlocks extended = ExtendBlocks(recorded);
+    RuleContext ofRecording = context;
+    ofRecording.passSpp = viewpoint.passSpp;
+    std::vector<RuleRun> runs;
+    for (const std::string& rule : rules)
+        runs.push_back(RunRule(rule, ofRecording, recorded, extended.blocks));
+
+    AnswerJudgement judgement{.viewpoint = viewpoint.name};
+    AnswersUsed& used = judgement.used;
+    used.all = int(answers.size());
+    used.allBlocks = int(answered.size());
+    const std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
+    if (asked.empty())
+        throw std::runtime_error(fmt::format(
+            "no answer is to a recorded block of '{}' at an spp where all rules have a number; "
+            "record blocks that were answered",
+            viewpoint.name));
+    const auto all = [](const Asked&) { return size_t(0); };
+    const ScaledFit best = FitAnswers(
+        asked, recorded.size(), [](const Asked& one) { return one.place; }, LogSpp);
+    judgement.best = best.fit.logLikelihood;
+    judgement.worst = FitAnswers(asked, 1, all, LogSpp).fit.logLikelihood;
+    judgement.blocks = ThresholdsOfBlocks(asked, recorded, best);
+    used.answers = int(asked.size());
+    used.blocks = int(std::ranges::count_if(judgement.blocks, &AnsweredBlock::answers));
+    for (size_t i = 0; i < runs.size(); ++i)
+        judgement.rules.push_back(JudgeRule(runs[i], i, asked, recorded, judgement));
+    return judgement;
+}
+
+}  // namespace lull

@@ -1,0 +1,120 @@
+#include "stopping/lab/evaluation/judged_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "stopping/lab/evaluation/simulation.h"
+#include "stopping/lab/evaluation/two_figures.h"
+#include "stopping/lab/recordings/extension.h"
+
+namespace lull {
+
+namespace {
+
+// Adds rivals; the settings of those that go on for longer than recordings are chosen on extended
+// recordings as well.
+void AddRivals(std::span<const JudgedBlock> blocks, std::span<const JudgedBlock> extended,
+               const RulesToJudge& judged, std::vector<JudgedRule>* rules) {
+    const auto judge = [&](std::span<const JudgedBlock> on) {
+        return JudgeRivals(on, judged.chooseBy, judged.grid);
+    };
+    const auto ruleOf = [](Rival& rival) {
+        return JudgedRule{rival.rule, rival.bestOfAll, std::move(rival.viewpoints)};
+    };
+    std::vector<Rival> recorded = judge(blocks), longer;
+    for (size_t i = 0; i < recorded.size(); ++i) {
+        const auto extend = [&] {
+            if (longer.empty()) longer = judge(extended);
+            return ruleOf(longer[i]);
+        };
+        AddTwoFigures(blocks, ruleOf(recorded[i]), extend, rules);
+    }
+}
+
+std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+// Judges the thresholds of a file on recorded blocks; those beyond the end of a recording as they
+// are or, if `clipped`, at that end.
+JudgedRule JudgeFile(const std::string& path, std::span<const JudgedBlock> blocks, bool clipped) {
+    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
+    const Simulator simulator = [&](const JudgedBlock& block) {
+        const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
+        if (row == rows.end() || size_t(block.block) >= row->spp.size())
+            throw std::runtime_error(fmt::format("{}: has no threshold for block {} of '{}'", path,
+                                                 block.block, block.viewpoint));
+        RuleOutcome outcome = SimulateStop(block, row->spp[size_t(block.block)]);
+        const int end = block.recording->spp.back();
+        if (clipped && outcome.stop > end) {
+            outcome.stop = end;
+            outcome.open = true;
+        }
+        return outcome;
+    };
+    return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
+}
+
+}  // namespace
+
+std::vector<ThresholdsRow> ReadHumanThresholds(const std::string& human,
+                                               const std::vector<std::string>& without) {
+    std::vector<ThresholdsRow> rows = ReadThresholds(human);
+    for (const std::string& name : without)
+        if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0)
+            throw std::runtime_error(fmt::format("--without: {} has no row '{}'", human, name));
+    return rows;
+}
+
+JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
+                           const std::vector<ThresholdsRow>& people, int grid,
+                           const WarningSink& warn) {
+    const std::vector<ThresholdsRow> rows = ReadThresholds(path);
+    JudgedRule rule{.name = Stem(path)};
+    for (const ThresholdsRow& judged : people) {
+        const auto row = std::ranges::find(rows, judged.name, &ThresholdsRow::name);
+        if (row == rows.end()) continue;
+        if (row->spp.size() != judged.spp.size())
+            throw std::runtime_error(fmt::format("{}: '{}' has {} thresholds, but {} in {}", path,
+                                                 row->name, row->spp.size(), judged.spp.size(),
+                                                 human));
+        ViewpointOutcome& viewpoint = rule.viewpoints.emplace_back();
+        viewpoint.name = row->name;
+        for (size_t i = 0; i < row->spp.size(); ++i)
+            viewpoint.blocks.push_back({judged.spp[i], OutcomeOfStop(row->spp[i], grid)});
+    }
+    if (rule.viewpoints.empty())
+        throw std::runtime_error(fmt::format("{} and {} have no viewpoint in common", path, human));
+    if (rule.viewpoints.size() < rows.size())
+        warn(
+            fmt::format("{} of {} viewpoints in {} are judged; there are no human thresholds for "
+                        "the others",
+                        rule.viewpoints.size(), rows.size(), path));
+    return rule;
+}
+
+std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks,
+                                      const RulesToJudge& judged) {
+    std::vector<JudgedRule> rules;
+    const ExtendedBlocks extended = ExtendBlocks(blocks);
+    if (judged.rivals) AddRivals(blocks, extended.blocks, judged, &rules);
+    RuleContext context = judged.context;
+    if (!blocks.empty()) context.passSpp = blocks.front().passSpp;
+    for (const std::string& rule : judged.rules) {
+        const Simulator simulator = MakeSimulator(rule, context);
+        const auto judge = [&](std::span<const JudgedBlock> on) {
+            return JudgedRule{.name = rule, .viewpoints = Simulate(on, simulator, "")};
+        };
+        AddTwoFigures(
+            blocks, judge(blocks), [&] { return judge(extended.blocks); }, &rules);
+    }
+    const bool anyShort = !extended.recordings.empty();
+    for (const std::string& path : judged.predicted) {
+        rules.push_back(JudgeFile(path, blocks, false));
+        if (anyShort) rules.push_back(JudgeFile(path, blocks, true));
+    }
+    return rules;
+}
+
+}  // namespace lull

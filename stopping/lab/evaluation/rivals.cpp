@@ -1,0 +1,165 @@
+#include "stopping/lab/evaluation/rivals.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <stdexcept>
+
+#include "stopping/rules/rule_table.h"
+
+namespace lull {
+
+namespace {
+
+// Names a rule that has one threshold, and says whether the mask of its visible noise is chosen
+// beside it.
+struct RivalRule {
+    const Rule* rule;
+    bool choosesMask = false;
+
+    std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
+};
+
+std::vector<RivalRule> RivalRules() {
+    std::vector<RivalRule> rivals;
+    for (const Rule& rule : AllRules()) {
+        if (rule.sweep.largest == 0) continue;
+        rivals.push_back({&rule});
+        if (rule.sweep.choosesMask) rivals.push_back({&rule, true});
+    }
+    return rivals;
+}
+
+// What NoiseVisibility::mask may be, the default first; the last hides nothing.
+constexpr double kMasks[] = {NoiseVisibility().mask, 8, 12, 16, 24, 1e9};
+
+std::string Text(double number) {
+    char text[32];
+    const auto end =
+        std::to_chars(text, text + sizeof(text), number, std::chars_format::general, 3).ptr;
+    return std::string(text, end);
+}
+
+// Returns the masks that a rule is run with.
+std::span<const double> MasksOf(const RivalRule& rule) {
+    return std::span(kMasks).first(rule.choosesMask ? std::size(kMasks) : 1);
+}
+
+// Says with what a rule is run.
+struct Setting {
+    double threshold = 0;
+    size_t mask = 0;  // its place in kMasks
+    std::string text = {};
+};
+
+std::vector<Setting> SettingsOf(const RivalRule& rule) {
+    std::vector<Setting> settings;
+    const RuleSweep& sweep = rule.rule->sweep;
+    if (rule.rule->replay == Replay::RanAlong) {
+        for (const double t : kCyclesThresholds)
+            settings.push_back({.threshold = t, .text = Text(t)});
+        return settings;
+    }
+    for (size_t mask = 0; mask < MasksOf(rule).size(); ++mask)
+        for (double t = sweep.largest; t >= sweep.least; t /= 1.01)
+            settings.push_back(
+                {t, mask, rule.choosesMask ? Text(t) + ", " + Text(kMasks[mask]) : Text(t)});
+    return settings;
+}
+
+// Runs a setting over block number `index`; without verdicts if `brief`.
+using Run = std::function<RuleOutcome(size_t index, const Setting& setting, bool brief)>;
+
+double Cost(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
+    const bool critical = chooseBy == ChooseBy::CriticalError;
+    const Judgement judgement =
+        Judge(std::span(&viewpoint, 1),
+              {.grid = grid, .margins = critical ? std::vector<double>{2} : std::vector<double>()});
+    return critical ? judgement.criticalErrors[0] : judgement.absoluteError;
+}
+
+// Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
+std::vector<std::vector<double>> Costs(std::span<const JudgedBlock> blocks,
+                                       std::span<const size_t> begins,
+                                       std::span<const Setting> settings, const Run& run,
+                                       ChooseBy chooseBy, int grid) {
+    std::vector<std::vector<double>> costs;
+    for (size_t v = 0; v + 1 < begins.size(); ++v) {
+        std::vector<double>& row = costs.emplace_back();
+        for (const Setting& setting : settings) {
+            ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint};
+            for (size_t i = begins[v]; i < begins[v + 1]; ++i)
+                viewpoint.blocks.push_back(
+                    {.human = blocks[i].human, .outcome = run(i, setting, true)});
+            row.push_back(Cost(viewpoint, chooseBy, grid));
+        }
+    }
+    return costs;
+}
+
+// Returns the setting of the least mean cost over all viewpoints but `left` (-1: none is left out),
+// the first among equals.
+Setting Best(const std::vector<std::vector<double>>& costs, std::span<const Setting> settings,
+             int left) {
+    std::vector<double> sums(settings.size(), 0);
+    for (size_t v = 0; v < costs.size(); ++v)
+        for (size_t s = 0; s < settings.size(); ++s)
+            if (int(v) != left) sums[s] += costs[v][s];
+    return settings[size_t(std::ranges::min_element(sums) - sums.begin())];
+}
+
+Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
+                 std::span<const size_t> begins, std::span<const Setting> settings, const Run& run,
+                 ChooseBy chooseBy, int grid) {
+    const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
+    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Best(costs, settings, -1).text};
+    for (size_t v = 0; v + 1 < begins.size(); ++v) {
+        const Setting setting = Best(costs, settings, int(v));
+        ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
+            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = setting.text});
+        for (size_t i = begins[v]; i < begins[v + 1]; ++i)
+            viewpoint.blocks.push_back(
+                {.human = blocks[i].human, .outcome = run(i, setting, false)});
+    }
+    return rival;
+}
+
+// Runs a rule over recordings, each of which it reads once for each mask.
+Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rival) {
+    if (rival.rule->replay == Replay::RanAlong)
+        return [=](size_t index, const Setting& setting, bool brief) {
+            return SimulateCycles(blocks[index], setting.threshold, brief);
+        };
+    std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
+    for (const double mask : MasksOf(rival)) {
+        const CriterionFactory factory =
+            MakeCriterionFactory(std::string(rival.rule->name) + ":1",
+                                 {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}});
+        std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
+        for (const JudgedBlock& block : blocks)
+            ofBlocks.push_back(MakeErrorSeries(block, *factory.voting));
+    }
+    return [=](size_t index, const Setting& setting, bool brief) {
+        return SimulateErrorRule(blocks[index], series[setting.mask][index], setting.threshold,
+                                 brief);
+    };
+}
+
+}  // namespace
+
+std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid) {
+    std::vector<size_t> begins;
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (i == 0 || blocks[i].viewpoint != blocks[i - 1].viewpoint) begins.push_back(i);
+    if (begins.size() < 2)
+        throw std::invalid_argument("settings are chosen on other viewpoints, so two are needed");
+    begins.push_back(blocks.size());
+
+    std::vector<Rival> rivals;
+    for (const RivalRule& rule : RivalRules())
+        rivals.push_back(JudgeRival(rule.Name(), blocks, begins, SettingsOf(rule),
+                                    MakeRun(blocks, rule), chooseBy, grid));
+    return rivals;
+}
+
+}  // namespace lull

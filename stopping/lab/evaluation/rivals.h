@@ -1,0 +1,33 @@
+// Gives each simple rule the best chance: its setting is chosen on other viewpoints.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/evaluation/simulation.h"
+
+namespace lull {
+
+// Says what the best setting of a rule is: the one with the least mean error of the thresholds, or
+// with the least critical error at 2 %.
+enum class ChooseBy { AbsoluteError, CriticalError };
+
+struct Rival {
+    // A name of the table of rules; "entropy, mask" is that with the mask of its visible noise
+    // chosen as well.
+    std::string rule;
+    // One for each viewpoint, with the setting that is the best one on all others.
+    std::vector<ViewpointOutcome> viewpoints;
+    // The best setting on all viewpoints: what to use on new ones. A threshold, to three digits;
+    // "threshold, mask" for "entropy, mask".
+    std::string bestOfAll;
+};
+
+// Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
+// with the setting that does best on the others; of equally good ones the one that takes the fewest
+// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Throws
+// std::invalid_argument if there are fewer than two viewpoints.
+std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid);
+
+}  // namespace lull

@@ -1,0 +1,197 @@
+#include "stopping/lab/evaluation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "stopping/base/parallel.h"
+#include "stopping/rules/rule_table.h"
+#include "stopping/rules/thresholds.h"
+
+namespace lull {
+
+namespace {
+
+// Makes an outcome without verdicts: stopped at `spp`, or at the end of the recording if that is 0.
+RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
+    if (recording.spp.empty()) throw std::invalid_argument("a recording has no passes");
+    if (spp > 0) return {.stop = std::min(spp, kJudgedCap)};
+    const int end = std::min(recording.spp.back(), kJudgedCap);
+    return {.stop = end, .open = end < kJudgedCap};
+}
+
+// Returns whether a verdict is due: at every second pass, so that they are evenly spaced.
+bool HasVerdict(const JudgedBlock& block, int spp) {
+    return (spp - block.passSpp) % (2 * block.passSpp) == 0;
+}
+
+// Adds the verdicts of a rule of which only the stop is known: noisy before it.
+void AddVerdictsOfStop(const JudgedBlock& block, RuleOutcome* outcome) {
+    for (const int spp : block.recording->spp)
+        if (HasVerdict(block, spp))
+            outcome->verdicts.push_back({.spp = spp,
+                                         .score = double(outcome->stop) / spp,
+                                         .noisy = outcome->open || outcome->stop > spp});
+}
+
+// Adds the verdicts of a rule from its numbers, one for each record.
+void AddVerdicts(const JudgedBlock& block, std::span<const double> numbers, double threshold,
+                 RuleOutcome* outcome) {
+    const std::vector<int>& spp = block.recording->spp;
+    for (size_t i = 0; i < spp.size(); ++i)
+        if (HasVerdict(block, spp[i]))
+            outcome->verdicts.push_back(
+                {.spp = spp[i], .score = numbers[i], .noisy = !(numbers[i] < threshold)});
+}
+
+// Checks that every second pass is enough for what a rule compares beyond 400 spp.
+void CheckSpacing(const VotingRule& rule, const JudgedBlock& block) {
+    if (rule.spacing % (2 * block.passSpp) != 0)
+        throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +
+                                    " spp apart, but recordings have one every " +
+                                    std::to_string(2 * block.passSpp) + " spp");
+}
+
+// Lets the rule decide after every recorded pass, whether it has stopped the block or not.
+std::vector<Decision> Replayed(const JudgedBlock& block, const VotingRule& rule) {
+    CheckSpacing(rule, block);
+    const BlockRecording& recording = *block.recording;
+    Decider decider(rule, {.index = block.block});
+    std::vector<Decision> decisions;
+    for (int i = 0; i < recording.Count(); ++i) {
+        const int spp = recording.spp[size_t(i)];
+        decisions.push_back(decider.Decide(
+            spp, decider.Looks(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
+    }
+    return decisions;
+}
+
+std::vector<double> NumbersOf(std::span<const Decision> decisions) {
+    std::vector<double> numbers;
+    for (const Decision& decision : decisions)
+        numbers.push_back(decision.judged ? decision.value
+                                          : std::numeric_limits<double>::infinity());
+    return numbers;
+}
+
+// Returns the end of the pass that reaches `spp`.
+int PassReaching(int spp, int passSpp) { return (spp + passSpp - 1) / passSpp * passSpp; }
+
+Simulator ThresholdsSimulator(const std::string& path) {
+    const auto rows = std::make_shared<const std::vector<ThresholdsRow>>(ReadThresholds(path));
+    return [=](const JudgedBlock& block) {
+        const auto row = std::ranges::find(*rows, block.viewpoint, &ThresholdsRow::name);
+        if (row == rows->end())
+            throw std::runtime_error(path + ": has no row '" + block.viewpoint + "'");
+        if (block.block >= int(row->spp.size()))
+            throw std::runtime_error(path + ": '" + block.viewpoint +
+                                     "' has no threshold for block " + std::to_string(block.block));
+        return SimulateStop(block, PassReaching(row->spp[size_t(block.block)], block.passSpp));
+    };
+}
+
+}  // namespace
+
+ErrorSeries MakeErrorSeries(const JudgedBlock& block, const VotingRule& rule) {
+    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule.votes)};
+}
+
+int FirstBelow(const ErrorSeries& series, double threshold) {
+    VoteCounter votes{.needed = series.needed};
+    for (size_t i = 0; i < series.errors.size(); ++i) {
+        if (std::isinf(series.errors[i])) continue;  // no look, no vote
+        votes.Cast(series.errors[i], threshold);
+        if (votes.Stops()) return int(i);
+    }
+    return -1;
+}
+
+RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& series, double threshold,
+                              bool brief) {
+    const BlockRecording& recording = *block.recording;
+    const int first = FirstBelow(series, threshold);
+    RuleOutcome outcome = MakeOutcome(recording, first < 0 ? 0 : recording.spp[size_t(first)]);
+    if (!brief) AddVerdicts(block, series.errors, threshold, &outcome);
+    return outcome;
+}
+
+RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brief) {
+    const auto found = std::ranges::find(kCyclesThresholds, threshold);
+    if (found == kCyclesThresholds.end()) {
+        std::string message = "cycles is recorded only at the thresholds";
+        for (const double t : kCyclesThresholds) {
+            std::string text = std::to_string(t);
+            text.erase(text.find_last_not_of('0') + 1);
+            message += " " + text;
+        }
+        throw std::invalid_argument(message);
+    }
+    const size_t index = size_t(found - kCyclesThresholds.begin());
+    RuleOutcome outcome = MakeOutcome(*block.recording, block.recording->cyclesStops[index]);
+    if (!brief) AddVerdictsOfStop(block, &outcome);
+    return outcome;
+}
+
+RuleOutcome SimulateVoting(const JudgedBlock& block, const VotingRule& rule) {
+    const std::vector<Decision> decisions = Replayed(block, rule);
+    const auto last = std::ranges::find(decisions, true, &Decision::stop);
+    RuleOutcome outcome = MakeOutcome(
+        *block.recording,
+        last == decisions.end() ? 0 : block.recording->spp[size_t(last - decisions.begin())]);
+    AddVerdicts(block, NumbersOf(decisions), rule.threshold, &outcome);
+    return outcome;
+}
+
+RuleOutcome SimulateStop(const JudgedBlock& block, int spp) {
+    RuleOutcome outcome = MakeOutcome(*block.recording, std::max(1, spp));
+    AddVerdictsOfStop(block, &outcome);
+    return outcome;
+}
+
+Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
+    // Each viewpoint has a row of its own.
+    if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
+        return ThresholdsSimulator(ArgumentOf(text));
+    if (const Rule* rule = FindRule(text); rule && rule->replay == Replay::Unknown)
+        throw std::invalid_argument("stopping rule '" + text +
+                                    "': recordings hold no denoised pictures, nor what these are "
+                                    "made of; thresholds that a render has written can be judged");
+    const CriterionFactory factory = MakeCriterionFactory(text, context);
+    const Replay replay = FindRule(text)->replay;
+    if (replay == Replay::Counts)
+        return [factory](const JudgedBlock& block) {
+            return SimulateStop(
+                block, PassReaching(factory.stopAt({.index = block.block}), block.passSpp));
+        };
+    if (replay == Replay::RanAlong)
+        return [factory](const JudgedBlock& block) {
+            return SimulateCycles(block, factory.voting->threshold);
+        };
+    if (!factory.voting->recall)
+        throw std::invalid_argument("stopping rule '" + factory.rule + "' cannot be simulated");
+    return [factory](const JudgedBlock& block) {
+        try {
+            return SimulateVoting(block, *factory.voting);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error("stopping rule '" + factory.rule + "': " + error.what());
+        }
+    };
+}
+
+std::vector<ViewpointOutcome> Simulate(std::span<const JudgedBlock> blocks, const Simulator& rule,
+                                       const std::string& setting) {
+    std::vector<RuleOutcome> outcomes(blocks.size());
+    ForEachIndex(int(blocks.size()), [&](int i) { outcomes[size_t(i)] = rule(blocks[size_t(i)]); });
+    std::vector<ViewpointOutcome> result;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        if (result.empty() || result.back().name != blocks[i].viewpoint)
+            result.push_back({.name = blocks[i].viewpoint, .setting = setting});
+        result.back().blocks.push_back(
+            {.human = blocks[i].human, .outcome = std::move(outcomes[i])});
+    }
+    return result;
+}
+
+}  // namespace lull

@@ -1,0 +1,93 @@
+#include "stopping/lab/evaluation/single_answers.h"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+
+namespace lull {
+
+namespace {
+
+constexpr const char* kHead = "block,spp,noise_seen";
+constexpr int kMostBlocks = 1 << 16, kMostSpp = 1 << 24;
+
+// Returns the three whole numbers of a line; nothing if it is something else.
+std::optional<std::array<int, 3>> ParseNumbers(const std::string& line) {
+    std::array<int, 3> numbers;
+    const char *at = line.data(), *end = at + line.size();
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        if (i > 0 && (at == end || *at++ != ',')) return {};
+        const auto [rest, error] = std::from_chars(at, end, numbers[i]);
+        if (error != std::errc()) return {};
+        at = rest;
+    }
+    if (at != end) return {};
+    return numbers;
+}
+
+// Throws std::invalid_argument saying what is wrong.
+SingleAnswer ParseAnswer(const std::string& line) {
+    const std::optional<std::array<int, 3>> numbers = ParseNumbers(line);
+    if (!numbers)
+        throw std::invalid_argument(
+            "'" + line.substr(0, 80) +
+            "' is no answer; three whole numbers are needed, as in 5,640,1");
+    const auto [block, spp, seen] = *numbers;
+    if (block < 0 || block >= kMostBlocks)
+        throw std::invalid_argument("there can be no block " + std::to_string(block) +
+                                    "; blocks are counted from 0, row by row");
+    if (spp < 1 || spp > kMostSpp)
+        throw std::invalid_argument(std::to_string(spp) +
+                                    " samples per pixel cannot be; give those of the picture");
+    if (seen != 0 && seen != 1)
+        throw std::invalid_argument("noise_seen is " + std::to_string(seen) +
+                                    "; 1 is needed where noise was seen, else 0");
+    return {.block = block, .spp = spp, .seen = seen == 1};
+}
+
+}  // namespace
+
+std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string& fileName) {
+    std::vector<SingleAnswer> answers;
+    bool hasHead = false;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (line.empty()) continue;
+        try {
+            if (!hasHead && line != kHead)
+                throw std::invalid_argument(std::string("the first line has to be ") + kHead);
+            if (hasHead) {
+                answers.push_back(ParseAnswer(line));
+                answers.back().line = number;
+            }
+            hasHead = true;
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(fileName + ":" + std::to_string(number) + ": " + error.what());
+        }
+    }
+    if (in.bad()) throw std::runtime_error(fileName + ": cannot be read");
+    if (answers.empty())
+        throw std::runtime_error(fileName + ": has no answers; lines of " + kHead + " are needed");
+    return answers;
+}
+
+std::vector<SingleAnswer> ReadSingleAnswers(const std::string& path) {
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error(path + ": cannot be opened");
+    return ReadSingleAnswers(file, path);
+}
+
+void CheckBlocks(std::span<const SingleAnswer> answers, int blockCount,
+                 const std::string& fileName) {
+    for (const SingleAnswer& answer : answers)
+        if (answer.block >= blockCount)
+            throw std::runtime_error(fileName + ":" + std::to_string(answer.line) + ": block " +
+                                     std::to_string(answer.block) +
+                                     ", but the recorded picture has the blocks 0 to " +
+                                     std::to_string(blockCount - 1));
+}
+
+}  // namespace lull

@@ -1,0 +1,42 @@
+#include "stopping/lab/evaluation/two_figures.h"
+
+#include "stopping/network/human_range.h"
+
+namespace lull {
+
+namespace {
+
+bool HasOpen(const JudgedRule& rule) {
+    for (const ViewpointOutcome& viewpoint : rule.viewpoints)
+        for (const BlockOutcome& block : viewpoint.blocks)
+            if (block.outcome.open) return true;
+    return false;
+}
+
+// Marks the stops that lie beyond the ends of recordings. Outcomes are in the order of the blocks.
+void MarkOpen(std::span<const JudgedBlock> blocks, JudgedRule* rule) {
+    size_t next = 0;
+    for (ViewpointOutcome& viewpoint : rule->viewpoints)
+        for (BlockOutcome& block : viewpoint.blocks) {
+            const int end = blocks[next++].recording->spp.back();
+            block.outcome.open = end < kJudgedCap && block.outcome.stop > end;
+        }
+}
+
+}  // namespace
+
+void AddTwoFigures(std::span<const JudgedBlock> blocks, JudgedRule recorded,
+                   const std::function<JudgedRule()>& extend, std::vector<JudgedRule>* rules) {
+    if (!HasOpen(recorded)) {
+        rules->push_back(std::move(recorded));
+        return;
+    }
+    recorded.openStops = OpenStops::Ends;
+    rules->push_back(std::move(recorded));
+    JudgedRule extended = extend();
+    MarkOpen(blocks, &extended);
+    extended.openStops = OpenStops::Extended;
+    rules->push_back(std::move(extended));
+}
+
+}  // namespace lull

@@ -1,0 +1,20 @@
+// Judges rules on recordings that end too early: once at least, and once extended.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "stopping/lab/evaluation/evaluation.h"
+#include "stopping/lab/recordings/training_samples.h"
+
+namespace lull {
+
+// Adds what a rule did to `blocks`, whose recordings are as they are. Where it had not stopped all
+// of them it is added twice, so that no figure looks final: stopped at their ends, and then what
+// `extend` returns, which is what it did to the same blocks with extended recordings. `extend` can
+// be empty if no recording ends below kJudgedCap.
+void AddTwoFigures(std::span<const JudgedBlock> blocks, JudgedRule recorded,
+                   const std::function<JudgedRule()>& extend, std::vector<JudgedRule>* rules);
+
+}  // namespace lull

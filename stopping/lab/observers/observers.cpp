@@ -1,0 +1,282 @@
+#include "stopping/lab/observers/observers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+#include "stopping/lab/observers/agreement.h"
+
+namespace lull {
+
+namespace {
+
+constexpr double kQuickSeconds = 0.4;  // an answer that takes less is doubtful
+constexpr double kLooseOctaves = 1;    // and a deviation of one that is more
+
+// Moves answers for which `reasonOf` has a reason to `refused`.
+template <typename ReasonOf>
+void RefuseSome(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
+                const ReasonOf& reasonOf) {
+    std::vector<ObserverAnswers> kept;
+    for (ObserverAnswers& one : *answers) {
+        const std::string reason = reasonOf(one);
+        if (reason.empty())
+            kept.push_back(std::move(one));
+        else
+            refused->push_back({one.file, reason});
+    }
+    *answers = std::move(kept);
+}
+
+std::string NameOfProcedure(const std::string& procedure) {
+    return procedure == "adjust" ? "adjustment" : procedure;
+}
+
+void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
+                        const CollectOptions& options) {
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        if (!options.study.empty() && one.study != options.study) return "answers another study";
+        if (!options.procedure.empty() && one.procedure != options.procedure)
+            return "answers the study by " + NameOfProcedure(one.procedure) + ", not by " +
+                   NameOfProcedure(options.procedure);
+        return "";
+    });
+    // The study of a viewpoint is the one that most files answer, the first of them in a tie; the
+    // same pictures give other thresholds where they are asked for in another way.
+    using Asked = std::pair<std::string, std::string>;  // study and procedure
+    std::map<std::string, std::map<Asked, int>> counts;
+    for (const ObserverAnswers& one : *answers) ++counts[one.viewpoint][{one.study, one.procedure}];
+    std::map<std::string, Asked> chosen;
+    for (const ObserverAnswers& one : *answers) {
+        const Asked asked(one.study, one.procedure);
+        Asked& best = chosen.emplace(one.viewpoint, asked).first->second;
+        if (counts[one.viewpoint][asked] > counts[one.viewpoint][best]) best = asked;
+    }
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        const auto& [study, procedure] = chosen[one.viewpoint];
+        if (one.study != study)
+            return "answers another study of '" + one.viewpoint +
+                   "', with other pictures, than most files do";
+        if (one.procedure != procedure)
+            return "was asked by " + NameOfProcedure(one.procedure) + ", most files of '" +
+                   one.viewpoint + "' by " + NameOfProcedure(procedure) +
+                   "; collect the two apart, as they are not the same thresholds";
+        return "";
+    });
+    // Studies are told apart by a hash; a file whose head was changed by hand has the hash still.
+    std::map<std::string, const ObserverAnswers*> first;
+    std::set<std::string> contradicting;
+    for (const ObserverAnswers& one : *answers) {
+        const ObserverAnswers* other = first.emplace(one.study, &one).first->second;
+        if (other->levels != one.levels || other->thresholds.size() != one.thresholds.size() ||
+            other->viewpoint != one.viewpoint)
+            contradicting.insert(one.file);
+    }
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        return contradicting.contains(one.file)
+                   ? "describes its study in another way than the files before"
+                   : "";
+    });
+}
+
+void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused) {
+    std::map<std::string, const ObserverAnswers*> sessions;
+    std::map<std::string, std::string> contradicting;  // session to the other file
+    for (const ObserverAnswers& one : *answers) {
+        const ObserverAnswers* other = sessions.emplace(one.session, &one).first->second;
+        if (!(*other == one)) contradicting.emplace(one.session, one.file);
+    }
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        return contradicting.contains(one.session)
+                   ? "the same session has other answers in another file; which ones are right?"
+                   : "";
+    });
+    std::map<std::string, std::string> seen;  // session to file
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        const auto [first, isNew] = seen.emplace(one.session, one.file);
+        return isNew ? "" : "is a copy of " + first->second;
+    });
+    // Nobody looks at a picture for the first time twice.
+    using Person = std::pair<std::string, std::string>;
+    std::map<Person, std::pair<std::string, std::string>> earliest;  // to (started, session)
+    for (const ObserverAnswers& one : *answers) {
+        const std::pair<std::string, std::string> when(one.started, one.session);
+        const auto [at, isNew] = earliest.emplace(Person(one.viewpoint, one.observer), when);
+        if (!isNew) at->second = std::min(at->second, when);
+    }
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        return earliest[Person(one.viewpoint, one.observer)].second == one.session
+                   ? ""
+                   : "'" + one.observer + "' has judged '" + one.viewpoint +
+                         "' before; the first time counts";
+    });
+}
+
+// Says of answers that count what is odd about them.
+std::string DoubtsOf(const JudgedObserver& judged, double secondsEach) {
+    std::string doubts;
+    const auto add = [&](const std::string& doubt) {
+        doubts += (doubts.empty() ? "" : "; ") + doubt;
+    };
+    if (judged.failed > 0) add(fmt::format("failed {} of {} checks", judged.failed, judged.checks));
+    if (secondsEach < kQuickSeconds) add(fmt::format("took only {:.2g} s an answer", secondsEach));
+    // Two answers differ by the root of 2 more than one from the mean.
+    if (judged.repeatOctaves && *judged.repeatOctaves > kLooseOctaves)
+        add(fmt::format("asked twice, gave answers that differ by a factor of {:.1f}",
+                        std::exp2(std::numbers::sqrt2 * *judged.repeatOctaves)));
+    return doubts;
+}
+
+JudgedObserver JudgeObserver(ObserverAnswers answers, const CollectOptions& options) {
+    JudgedObserver judged;
+    double squares = 0;
+    for (const BlockAnswer& answer : answers.answers) {
+        if (answer.kind == AnswerKind::Catch) {
+            ++judged.checks;
+            judged.failed += answer.failed;
+        } else if (answer.kind == AnswerKind::Repeat) {
+            const auto first = std::ranges::find_if(answers.answers, [&](const BlockAnswer& other) {
+                return other.kind == AnswerKind::Asked && other.block == answer.block;
+            });
+            const double octaves = std::log2(answer.spp / first->spp);
+            squares += octaves * octaves / 2;
+            ++judged.repeats;
+        }
+    }
+    if (judged.repeats > 0) judged.repeatOctaves = std::sqrt(squares / judged.repeats);
+    if (judged.failed > options.mostFailed * judged.checks)
+        judged.leftOut = "failed " + std::to_string(judged.failed) + " of " +
+                         std::to_string(judged.checks) + " checks";
+    else if (answers.isIdle)
+        judged.leftOut = "pointed at nothing";
+    const double secondsEach = answers.seconds / std::max(1, answers.given);
+    if (judged.leftOut.empty() && secondsEach < options.leastSeconds)
+        judged.leftOut = fmt::format("took {:.2g} s an answer, in which nobody looks", secondsEach);
+    if (judged.leftOut.empty()) judged.doubts = DoubtsOf(judged, secondsEach);
+    judged.answers = std::move(answers);
+    return judged;
+}
+
+BlockConsensus MakeConsensus(const std::vector<double>& spp, const std::vector<int>& levels) {
+    BlockConsensus block;
+    std::vector<double> logs;
+    for (const double v : spp) {
+        block.mean += v / double(spp.size());
+        logs.push_back(std::log2(v));
+    }
+    block.lowest = *std::ranges::min_element(spp);
+    block.highest = *std::ranges::max_element(spp);
+    block.deviation = SampleDeviation(spp);
+    block.octaves = SampleDeviation(logs);
+    if (block.deviation) {
+        const double half = StudentInterval(0.95, int(spp.size()) - 1) * *block.deviation /
+                            std::sqrt(double(spp.size()));
+        block.low = std::max(double(levels.front()), block.mean - half);
+        block.high = std::min(double(levels.back()), block.mean + half);
+    }
+    return block;
+}
+
+// Adds what the staircases of the only observer say of their thresholds.
+void AddOwnConfidence(const ObserverAnswers& answers, CollectedViewpoint* viewpoint) {
+    for (const BlockAnswer& answer : answers.answers) {
+        if (answer.kind != AnswerKind::Asked || !answer.octaves) continue;
+        BlockConsensus& block = viewpoint->blocks[size_t(answer.block)];
+        const double factor = std::exp2(1.96 * std::min(20.0, std::max(0.0, *answer.octaves)));
+        block.low = std::max(double(viewpoint->levels.front()), block.mean / factor);
+        block.high = std::min(double(viewpoint->levels.back()), block.mean * factor);
+    }
+}
+
+// Makes the viewpoint of observers whose answers count, and notes how far each is from all.
+CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) {
+    const ObserverAnswers& first = observers.front()->answers;
+    CollectedViewpoint viewpoint{.name = first.viewpoint,
+                                 .study = first.study,
+                                 .procedure = first.procedure,
+                                 .levels = first.levels,
+                                 .observers = int(observers.size()),
+                                 .blocks = {},
+                                 .agreement = {}};
+    std::vector<std::vector<double>> logs(first.thresholds.size());
+    for (size_t i = 0; i < logs.size(); ++i) {
+        std::vector<double> spp;
+        for (const JudgedObserver* o : observers) {
+            spp.push_back(o->answers.thresholds[i]);
+            logs[i].push_back(std::log2(spp.back()));
+        }
+        viewpoint.blocks.push_back(MakeConsensus(spp, viewpoint.levels));
+    }
+    for (const JudgedObserver* o : observers)
+        for (const BlockAnswer& answer : o->answers.answers)
+            if (answer.kind != AnswerKind::Catch)
+                viewpoint.blocks[size_t(answer.block)].answers += answer.answers;
+    if (observers.size() == 1) AddOwnConfidence(first, &viewpoint);
+    viewpoint.agreement = IntraclassCorrelation(logs);
+    for (size_t k = 0; k < observers.size(); ++k) {
+        double shift = 0;
+        for (const std::vector<double>& block : logs) {
+            double mean = 0;
+            for (const double v : block) mean += v / double(block.size());
+            shift += (block[k] - mean) / double(logs.size());
+        }
+        observers[k]->shiftOctaves = shift;
+    }
+    return viewpoint;
+}
+
+}  // namespace
+
+Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOptions& options) {
+    Collected collected;
+    RefuseOtherStudies(&answers, &collected.refused, options);
+    RefuseDoubles(&answers, &collected.refused);
+    std::ranges::stable_sort(answers, {}, [](const ObserverAnswers& one) {
+        return std::pair(one.viewpoint, one.observer);
+    });
+    for (ObserverAnswers& one : answers)
+        collected.observers.push_back(JudgeObserver(std::move(one), options));
+    std::map<std::string, std::vector<JudgedObserver*>> counting;
+    for (JudgedObserver& one : collected.observers)
+        if (one.leftOut.empty()) counting[one.answers.viewpoint].push_back(&one);
+    for (const auto& [name, observers] : counting)
+        collected.viewpoints.push_back(MakeCollected(observers));
+    return collected;
+}
+
+int FewestAnswers(const CollectedViewpoint& viewpoint) {
+    int fewest = std::numeric_limits<int>::max();
+    for (const BlockConsensus& block : viewpoint.blocks) fewest = std::min(fewest, block.answers);
+    return fewest;
+}
+
+Collected CollectFiles(const std::vector<std::string>& files, const CollectOptions& options) {
+    std::vector<ObserverAnswers> answers;
+    std::vector<RefusedAnswers> unreadable;
+    for (const std::string& file : files) try {
+            answers.push_back(ReadAnswers(file));
+        } catch (const std::runtime_error& e) {
+            unreadable.push_back({file, e.what()});
+        }
+    Collected collected = CollectObservers(std::move(answers), options);
+    collected.refused.insert(collected.refused.begin(), unreadable.begin(), unreadable.end());
+    return collected;
+}
+
+std::vector<ThresholdsRow> ThresholdsOf(const Collected& collected) {
+    std::vector<ThresholdsRow> rows;
+    for (const CollectedViewpoint& viewpoint : collected.viewpoints) {
+        ThresholdsRow& row = rows.emplace_back(ThresholdsRow{viewpoint.name, {}});
+        for (const BlockConsensus& block : viewpoint.blocks)
+            row.spp.push_back(int(std::lround(block.mean)));
+    }
+    return rows;
+}
+
+}  // namespace lull

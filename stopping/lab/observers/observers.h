@@ -1,0 +1,77 @@
+// Makes human thresholds of what observers said.
+#pragma once
+
+#include "stopping/lab/observers/observer_answers.h"
+#include "stopping/rules/thresholds.h"
+
+namespace lull {
+
+struct CollectOptions {
+    double mostFailed = 0.25;    // share of the checks that an observer may fail
+    double leastSeconds = 0.2;   // that an answer takes in the mean; nobody looks in less
+    std::string study = {};      // the id of the only study that is taken; empty: any
+    std::string procedure = {};  // and how it has to have asked; empty: any
+};
+
+// Names what was not taken, and why.
+struct RefusedAnswers {
+    std::string file, reason;
+};
+
+// Says what is known of an observer's care. Octaves are of spp: 1 is a factor of two.
+struct JudgedObserver {
+    ObserverAnswers answers;
+    std::string leftOut;  // why; empty: the answers count
+    std::string doubts;   // what a reader should know of answers that count; may be empty
+    int checks = 0, failed = 0, repeats = 0;
+    // Standard deviation of a single answer, from those given twice: the root of the mean of half
+    // the squared differences.
+    std::optional<double> repeatOctaves;
+    // How far the thresholds are above the mean of all observers (geometric means, octaves).
+    std::optional<double> shiftOctaves;
+};
+
+// What observers said of a block, in spp.
+struct BlockConsensus {
+    double mean = 0, lowest = 0, highest = 0;
+    std::optional<double> deviation, octaves;  // standard deviations over observers
+    // 95 % confidence of the mean, within the ladder: from the spread over observers; of a single
+    // one from the staircase; else not known.
+    std::optional<double> low, high;
+    int answers = 0;  // that it rests on, of all observers
+};
+
+struct CollectedViewpoint {
+    std::string name, study;  // and the study's id
+    std::string procedure;
+    std::vector<int> levels;
+    int observers = 0;  // whose answers count
+    std::vector<BlockConsensus> blocks;
+    std::optional<double> agreement;  // intraclass correlation of the logarithms
+};
+
+struct Collected {
+    std::vector<CollectedViewpoint> viewpoints;  // in the order of their names
+    std::vector<JudgedObserver> observers;       // in the order of viewpoint, observer
+    std::vector<RefusedAnswers> refused;
+};
+
+// A threshold that rests on fewer answers is rough.
+inline constexpr int kEnoughAnswers = 30;
+
+// Returns how many answers the threshold of a block rests on, at the least.
+int FewestAnswers(const CollectedViewpoint& viewpoint);
+
+// Reads files of answers and refuses those that cannot be read, answer another study than most
+// files of that viewpoint do, or were asked by another procedure, come twice, or contradict each
+// other: the same session with other answers (all of them), or a name that has judged the viewpoint
+// before (the later one).
+Collected CollectFiles(const std::vector<std::string>& files, const CollectOptions& options);
+
+// Does the same with answers that have been read.
+Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOptions& options);
+
+// Returns the thresholds: means over the observers, rounded to whole spp.
+std::vector<ThresholdsRow> ThresholdsOf(const Collected& collected);
+
+}  // namespace lull

@@ -1,0 +1,30 @@
+// Decides which blocks a network is trained on and which it is judged on.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/recordings/training_samples.h"
+
+namespace lull {
+
+// Holds blocks to train on and others to judge by, which the training never sees.
+struct BlockSplit {
+    std::string name = {};  // says what is left out
+    std::vector<JudgedBlock> training = {}, test = {};
+};
+
+// Leaves out the viewpoints of these names. Throws std::invalid_argument for a name without blocks.
+BlockSplit LeaveOut(std::span<const JudgedBlock> blocks, std::span<const std::string> names);
+
+// Returns a split for each viewpoint, which leaves it out. Throws std::invalid_argument if there
+// are fewer than two.
+std::vector<BlockSplit> LeaveEachOut(std::span<const JudgedBlock> blocks);
+
+// Moves those blocks from the training to the test that are not listed for their viewpoint: a row
+// holds the viewpoint's name and the numbers of its blocks to train on (the paper's split has 12 of
+// 16). Throws std::invalid_argument if a viewpoint to train on has no row.
+void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split);
+
+}  // namespace lull

@@ -1,0 +1,39 @@
+// Reads and writes data sets: HDF5 files of recordings, a group a viewpoint, a group a block in it.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/recordings/recording.h"
+
+namespace lull {
+
+// Holds the recordings of one viewpoint.
+struct ViewpointRecording {
+    std::string name;
+    int blockCount = 0;  // in the whole image
+    int cap = 0;         // spp at which recordings end at the latest
+    int passSpp = 0;     // samples per pixel and pass
+    // What the recordings were made of and with: scene, its hash, resolution, sampler, ...
+    std::map<std::string, std::string> provenance;
+    std::map<int, BlockRecording> blocks;   // by row-major number; others are absent
+    std::map<int, std::string> blockNotes;  // what each recording cost
+};
+
+// Reads all viewpoints of a file. Blocks may lack optional channels, each by itself. Throws
+// std::runtime_error beginning with the file's name.
+std::vector<ViewpointRecording> ReadDataset(const std::string& path);
+
+// Returns the bytes of a data set file. Statistics are rounded to 12 significant bits, entropies
+// and attributes to 19, which compresses them to half their size.
+std::vector<std::byte> EncodeDataset(std::span<const ViewpointRecording> viewpoints);
+
+// Adds the blocks of a viewpoint, in place of those that were there; a new viewpoint if there was
+// none of that name. Throws std::runtime_error saying what differs if there is one that was
+// recorded in another way (provenance, cap, passes, number of blocks).
+void AddToDataset(const ViewpointRecording& added, std::vector<ViewpointRecording>* viewpoints);
+
+}  // namespace lull

@@ -1,0 +1,58 @@
+// Makes what a network is trained on: windows of recordings, and whether people saw noise.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/features/recorded_measures.h"
+#include "stopping/lab/recordings/dataset.h"
+#include "stopping/rules/thresholds.h"
+
+namespace lull {
+
+// Returns what reads the channels of record i; the recording must outlive it.
+RecordedValues ValuesOf(const BlockRecording& recording, int i);
+
+// Returns what record i of a block says of the features that the settings ask for, as
+// RecordedMeasures() does.
+BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
+
+// Names a block that was recorded and that people judged.
+struct JudgedBlock {
+    std::string viewpoint;
+    int block = 0;                              // row-major number
+    int human = 0;                              // spp from which on people saw no noise
+    int cap = 0, passSpp = 0;                   // of the recording
+    const BlockRecording* recording = nullptr;  // of the data set, which must outlive this
+};
+
+// Returns the recorded blocks of all viewpoints that have a row of the same name in `human`, in
+// the order of viewpoints and blocks; the names of those without go to `unknown`, which can be
+// null. Throws std::invalid_argument for a viewpoint that comes twice, a row without the block or
+// blocks with different lengths of passes.
+std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
+                                   std::span<const ThresholdsRow> human,
+                                   std::vector<std::string>* unknown);
+
+// Returns the blocks that were recorded with all that the settings ask for: older recordings have
+// no attributes.
+std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
+                                      const ModelSettings& settings);
+
+// Holds windows, one after the other.
+struct TrainingSamples {
+    ModelSettings settings;
+    int windowSize = 0;               // inputs * k
+    std::vector<float> windows = {};  // each column-major as FeatureHistory::WindowAt() returns it
+    std::vector<char> noisy = {};  // of each window, whether its spp is below the human threshold
+    std::vector<int> viewpoint = {};  // of each window, counted from 0
+
+    size_t Count() const { return noisy.size(); }
+};
+
+// Makes a sample of each window that ends at a multiple of n spp after the first pass and is in
+// the recordings as a whole. Throws std::invalid_argument if a block is not recorded every n spp.
+TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSettings& settings);
+
+}  // namespace lull

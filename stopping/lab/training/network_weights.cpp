@@ -1,0 +1,84 @@
+#include "stopping/lab/training/network_weights.h"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "stopping/base/counter_random.h"
+
+namespace lull {
+
+namespace {
+
+constexpr uint64_t initialTag = 1;  // tells these random numbers from those of other purposes
+
+void CheckSize(int64_t size, const char* what, int64_t most = 16384) {
+    if (size < 1 || size > most)
+        throw std::invalid_argument(std::to_string(size) + " " + what + " are not in [1, " +
+                                    std::to_string(most) + "]");
+}
+
+Eigen::MatrixXf GlorotUniform(Eigen::Index outputs, Eigen::Index inputs, CounterRandom* random) {
+    const double limit = std::sqrt(6.0 / double(inputs + outputs));
+    return Eigen::MatrixXf::NullaryExpr(outputs, inputs,
+                                        [&] { return float(limit * (2 * random->Uniform() - 1)); });
+}
+
+// Returns orthonormal columns, uniform over all there are: the Q of a Gaussian matrix, where signs
+// make the diagonal of R positive.
+Eigen::MatrixXf Orthonormal(Eigen::Index rows, Eigen::Index columns, CounterRandom* random) {
+    const Eigen::MatrixXd gauss =
+        Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return random->Normal(); });
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gauss);
+    Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(rows, columns);
+    for (Eigen::Index i = 0; i < columns; ++i)
+        if (qr.matrixQR()(i, i) < 0) q.col(i) *= -1;
+    return q.cast<float>();
+}
+
+}  // namespace
+
+NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
+    constexpr int64_t mostWeights = 1 << 28;
+    CheckSize(shape.inputs, "inputs", 1000000);
+    CheckSize(shape.steps, "steps");
+    NetworkWeights<float> weights;
+    int64_t inputs = shape.lstm.empty() ? int64_t(shape.inputs) * shape.steps : shape.inputs;
+    for (uint64_t layer = 0; int units : shape.lstm) {
+        CheckSize(units, "units");
+        CheckSize(4 * int64_t(units) * (inputs + units), "weights of a layer", mostWeights);
+        CounterRandom random(seed, {initialTag, layer++});
+        LstmWeights<float> l;
+        l.kernel = GlorotUniform(4 * units, inputs, &random);
+        l.recurrent = Orthonormal(4 * units, units, &random);
+        l.bias.setZero(4 * units);
+        l.bias.segment(units, units).setOnes();
+        weights.lstm.push_back(std::move(l));
+        inputs = units;
+    }
+    std::vector<int> dense = shape.dense;
+    dense.push_back(1);
+    for (uint64_t layer = 1000; int units : dense) {
+        CheckSize(units, "units");
+        CheckSize(units * inputs, "weights of a layer", mostWeights);
+        CounterRandom random(seed, {initialTag, layer++});
+        weights.dense.push_back(
+            {GlorotUniform(units, inputs, &random), Eigen::VectorXf::Zero(units)});
+        inputs = units;
+    }
+    return weights;
+}
+
+Network MakeNetwork(const NetworkWeights<float>& weights) {
+    Network network;
+    for (const LstmWeights<float>& l : weights.lstm)
+        network.lstm.push_back({"lstm_" + std::to_string(network.lstm.size() + 1), l.kernel,
+                                l.recurrent, l.bias, Activation::Sigmoid, Activation::HardSigmoid});
+    for (const DenseWeights<float>& l : weights.dense)
+        network.dense.push_back({"dense_" + std::to_string(network.dense.size() + 1), l.kernel,
+                                 l.bias, Activation::Sigmoid});
+    return network;
+}
+
+}  // namespace lull

@@ -1,0 +1,57 @@
+// Keeps the states of trainings in a file, to go on from there.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/training/training.h"
+
+namespace lull {
+
+// Puts bytes into a file, whole or not at all; throws what went wrong.
+using FileWriter = std::function<void(const std::string& path, std::span<const std::byte> bytes)>;
+
+// Signals that a checkpoint could not be written, or belongs to another training: the training
+// itself is not at fault.
+class CheckpointError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// Holds the states of several trainings, by number, finished ones first.
+class TrainingCheckpoint {
+  public:
+    // An empty path stands for no file; `interval` seconds are between two writings of it.
+    TrainingCheckpoint(const std::string& path, double interval, FileWriter write)
+        : path(path), interval(interval), write(std::move(write)) {}
+
+    // Reads the file. Throws std::runtime_error.
+    void Read();
+    void Set(size_t training, std::vector<std::byte> state);
+    // Lets a training go on where its state says; leaves it where there is none. Throws
+    // CheckpointError.
+    void Restore(size_t training, Trainer* trainer) const;
+    // Returns whether the next writing is due.
+    bool IsDue() const;
+    // Writes the file, if there is one. Throws CheckpointError.
+    void Write();
+    // Forgets all trainings, and removes the file.
+    void Remove();
+    const std::string& Path() const { return path; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::string path;
+    std::chrono::duration<double> interval;
+    FileWriter write;
+    std::vector<std::vector<std::byte>> states;
+    Clock::time_point written = Clock::now();
+};
+
+}  // namespace lull

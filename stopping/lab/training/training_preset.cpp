@@ -1,0 +1,24 @@
+#include "stopping/lab/training/training_preset.h"
+
+namespace lull {
+
+std::span<const TrainingPreset> TrainingPresets() {
+    static const TrainingPreset presets[] = {{.name = "entropy",
+                                              .settings = {.k = 2,
+                                                           .features = {Feature::VisibleDrop},
+                                                           .pools = {{Pool::PowerMean, 1}},
+                                                           .spacing = Spacing::Geometric,
+                                                           .ratio = 1.4142,
+                                                           .visibility = {.mask = 1e9, .flare = 0}},
+                                              .training = {.units = {8, 4},
+                                                           .dropout = 0,
+                                                           .learningRate = 0.003,
+                                                           .epochs = 60,
+                                                           .balanceViewpoints = true,
+                                                           .balanceClasses = false,
+                                                           .noisyWeight = 1}},
+                                             {.name = "paper"}};
+    return presets;
+}
+
+}  // namespace lull

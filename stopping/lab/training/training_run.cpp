@@ -1,0 +1,123 @@
+#include "stopping/lab/training/training_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "stopping/lab/evaluation/certainty.h"
+#include "stopping/lab/evaluation/simulation.h"
+#include "stopping/lab/evaluation/two_figures.h"
+#include "stopping/lab/recordings/extension.h"
+#include "stopping/rules/learned.h"
+
+namespace lull {
+
+namespace {
+
+std::string JudgementText(const std::vector<ViewpointOutcome>& viewpoints,
+                          const JudgeOptions& options) {
+    const Judgement j = Judge(viewpoints, options);
+    return fmt::format("critical error at {:g} %: {:.2f} %, mean error {:.0f} spp, AUC {:.4f}",
+                       options.margins.at(0), 100 * j.criticalErrors.at(0), j.absoluteError,
+                       j.auc.value_or(0.5));
+}
+
+// Holds what networks did to blocks that each of them did not see, or did.
+struct NetworkOutcomes {
+    std::string name;
+    std::vector<JudgedBlock> blocks = {};
+    std::vector<ViewpointOutcome> recorded = {}, extended = {};
+
+    void Add(const Network& network, const ModelSettings& settings,
+             std::span<const JudgedBlock> judged) {
+        blocks.insert(blocks.end(), judged.begin(), judged.end());
+        AddOutcomes(network, settings, judged, &recorded);
+        AddOutcomes(network, settings, ExtendBlocks(judged).blocks, &extended);
+    }
+};
+
+}  // namespace
+
+std::optional<Network> TrainNetwork(const ModelSettings& settings, const TrainingOptions& options,
+                                    const BlockSplit& split, size_t index,
+                                    TrainingCheckpoint* checkpoint, const TrainingEvents& events) {
+    const TrainingSamples samples = MakeSamples(split.training, settings);
+    Trainer trainer(samples, options);
+    checkpoint->Restore(index, &trainer);
+    const bool isNew = !trainer.IsDone();
+    if (isNew) events.begin(samples, trainer.Progress());
+    while (!trainer.IsDone() && !events.isCancelled()) {
+        trainer.Step();
+        events.step(trainer);
+        if (checkpoint->IsDue()) {
+            checkpoint->Set(index, trainer.Save());
+            checkpoint->Write();
+        }
+    }
+    if (isNew) events.end(trainer.Progress());
+    checkpoint->Set(index, trainer.Save());
+    if (!trainer.IsDone()) return {};
+    return trainer.Result();
+}
+
+void AddOutcomes(const Network& network, const ModelSettings& settings,
+                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
+    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
+    const auto simulator = [&](const JudgedBlock& block) {
+        return SimulateVoting(block, LearnedRule(model, block.passSpp));
+    };
+    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
+        viewpoints->push_back(std::move(viewpoint));
+}
+
+std::optional<TrainingResult> TrainAll(
+    const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
+    const std::function<TrainingEvents(const BlockSplit&)>& eventsOf) {
+    TrainingResult result;
+    std::vector<NetworkOutcomes> outcomes;
+    if (plan.crossValidate) outcomes.push_back({.name = "each viewpoint left out"});
+    for (size_t i = 0; i < splits.size(); ++i) {
+        const BlockSplit& split = splits[i];
+        std::optional<Network> network =
+            TrainNetwork(plan.settings, plan.training, split, i, checkpoint, eventsOf(split));
+        if (!network) {
+            checkpoint->Write();
+            return {};
+        }
+        const bool isLast = plan.withLast && i + 1 == splits.size();
+        const bool isTested = !split.test.empty();
+        if (isLast)
+            outcomes.push_back({.name = isTested ? "blocks left out" : "blocks trained on"});
+        outcomes.back().Add(*network, plan.settings, isTested ? split.test : split.training);
+        result.network = std::move(*network);
+    }
+    if (plan.crossValidate) result.logRatios = LogRatioQuantiles(outcomes.front().recorded);
+    for (NetworkOutcomes& o : outcomes)
+        AddTwoFigures(
+            o.blocks, {.name = o.name, .viewpoints = std::move(o.recorded)},
+            [&] { return JudgedRule{.name = o.name, .viewpoints = std::move(o.extended)}; },
+            &result.rules);
+    return result;
+}
+
+std::string CertaintyText(const TrainingResult& result) {
+    if (result.logRatios.empty()) return "";
+    return fmt::format(
+        "80 % of the thresholds of people lie between {:.2f} and {:.2f} times the stop; of each "
+        "viewpoint, {:.1f} % between those that the others give",
+        std::exp(result.logRatios[1]), std::exp(result.logRatios[9]),
+        100 * RangeCoverage(result.rules.front().viewpoints));
+}
+
+std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
+                                              const TrainingResult& result,
+                                              const JudgeOptions& judge) {
+    std::map<std::string, std::string> record = MakeRecord(plan, split);
+    for (const JudgedRule& rule : result.rules)
+        record["judged on " + LabelOf(rule)] = JudgementText(rule.viewpoints, judge);
+    if (const std::string certainty = CertaintyText(result); !certainty.empty())
+        record["certainty"] = certainty;
+    return record;
+}
+
+}  // namespace lull

@@ -1,0 +1,61 @@
+// Trains networks, one after the other, and judges them.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stopping/lab/evaluation/evaluation.h"
+#include "stopping/lab/training/training_checkpoint.h"
+#include "stopping/lab/training/training_plan.h"
+
+namespace lull {
+
+// Is told of a training; one that an earlier run has finished is not begun. None may be empty.
+struct TrainingEvents {
+    std::function<void(const TrainingSamples&, const TrainingProgress&)> begin;
+    std::function<void(const Trainer&)> step;
+    std::function<void(const TrainingProgress&)> end;
+    std::function<bool()> isCancelled;  // is asked before each step; true ends the training
+};
+
+// Trains a network, or goes on with training number `index` of the checkpoint. Nothing if it was
+// cancelled: the checkpoint has it, but is not written. Throws as MakeSamples(), Trainer and
+// TrainingCheckpoint do.
+std::optional<Network> TrainNetwork(const ModelSettings& settings, const TrainingOptions& options,
+                                    const BlockSplit& split, size_t index,
+                                    TrainingCheckpoint* checkpoint, const TrainingEvents& events);
+
+// Adds what a network does to blocks.
+void AddOutcomes(const Network& network, const ModelSettings& settings,
+                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints);
+
+// Holds what came of a plan.
+struct TrainingResult {
+    Network network;  // the last one
+    // What networks did: "each viewpoint left out" and, of the last one, "blocks left out" or, if
+    // there are none, "blocks trained on"; each twice where recordings end too early for it, see
+    // AddTwoFigures().
+    std::vector<JudgedRule> rules = {};
+    // Of the networks without each viewpoint, see LogRatioQuantiles(); else empty.
+    std::vector<double> logRatios = {};
+};
+
+// Trains and judges a network on each split of a plan. Nothing if it was cancelled: the checkpoint
+// is written then. `eventsOf` is asked for the events of each training. Throws as TrainNetwork().
+std::optional<TrainingResult> TrainAll(
+    const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
+    const std::function<TrainingEvents(const BlockSplit&)>& eventsOf);
+
+// Says how far from the stops people's thresholds lie; empty where that is not known.
+std::string CertaintyText(const TrainingResult& result);
+
+// Says what the last network was trained on, with which options, and how it was judged.
+std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
+                                              const TrainingResult& result,
+                                              const JudgeOptions& judge);
+
+}  // namespace lull

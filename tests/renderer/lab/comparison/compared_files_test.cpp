@@ -1,0 +1,106 @@
+#include "renderer/lab/comparison/compared_files.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/image/image_io.h"
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+namespace {
+
+constexpr int kWidth = 6, kHeight = 4;
+
+// Writes a grey image of 6x4 pixels at (2, 0) of a larger one; `spp` of each pixel, if there are.
+std::string WriteGrey(const TemporaryDirectory& directory, const std::string& name,
+                      std::vector<float> spp = {}) {
+    ExrImage image;
+    image.width = kWidth;
+    image.height = kHeight;
+    image.origin = {2, 0};
+    image.displaySize = {10, 4};
+    for (const char* channel : {"R", "G", "B"})
+        image.channels.push_back({channel, std::vector<float>(kWidth * kHeight, 0.25f)});
+    if (!spp.empty()) image.channels.push_back({"spp", std::move(spp)});
+    image.attributes["criterion"] = std::string("fixed:20");
+    WriteExr(directory.File(name), image);
+    return directory.File(name);
+}
+
+std::string WriteDisplay(const TemporaryDirectory& directory, int width = kWidth) {
+    WritePng(directory.File("a.png"),
+             std::vector<Rgb>(size_t(width) * kHeight, Rgb::Constant(0.25f)), width, kHeight);
+    return directory.File("a.png");
+}
+
+TEST(ComparedFiles, AreToldByTheirNames) {
+    for (const char* name : {"a.exr", "A.EXR", "b.png", "c.Jpg", "d.jpeg", "e.TIF", "f.tiff"})
+        EXPECT_TRUE(IsImageFile(name)) << name;
+    for (const char* name : {"a.csv", "png", "a.exr.csv", ""}) EXPECT_FALSE(IsImageFile(name));
+}
+
+TEST(ComparedFiles, KeepWhatTheyWereMadeWith) {
+    const TemporaryDirectory directory;
+    std::vector<float> spp(kWidth * kHeight, 20);
+    for (size_t i = 0; i < spp.size(); ++i)
+        if (i % kWidth >= 3) spp[i] = 60;
+    ComparedFile file = ReadComparedFile(WriteGrey(directory, "a.exr", spp), "automatic");
+    EXPECT_EQ(file.region, (PixelRect{{2, 0}, {8, 4}}));
+    EXPECT_EQ(file.image.rule, "fixed:20");
+    EXPECT_EQ(file.image.image.values.size(), size_t(kWidth * kHeight * 3));
+    EXPECT_FALSE(file.image.wallSeconds);
+
+    const Comparison comparison =
+        ComparisonOf({ReadComparedFile(WriteGrey(directory, "b.exr"), "human"), file}, "a.exr",
+                     {.blockSize = 3});
+    EXPECT_EQ(comparison.region, file.region);
+    EXPECT_EQ(comparison.cap, 60);
+    EXPECT_EQ(comparison.blocks.size(), 4u);
+    ASSERT_EQ(comparison.images.size(), 2u);
+    EXPECT_TRUE(comparison.images[0].costs.empty());  // not known
+    EXPECT_EQ(comparison.images[1].costs[0].spp, 20);
+    EXPECT_EQ(comparison.images[1].costs[1].spp, 60);
+    // Rendered in other blocks, it cannot be told what each took.
+    EXPECT_TRUE(ComparisonOf({file}, "a.exr", {.blockSize = 4}).images[0].costs.empty());
+}
+
+TEST(ComparedFiles, LetPicturesForDisplaysBeOfAnyPart) {
+    const TemporaryDirectory directory;
+    const ComparedFile display = ReadComparedFile(WriteDisplay(directory), "automatic"),
+                       exr = ReadComparedFile(WriteGrey(directory, "b.exr"), "reference");
+    EXPECT_TRUE(display.image.isDisplay);
+    EXPECT_NEAR(display.image.image.values[0], 0.25f, 0.005f);
+    const Comparison comparison = ComparisonOf({display, exr}, "b.exr", {});
+    EXPECT_EQ(comparison.region, exr.region);
+    EXPECT_TRUE(Contains(DisplayNote(comparison), "displays: automatic."));
+    EXPECT_EQ(DisplayNote(ComparisonOf({exr}, "b.exr", {})), "");
+
+    Comparison scene = BeginComparison(exr.region, {});
+    EXPECT_EQ(ReadImageBeside(directory.File("a.png"), "human", scene).wallSeconds, 0);
+    EXPECT_EQ(ReadImageBeside(directory.File("b.exr"), "human", scene).name, "human");
+    scene = BeginComparison({{0, 0}, {kWidth, kHeight}}, {});
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImageBeside(directory.File("b.exr"), "human", scene); }),
+                         "b.exr: shows another part of the image than the scene would"));
+}
+
+TEST(ComparedFiles, SayWhatDoesNotFit) {
+    const TemporaryDirectory directory;
+    const ComparedFile wide = ReadComparedFile(WriteDisplay(directory, 7), "automatic"),
+                       exr = ReadComparedFile(WriteGrey(directory, "b.exr"), "reference");
+    EXPECT_EQ(
+        ErrorOf([&] {
+            ComparisonOf({wide, exr}, "b.exr", {});
+        }),
+        "b.exr: images of different sizes: automatic has 7x4 pixels, reference has 6x4 pixels");
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImageOfSize(directory.File("a.png"), exr.region); }),
+                         "a.png: has 7x4 pixels, not 6x4 pixels"));
+    EXPECT_EQ(ReadImageOfSize(directory.File("b.exr"), exr.region).width, 6);
+    ExrImage grey;
+    grey.width = grey.height = 1;
+    grey.channels.push_back({"R", {1.f}});
+    WriteExr(directory.File("c.exr"), grey);
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadComparedFile(directory.File("c.exr"), "x"); }),
+                         "c.exr: has no channel G"));
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,185 @@
+#include "renderer/lab/comparison/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/base/error.h"
+#include "renderer/lab/comparison/verification.h"
+#include "stopping/rules/baselines.h"
+#include "stopping/rules/small_blocks.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+namespace {
+
+// The blocks at the right are 20 pixels wide: too small to be judged, they follow a neighbour.
+const PixelRect kRegion{{3, 5}, {123, 105}};
+
+ScheduleOptions Schedule() {
+    ScheduleOptions schedule;
+    schedule.blockSize = 50;
+    schedule.cap = 100;
+    return schedule;
+}
+
+std::vector<ObservedRule> Rules() {
+    const auto dammertz = [](const BlockInfo&) { return MakeVoting(DammertzRule(0.5)); };
+    const auto bySpp = [](const BlockInfo& info) { return MakeFixed(20 + 20 * (info.index % 5)); };
+    return {{"automatic", "dammertz:0.5", smallestVotingSide, dammertz},
+            {"human", "thresholds:h.csv", 0, bySpp}};
+}
+
+RenderOptions Options() {
+    RenderOptions options;
+    options.schedule = Schedule();
+    options.threads = 2;
+    return options;
+}
+
+// Renders as `lull render` would with that rule alone.
+std::pair<RgbImage, std::vector<int>> RenderAlone(const ObservedRule& rule) {
+    Film film(kRegion);
+    RenderOptions options = Options();
+    options.schedule.smallestSide = rule.smallestSide;
+    options.makeCriterion = rule.make;
+    const RenderResult result = Render(SyntheticSample, options, &film);
+    std::vector<int> spp;
+    for (const BlockResult& block : result.blocks) spp.push_back(block.block.spp);
+    return {{kRegion.Width(), kRegion.Height(), film.MeanImage()}, spp};
+}
+
+struct Observed {
+    std::vector<ObservedRule> rules = Rules();
+    SampleSource source = SyntheticSample;
+    RenderOptions options = Options();
+    Film film{kRegion};
+    std::vector<BlockHistory> histories;
+    RenderResult result;
+
+    explicit Observed(bool goesOn) {
+        histories.resize(MakeBlocks(kRegion, options.schedule).size());
+        options.makeCriterion =
+            MakeObservers(rules, kRegion, options.schedule,
+                          {.snapshots = true, .noise = true, .goesOn = goesOn}, &histories);
+        result = Render(source, options, &film);
+    }
+    ObservedRender Get() const { return {source, options, film, result, histories}; }
+};
+
+// What the whole design rests on: one render holds the images of all rules, to the last bit.
+TEST(TakeImage, GivesTheBitsOfARenderByThatRuleAlone) {
+    for (const bool goesOn : {true, false}) {
+        const Observed observed(goesOn);
+        for (size_t i = 0; i < observed.rules.size(); ++i) {
+            const ComparedImage image = TakeImage(observed.Get(), observed.rules, i);
+            const auto [alone, spp] = RenderAlone(observed.rules[i]);
+            EXPECT_EQ(image.image.values, alone.values) << goesOn << i;
+            ASSERT_EQ(image.costs.size(), spp.size());
+            for (size_t b = 0; b < spp.size(); ++b) EXPECT_EQ(image.costs[b].spp, spp[b]) << b;
+        }
+    }
+}
+
+TEST(TakeImage, TakesSomeBlocksBeforeTheCap) {
+    const Observed observed(true);
+    const ComparedImage image = TakeImage(observed.Get(), observed.rules, 1);
+    EXPECT_EQ(image.costs[0].spp, 20);
+    EXPECT_EQ(image.costs[3].spp, 80);
+    for (const BlockResult& block : observed.result.blocks) EXPECT_EQ(block.block.spp, 100);
+    EXPECT_LT(image.costs[0].seconds, observed.result.blocks[0].seconds);
+}
+
+TEST(TakeWholeImage, IsTheFilm) {
+    const Observed observed(true);
+    const ComparedImage image = TakeWholeImage(observed.Get());
+    EXPECT_EQ(image.image.values, observed.film.MeanImage());
+    EXPECT_EQ(image.noise.size(), size_t(kRegion.Area()));
+}
+
+// The image of a rule that was rendered alone is the one that was taken; another rule's is not.
+TEST(VerificationOf, ComparesPixelsAndAddsUpSeconds) {
+    const Observed observed(true);
+    const ComparedImage taken = TakeImage(observed.Get(), observed.rules, 1);
+    for (const size_t rule : {size_t(0), size_t(1)}) {
+        Film film(kRegion);
+        RenderOptions options = Options();
+        options.schedule.smallestSide = observed.rules[rule].smallestSide;
+        options.makeCriterion = observed.rules[rule].make;
+        const RenderResult result = Render(SyntheticSample, options, &film);
+        const Verification verification = VerificationOf(result, film, taken);
+        EXPECT_EQ(verification.samePixels, rule == 1);
+        EXPECT_EQ(verification.threads, 2);
+        double seconds = 0;
+        for (const BlockResult& block : result.blocks) seconds += block.seconds;
+        EXPECT_EQ(verification.seconds, seconds);
+        EXPECT_EQ(verification.wallSeconds, result.progress.seconds);
+    }
+}
+
+TEST(BeginComparison, HasTheBlocksOfTheSchedule) {
+    const Comparison comparison = BeginComparison(kRegion, Schedule());
+    EXPECT_EQ(comparison.region, kRegion);
+    EXPECT_EQ(comparison.blocks.size(), 6u);
+    EXPECT_EQ(comparison.blocks[5], (PixelRect{{103, 55}, {123, 105}}));
+    EXPECT_TRUE(comparison.hasReference);
+}
+
+Comparison TwoImages() {
+    Comparison comparison;
+    comparison.region = {{10, 20}, {90, 60}};
+    comparison.blocks = {{{10, 20}, {50, 60}}, {{50, 20}, {90, 60}}};
+    comparison.cap = 100;
+    comparison.hasReference = true;
+    for (const char* name : {"automatic", "reference"}) {
+        ComparedImage& image = comparison.images.emplace_back();
+        image.name = name;
+        image.image = {80, 40, std::vector<float>(80 * 40 * 3, 0.5f)};
+    }
+    for (int y = 0; y < 40; ++y)  // an error in the right block
+        for (int x = 40; x < 80; ++x)
+            comparison.images[0].image.values[size_t(3 * (y * 80 + x))] = 0.7f;
+    comparison.images[0].costs = {{.spp = 20, .seconds = 2, .ruleSeconds = 1},
+                                  {.spp = 50, .seconds = 10}};
+    comparison.images[1].costs = {{.spp = 100, .seconds = 11}, {.spp = 100, .seconds = 25}};
+    return comparison;
+}
+
+TEST(Measure, GivesFiguresByBlock) {
+    Comparison comparison = TwoImages();
+    Measure(&comparison);
+    const ComparedImage& automatic = *comparison.Find("automatic");
+    ASSERT_TRUE(automatic.figures);
+    ASSERT_EQ(automatic.blockFigures.size(), 2u);
+    EXPECT_EQ(automatic.blockFigures[0].rmse, 0);
+    EXPECT_NEAR(automatic.blockFigures[1].rmse, 0.2 / std::sqrt(3), 1e-6);
+    EXPECT_NEAR(automatic.figures->rmse, 0.2 / std::sqrt(6), 1e-6);
+    EXPECT_FALSE(comparison.Find("reference")->figures);
+    EXPECT_FALSE(comparison.Find("reference")->seams);  // its noise is not known
+    ASSERT_TRUE(automatic.seams);
+    EXPECT_GT(automatic.seams->border, 0);
+    EXPECT_EQ(comparison.Find("somebody"), nullptr);
+}
+
+TEST(Measure, RefusesImagesOfOtherSizes) {
+    Comparison comparison = TwoImages();
+    comparison.images[0].image = {40, 80, std::vector<float>(80 * 40 * 3)};
+    EXPECT_THROW(Measure(&comparison), Error);
+}
+
+TEST(SumCosts, AddsUpTheBlocks) {
+    const Comparison comparison = TwoImages();
+    const TotalCost cost = SumCosts(comparison, comparison.images[0]);
+    EXPECT_EQ(cost.samples, 40 * 40 * 70);
+    EXPECT_EQ(cost.seconds, 12);
+    EXPECT_EQ(cost.ruleSeconds, 1);
+}
+
+TEST(JudgeEstimates, ComparesWithWhatWasMeasured) {
+    const Comparison comparison = TwoImages();
+    const EstimateError error = JudgeEstimates(comparison.images[0], comparison.images[1]);
+    EXPECT_EQ(error.blocks, 2);
+    EXPECT_DOUBLE_EQ(error.total, 30. / 36 - 1);  // 2 s * 5 and 10 s * 2
+    EXPECT_DOUBLE_EQ(error.worst, 20. / 25 - 1);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,170 @@
+#include "renderer/results/block_observer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "stopping/rules/baselines.h"
+
+namespace lull {
+namespace {
+
+constexpr int kSide = 40;
+
+// Shows a block whose noise falls with the samples.
+struct FadingBlock {
+    std::vector<float> mean, halfMean;
+
+    BlockView At(int spp) {
+        std::mt19937 random(unsigned(spp) + 1u);
+        std::normal_distribution<float> normal(0.f, 0.5f / std::sqrt(float(spp)));
+        mean.clear();
+        halfMean.clear();
+        for (int i = 0; i < 3 * kSide * kSide; ++i) {
+            mean.push_back(0.4f + normal(random));
+            halfMean.push_back(mean.back() + normal(random));
+        }
+        BlockView view;
+        view.width = view.height = kSide;
+        view.spp = spp;
+        view.mean = mean;
+        view.halfMean = halfMean;
+        view.seconds = 0.5 * spp;
+        view.viewSeconds = 0.25;
+        return view;
+    }
+};
+
+std::vector<std::unique_ptr<Criterion>> FixedRules(std::initializer_list<int> spp) {
+    std::vector<std::unique_ptr<Criterion>> rules;
+    for (const int n : spp) rules.push_back(n > 0 ? MakeFixed(n) : nullptr);
+    return rules;
+}
+
+TEST(BlockObserver, KeepsTheBlockWhereRulesStopIt) {
+    FadingBlock block;
+    BlockHistory history;
+    BlockObserver observer(FixedRules({40, 80, 40}), {.snapshots = true, .goesOn = true}, &history);
+    std::vector<float> at40, at80;
+    for (int spp = 20; spp <= 120; spp += 20) {
+        const BlockView view = block.At(spp);
+        EXPECT_NE(observer.Need(spp), ViewNeed::Nothing);
+        EXPECT_FALSE(observer.Observe(view).stop);
+        if (spp == 40) at40 = block.mean;
+        if (spp == 80) at80 = block.mean;
+    }
+    ASSERT_EQ(history.stops.size(), 3u);
+    EXPECT_EQ(history.stops[0].spp, 40);
+    EXPECT_EQ(history.stops[1].spp, 80);
+    EXPECT_EQ(history.stops[2].spp, 40);
+    EXPECT_EQ(history.stops[1].seconds, 40);
+    ASSERT_EQ(history.snapshots.size(), 2u);
+    EXPECT_EQ(history.snapshots[40].mean, at40);
+    EXPECT_EQ(history.snapshots[80].mean, at80);
+    EXPECT_TRUE(history.snapshots[40].noise.empty());
+}
+
+TEST(BlockObserver, StopsWithTheLastRule) {
+    FadingBlock block;
+    BlockHistory history;
+    BlockObserver observer(FixedRules({60, 0, 40}), {}, &history);
+    EXPECT_EQ(observer.Need(20), ViewNeed::Nothing);
+    EXPECT_FALSE(observer.Observe(block.At(20)).stop);
+    EXPECT_FALSE(observer.Observe(block.At(40)).stop);
+    EXPECT_TRUE(observer.Observe(block.At(60)).stop);
+    EXPECT_TRUE(history.snapshots.empty());
+    EXPECT_TRUE(history.curves.spp.empty());
+}
+
+TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
+    FadingBlock block;
+    BlockHistory history;
+    std::vector<std::unique_ptr<Criterion>> rules;
+    rules.push_back(MakeVoting(DammertzRule(0.05)));
+    rules.push_back(MakeFixed(2000));
+    BlockObserver observer(std::move(rules), {.goesOn = true}, &history);
+    const std::unique_ptr<Criterion> alone = MakeVoting(DammertzRule(0.05));
+    bool stopped = false;
+    for (int spp = 20; spp <= 2000; spp += 20) {
+        const BlockView view = block.At(spp);
+        const Decision seen = observer.Observe(view);
+        if (stopped) {
+            EXPECT_FALSE(seen.judged);
+            continue;
+        }
+        const Decision expected = alone->Observe(view);
+        EXPECT_EQ(seen.value, expected.value);
+        EXPECT_EQ(seen.judged, expected.judged);
+        stopped = expected.stop;
+        if (stopped) {
+            EXPECT_EQ(history.stops[0].spp, spp);
+        }
+    }
+    EXPECT_TRUE(stopped);
+    // The cost of the view is counted for the rule that looks at it.
+    EXPECT_GE(history.stops[0].ruleSeconds, 0.25 * history.stops[0].spp / 20);
+    EXPECT_LT(history.stops[1].ruleSeconds, 0.25);
+}
+
+TEST(BlockObserver, RecordsCurvesThatFall) {
+    FadingBlock block;
+    BlockHistory history;
+    BlockObserver observer(FixedRules({4000}), {.curves = true}, &history);
+    for (int spp = 20; spp <= 4000; spp += 20) observer.Observe(block.At(spp));
+    const BlockCurves& curves = history.curves;
+    ASSERT_GT(curves.spp.size(), 20u);
+    EXPECT_LT(curves.spp.size(), 60u);
+    EXPECT_EQ(curves.spp.front(), 20);
+    EXPECT_LT(curves.noise.back(), 0.2f * curves.noise.front());
+    EXPECT_LT(curves.entropy.back(), curves.entropy.front());
+}
+
+TEST(BlockObserver, GoesOnAfterAnInterruption) {
+    FadingBlock block;
+    const ObserverOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
+    const auto rules = [] {
+        auto made = FixedRules({40, 0});
+        made.push_back(MakeVoting(CyclesRule(0.05)));
+        return made;
+    };
+    BlockHistory whole, parts;
+    BlockObserver undisturbed(rules(), options, &whole);
+    auto interrupted = std::make_unique<BlockObserver>(rules(), options, &parts);
+    for (int spp = 20; spp <= 3000; spp += 20) {
+        const BlockView view = block.At(spp);
+        undisturbed.Observe(view);
+        interrupted->Observe(view);
+        if (spp % 300 != 0) continue;
+        const std::vector<std::byte> state = interrupted->Save();
+        interrupted = std::make_unique<BlockObserver>(rules(), options, &parts);
+        interrupted->Restore(state);
+    }
+    for (size_t i = 0; i < 3; ++i) EXPECT_EQ(parts.stops[i].spp, whole.stops[i].spp);
+    EXPECT_GT(whole.stops[2].spp, 0);
+    ASSERT_EQ(parts.snapshots.size(), whole.snapshots.size());
+    for (const auto& [spp, snapshot] : whole.snapshots) {
+        EXPECT_EQ(parts.snapshots.at(spp).mean, snapshot.mean);
+        EXPECT_EQ(parts.snapshots.at(spp).noise, snapshot.noise);
+    }
+    EXPECT_EQ(parts.curves.spp, whole.curves.spp);
+    EXPECT_EQ(parts.curves.noise, whole.curves.noise);
+}
+
+TEST(BlockObserver, RefusesStatesThatAreNotItsOwn) {
+    FadingBlock block;
+    BlockHistory history, other;
+    BlockObserver observer(FixedRules({40}), {.snapshots = true}, &history);
+    observer.Observe(block.At(20));
+    observer.Observe(block.At(40));
+    std::vector<std::byte> state = observer.Save();
+    BlockObserver two(FixedRules({40, 60}), {.snapshots = true}, &other);
+    EXPECT_THROW(two.Restore(state), std::runtime_error);
+    for (const size_t size : {size_t(0), size_t(3), size_t(30), state.size() - 1}) {
+        BlockObserver fresh(FixedRules({40}), {.snapshots = true}, &other);
+        EXPECT_THROW(fresh.Restore(std::span(state).first(size)), std::runtime_error) << size;
+    }
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,135 @@
+#include "stopping/lab/evaluation/answer_judgement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/scratch_file.h"
+
+namespace lull::answer_judgement_test {
+namespace {
+
+// Returns a picture of 9 blocks, 7 of them recorded, whose noise is 0.5 at the thresholds. The
+// errors of `dammertz` go the other way.
+ViewpointRecording Picture(std::span<const double> thresholds, int end) {
+    ViewpointRecording viewpoint{.name = "attic",
+                                 .blockCount = 9,
+                                 .cap = end,
+                                 .passSpp = 20,
+                                 .provenance = {},
+                                 .blocks = {},
+                                 .blockNotes = {}};
+    for (int i = 0; i < 7; ++i) {
+        BlockRecording recording = EmptyRecording(end);
+        SetChannel(&recording, "masked_noise",
+                   [&](int spp) { return 0.5 * std::sqrt(thresholds[size_t(i)] / spp); });
+        SetChannel(&recording, "dammertz",
+                   [&](int spp) { return 0.01 * std::sqrt(1e6 / thresholds[size_t(i)] / spp); });
+        viewpoint.blocks[i] = recording;
+    }
+    return viewpoint;
+}
+
+// Returns answers of people with these thresholds and a scatter in log spp.
+std::vector<SingleAnswer> Answers(std::span<const double> thresholds, int each, double scatter) {
+    std::mt19937 generator(11);
+    std::normal_distribution<double> gauss;
+    std::uniform_real_distribution<double> place(std::log(60), std::log(9000));
+    std::vector<SingleAnswer> answers;
+    for (size_t i = 0; i < thresholds.size(); ++i)
+        for (int k = 0; k < each; ++k) {
+            const double spp = std::exp(place(generator));
+            answers.push_back({.block = int(i),
+                               .spp = int(spp),
+                               .seen = std::log(thresholds[i] / spp) > scatter * gauss(generator)});
+        }
+    return answers;
+}
+
+const std::vector<double> kThresholds = {200, 400, 800, 1600, 3200, 1000, 500, 600, 700};
+
+TEST(AnswerJudgement, SharesOutWhatTheRulesExplain) {
+    const ViewpointRecording picture = Picture(kThresholds, 10000);
+    const std::vector<std::string> rules = {"lnoise:0.5", "dammertz:0.01", "fixed:800"};
+    const AnswerJudgement judgement =
+        JudgeByAnswers(picture, Answers(kThresholds, 200, 0.5), rules, {});
+    EXPECT_EQ(judgement.viewpoint, "attic");
+    EXPECT_EQ(judgement.used.all, 1800);
+    EXPECT_EQ(judgement.used.allBlocks, 9);
+    EXPECT_EQ(judgement.used.answers, 1400);
+    EXPECT_EQ(judgement.used.blocks, 7);
+    EXPECT_EQ(judgement.used.notRecorded, 400);
+    EXPECT_EQ(judgement.used.blocksNotRecorded, (std::vector<int>{7, 8}));
+    EXPECT_LT(judgement.worst, judgement.best);
+    ASSERT_EQ(judgement.blocks.size(), 7u);
+    for (size_t i = 0; i < 7; ++i) {
+        EXPECT_EQ(judgement.blocks[i].answers, 200);
+        ASSERT_TRUE(judgement.blocks[i].threshold);
+        EXPECT_NEAR(std::log(*judgement.blocks[i].threshold / kThresholds[i]), 0, 0.25);
+    }
+    ASSERT_EQ(judgement.rules.size(), 3u);
+    // The numbers of lnoise are those that people go by, and noise falls as the root of the spp.
+    const RuleByAnswers& noise = judgement.rules[0];
+    EXPECT_NEAR(noise.explained.value(), 1, 0.03);
+    EXPECT_NEAR(noise.slope, 2 / 0.5, 0.6);
+    EXPECT_NEAR(noise.level.value(), 1, 0.15);
+    EXPECT_GT(noise.auc, 0.9);
+    // The order of blocks is the wrong one, and fixed has none.
+    EXPECT_LT(judgement.rules[1].explained.value(), 0);
+    EXPECT_LT(judgement.rules[1].auc, judgement.rules[2].auc);
+    const RuleByAnswers& fixed = judgement.rules[2];
+    EXPECT_NEAR(fixed.explained.value(), 0, 1e-6);
+    EXPECT_NEAR(fixed.early.value(), 2 / 7.0, 0.15);
+    EXPECT_NEAR(fixed.late.value(), 3 / 7.0, 0.15);
+    EXPECT_EQ(fixed.stops, std::vector<int>(7, 800));
+    EXPECT_EQ(fixed.open, 0);
+}
+
+TEST(AnswerJudgement, LeavesOutWhatIsNotKnown) {
+    // The recordings end at 1,000 spp; luxtile has no number before 40.
+    const ViewpointRecording picture = Picture(kThresholds, 1000);
+    std::vector<SingleAnswer> answers = Answers(kThresholds, 50, 0.5);
+    const size_t beyond = size_t(std::ranges::count_if(
+        answers, [](const SingleAnswer& a) { return a.block < 7 && a.spp > 1020; }));
+    answers.push_back({.block = 1, .spp = 20, .seen = true});
+    const std::vector<std::string> rules = {"lnoise:0.5", "luxtile:0.1"};
+    const AnswerJudgement judgement = JudgeByAnswers(picture, answers, rules, {});
+    EXPECT_EQ(judgement.used.withoutNumber, int(beyond) + 1);
+    EXPECT_EQ(judgement.used.answers + judgement.used.withoutNumber + judgement.used.notRecorded,
+              judgement.used.all);
+    EXPECT_EQ(judgement.rules[0].open, 3);  // 1,000 as well: three votes
+    EXPECT_NEAR(judgement.rules[0].stops[3], 1700, 100);
+
+    const std::vector<SingleAnswer> elsewhere = {{.block = 8, .spp = 100, .seen = true}};
+    EXPECT_THROW(JudgeByAnswers(picture, elsewhere, rules, {}), std::runtime_error);
+}
+
+TEST(AnswerJudgement, HasNoThresholdWhereAllAnswersAreTheSame) {
+    const ViewpointRecording picture = Picture(kThresholds, 10000);
+    std::vector<SingleAnswer> answers;
+    for (const int spp : {100, 200, 400, 800}) {
+        answers.push_back({.block = 0, .spp = spp, .seen = false});
+        answers.push_back({.block = 4, .spp = spp, .seen = true});
+        answers.push_back({.block = 1, .spp = spp, .seen = spp < 300});
+    }
+    const std::vector<std::string> rules = {"lnoise:0.5"};
+    const AnswerJudgement judgement = JudgeByAnswers(picture, answers, rules, {});
+    ASSERT_EQ(judgement.blocks.size(), 3u);
+    EXPECT_FALSE(judgement.blocks[0].threshold);
+    EXPECT_TRUE(judgement.blocks[1].threshold);
+    EXPECT_FALSE(judgement.blocks[2].threshold);
+    EXPECT_GT(judgement.best, -1e-3);
+    // Answers that are all the same leave nothing to explain.
+    std::erase_if(answers, [](const SingleAnswer& a) { return a.block != 4; });
+    const AnswerJudgement same = JudgeByAnswers(picture, answers, rules, {});
+    EXPECT_FALSE(same.rules[0].explained);
+    EXPECT_FALSE(same.rules[0].level);
+    EXPECT_TRUE(std::isfinite(same.rules[0].logLikelihood));
+}
+
+}  // namespace
+}  // namespace lull::answer_judgement_test

@@ -1,0 +1,135 @@
+#include "stopping/lab/evaluation/rivals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tests/stopping/lab/recordings/channel_recordings.h"
+
+namespace lull::rivals_test {
+namespace {
+
+// Holds blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
+// by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
+struct Blocks {
+    std::vector<BlockRecording> recordings;
+    std::vector<JudgedBlock> judged;
+
+    Blocks() {
+        for (int i = 0; i < 9; ++i) {
+            const double amplitude = 5 + 4 * i, other = 1 + (i * 5) % 9;
+            BlockRecording& recording = recordings.emplace_back(EmptyRecording(10000));
+            SetChannel(&recording, "masked_noise",
+                       [=](int spp) { return amplitude / std::sqrt(spp); });
+            for (const char* channel : {"dammertz", "luxtile"})
+                SetChannel(&recording, channel, [=](int spp) { return other / std::sqrt(spp); });
+            // cycles stops at half of the threshold at its third setting, at 1.5 at the fourth.
+            const int human = int(std::pow(amplitude / 0.5, 2));
+            recording.cyclesStops[2] = human / 2;
+            recording.cyclesStops[3] = human * 3 / 2;
+        }
+        for (int i = 0; i < 9; ++i)
+            judged.push_back({.viewpoint = std::string(1, char('a' + i / 3)),
+                              .block = i % 3,
+                              .human = int(std::pow((5 + 4 * i) / 0.5, 2)),
+                              .cap = 10000,
+                              .passSpp = 20,
+                              .recording = &recordings[size_t(i)]});
+    }
+};
+
+const Rival& Find(const std::vector<Rival>& rivals, const std::string& rule) {
+    return *std::ranges::find(rivals, rule, &Rival::rule);
+}
+
+TEST(Rivals, FindTheBestSetting) {
+    const Blocks blocks;
+    for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
+        const std::vector<Rival> rivals = JudgeRivals(blocks.judged, chooseBy, 40);
+        ASSERT_EQ(rivals.size(), 6u);
+        const Rival& noise = Find(rivals, "lnoise");
+        // Three votes take 80 spp more than people, so that the best is a little above 0.5.
+        EXPECT_NEAR(std::stod(noise.bestOfAll), 0.51, 0.02);
+        ASSERT_EQ(noise.viewpoints.size(), 3u);
+        const Judgement best = Judge(noise.viewpoints, {.grid = 40, .margins = {2}});
+        EXPECT_EQ(best.blocks, 9);
+        EXPECT_LT(best.absoluteError, 200);
+        EXPECT_LT(best.criticalErrors[0], 0.01);
+        EXPECT_GT(*best.auc, 0.99);
+        for (const char* rule : {"dammertz", "cycles", "luxtile"})
+            EXPECT_GT(Judge(Find(rivals, rule).viewpoints, {}).absoluteError, 500) << rule;
+        for (const ViewpointOutcome& viewpoint : noise.viewpoints)
+            EXPECT_NEAR(std::stod(viewpoint.setting), 0.51, 0.03);
+    }
+}
+
+TEST(Rivals, ChooseOnOtherViewpoints) {
+    // The people of one viewpoint are of another mind. That changes the choice for the others, and
+    // not for theirs.
+    Blocks blocks;
+    const auto before = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    for (size_t i = 6; i < 9; ++i) blocks.judged[i].human = 200;
+    const auto after = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    for (const char* rule : {"dammertz", "luxtile", "lnoise"}) {
+        const Rival &x = Find(before, rule), &y = Find(after, rule);
+        EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
+        EXPECT_NE(x.bestOfAll, y.bestOfAll) << rule;
+        EXPECT_LT(std::stod(x.bestOfAll), std::stod(y.bestOfAll)) << rule;
+    }
+}
+
+TEST(Rivals, TakeTheCheaperOfEqualSettings) {
+    const Blocks blocks;
+    // Both settings of cycles are wrong by half; the coarser comes first.
+    const Rival cycles = Find(JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40), "cycles");
+    EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
+    EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
+    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.judged[1].human / 2);
+}
+
+TEST(Rivals, ChooseTheMaskAsWell) {
+    // Blocks of different detail, whose people see noise masked with 12 until it is below 1.
+    Blocks blocks;
+    const double lightness = 50;
+    for (size_t i = 0; i < 9; ++i) {
+        const double amplitude = 2 + 0.1 * double(i), detail = 15.0 * double(i % 3);
+        BlockRecording& recording = blocks.recordings[i];
+        SetChannel(&recording, "lightness", [=](int) { return lightness; });
+        SetChannel(&recording, "deviation", [=](int) { return detail; });
+        // The fall since half of the spp is amplitude^2 / spp.
+        SetChannel(&recording, "h100", [=](int spp) { return amplitude * amplitude / spp; });
+        const auto seen = [=](int spp) {
+            const double drop[] = {amplitude / std::sqrt(spp)};
+            const SubBlockLightness picture{.mean = {float(lightness)},
+                                            .deviation = {float(detail)}};
+            return VisibleDrop(drop, picture, spp, {.mask = 12})[0];
+        };
+        int human = 20;
+        while (seen(human) >= 1) human += 20;
+        blocks.judged[i].human = human;
+    }
+    const auto rivals = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    const Rival& masked = Find(rivals, "entropy, mask");
+    EXPECT_TRUE(masked.bestOfAll.ends_with(", 12")) << masked.bestOfAll;
+    for (const ViewpointOutcome& viewpoint : masked.viewpoints) {
+        EXPECT_TRUE(viewpoint.setting.ends_with(", 12")) << viewpoint.setting;
+        EXPECT_NEAR(std::stod(viewpoint.setting), 1, 0.05);
+    }
+    const auto error = [&](const char* rule) {
+        return Judge(Find(rivals, rule).viewpoints, {}).absoluteError;
+    };
+    EXPECT_LT(error("entropy, mask"), 150);
+    EXPECT_GT(error("entropy"), 3 * error("entropy, mask"));
+}
+
+TEST(Rivals, NeedTwoViewpoints) {
+    const Blocks blocks;
+    EXPECT_THROW(JudgeRivals(std::span(blocks.judged).first(3), ChooseBy::AbsoluteError, 40),
+                 std::invalid_argument);
+    EXPECT_THROW(JudgeRivals({}, ChooseBy::AbsoluteError, 40), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lull::rivals_test

@@ -1,0 +1,222 @@
+#include "stopping/lab/evaluation/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "stopping/network/model_file.h"
+#include "stopping/rules/lnoise.h"
+#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/network/random_network.h"
+#include "tests/stopping/scratch_file.h"
+#include "tests/stopping/signals/block_images.h"
+
+namespace lull {
+namespace {
+
+JudgedBlock MakeBlock(const BlockRecording& recording, int human = 500) {
+    return {.viewpoint = "kitchen",
+            .block = 1,
+            .human = human,
+            .cap = 10000,
+            .passSpp = 20,
+            .recording = &recording};
+}
+
+// Returns a model that takes a block for noiseless when the mean of what it is given is low.
+void WriteTestModel(const std::string& path) {
+    Network network = RandomNetwork(25, {4}, 1, 7);
+    network.dense[0].kernel.setConstant(3);
+    network.dense[0].bias[0] = -6.2f;
+    WriteModel(path, network, {.k = 3, .n = 40, .m = 25, .snorm = false, .votes = 2});
+}
+
+TEST(Simulation, StopsWhereTheCriterionDoes) {
+    // Below 400 spp every pass is recorded, so that nothing can differ.
+    const ScratchFile model(".h5"), thresholds(".csv", "kitchen;100;150;\n");
+    WriteTestModel(model.path);
+    BlockRecording recording;
+    Recorder recorder(20, 400, 400, &recording);
+    std::vector<BlockImage> images;
+    for (int spp = 20; spp <= 400; spp += 20) {
+        images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
+        recorder.Observe(images.back().At(spp));
+    }
+    for (const std::string& rule :
+         {std::string("dammertz:0.03"), std::string("dammertz"), std::string("luxtile:0.12"),
+          std::string("cycles:0.04"), std::string("lnoise:1"), std::string("lnoise:0.9"),
+          std::string("fixed:150"), "thresholds:" + thresholds.path, "learned:" + model.path}) {
+        const auto criterion =
+            MakeCriterionFactory(rule, {.sceneName = "kitchen"}).make({.index = 1});
+        int expected = 0;
+        for (int spp = 20; spp <= 400 && expected == 0; spp += 20)
+            if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
+        const RuleOutcome outcome = MakeSimulator(rule)(MakeBlock(recording));
+        EXPECT_GT(expected, 20) << rule;
+        EXPECT_EQ(outcome.stop, expected) << rule;
+        EXPECT_FALSE(outcome.open) << rule;
+        EXPECT_EQ(outcome.verdicts.size(), 10u) << rule;
+    }
+}
+
+TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
+    // They look every 40 spp, which is what is recorded beyond 400 spp as well.
+    const ScratchFile model(".h5");
+    Network network = RandomNetwork(1, {4}, 1, 7);
+    network.lstm[0].kernel.setConstant(1);
+    network.dense[0].kernel.setConstant(20);
+    network.dense[0].bias[0] = -20;
+    WriteModel(model.path, network,
+               {.k = 2,
+                .n = 40,
+                .features = {Feature::VisibleDrop},
+                .pools = {{Pool::PowerMean, 1}},
+                .voteSpacing = 40,
+                .spacing = Spacing::Geometric,
+                .ratio = 1.5});
+    BlockRecording recording;
+    Recorder recorder(20, 2400, 2400, &recording);
+    std::vector<BlockImage> images;
+    for (int spp = 20; spp <= 2400; spp += 20) {
+        images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
+        recorder.Observe(images.back().At(spp));
+    }
+    for (const std::string& rule : {std::string("entropy:0.9"), "learned:" + model.path})
+        for (const double caution : {1.0, 1.1}) {
+            const auto criterion = MakeCriterionFactory(rule, {.caution = caution}).make({});
+            int expected = 0;
+            for (int spp = 20; spp <= 2400 && expected == 0; spp += 20)
+                if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
+            const RuleOutcome outcome =
+                MakeSimulator(rule, {.caution = caution})(MakeBlock(recording));
+            EXPECT_GT(expected, 400) << rule;
+            EXPECT_EQ(outcome.stop, expected) << rule << " " << caution;
+        }
+}
+
+TEST(Simulation, VotesOnRecordedPasses) {
+    // The noise is below 0.5 at 380 and 400 spp, then at 420, 460 and 500 with one exception.
+    BlockRecording recording = EmptyRecording(600);
+    SetChannel(&recording, "masked_noise",
+               [](int spp) { return spp < 380 || spp == 420 ? 0.6 : 0.4; });
+    const JudgedBlock block = MakeBlock(recording, 460);
+    const ErrorSeries series = MakeErrorSeries(block, LightnessNoiseRule(0.5));
+    EXPECT_EQ(series.needed, 3);
+    EXPECT_EQ(FirstBelow(series, 0.7), 2);
+    EXPECT_EQ(FirstBelow(series, 0.3), -1);
+    const RuleOutcome outcome = SimulateErrorRule(block, series, 0.5);
+    EXPECT_EQ(outcome.stop, 540);
+    EXPECT_FALSE(outcome.open);
+
+    // Verdicts come at 20, 60, ..., 580, and not at 600, the end of the recording.
+    ASSERT_EQ(outcome.verdicts.size(), 15u);
+    for (const Verdict& v : outcome.verdicts) {
+        EXPECT_EQ((v.spp - 20) % 40, 0);
+        EXPECT_EQ(v.noisy, v.spp < 380 || v.spp == 420) << v.spp;
+        EXPECT_NEAR(v.score, v.noisy ? 0.6 : 0.4, 1e-6);
+    }
+    EXPECT_TRUE(SimulateErrorRule(block, series, 0.5, true).verdicts.empty());
+}
+
+TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
+    BlockRecording recording = EmptyRecording(700);
+    SetChannel(&recording, "dammertz", [](int) { return 0.1; });
+    const JudgedBlock block = MakeBlock(recording);
+    const ErrorSeries series = MakeErrorSeries(block, DammertzRule(0.05));
+    for (const RuleOutcome& outcome :
+         {SimulateVoting(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
+          SimulateCycles(block, 0.02)}) {
+        EXPECT_EQ(outcome.stop, 700);
+        EXPECT_TRUE(outcome.open);
+        EXPECT_TRUE(outcome.verdicts.back().noisy);
+    }
+    // What is known beforehand goes on.
+    EXPECT_EQ(SimulateStop(block, 5000).stop, 5000);
+    EXPECT_FALSE(SimulateStop(block, 5000).open);
+    EXPECT_EQ(SimulateStop(block, 123456).stop, 10000);
+
+    BlockRecording whole = EmptyRecording(10000);
+    SetChannel(&whole, "dammertz", [](int) { return 0.1; });
+    const RuleOutcome never = SimulateVoting(MakeBlock(whole), DammertzRule(0.05));
+    EXPECT_EQ(never.stop, 10000);
+    EXPECT_FALSE(never.open);
+}
+
+TEST(Simulation, LooksWhenTheRuleDoes) {
+    // luxtile does not look at 20 spp, where the error of the made-up block is 0.
+    const BlockRecording recording = EmptyRecording(200);
+    const RuleOutcome outcome = MakeSimulator("luxtile:0.1")(MakeBlock(recording));
+    EXPECT_EQ(outcome.stop, 40);
+    EXPECT_TRUE(outcome.verdicts[0].noisy);
+    EXPECT_FALSE(outcome.verdicts[1].noisy);
+    EXPECT_EQ(MakeSimulator("dammertz:0.1")(MakeBlock(recording)).stop, 20);
+}
+
+TEST(Simulation, TakesTheRecordedStopsOfCycles) {
+    BlockRecording recording = EmptyRecording(500);
+    recording.cyclesStops[4] = 340;  // at 0.06
+    const JudgedBlock block = MakeBlock(recording);
+    const RuleOutcome outcome = MakeSimulator("cycles:0.06")(block);
+    EXPECT_EQ(outcome.stop, 340);
+    for (const Verdict& v : outcome.verdicts) {
+        EXPECT_EQ(v.noisy, v.spp < 340);
+        EXPECT_DOUBLE_EQ(v.score, 340.0 / v.spp);
+    }
+    EXPECT_TRUE(MakeSimulator("cycles:0.04")(block).open);
+    try {
+        SimulateCycles(block, 0.05);
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("0.08 0.06 0.04"), std::string::npos);
+    }
+}
+
+TEST(Simulation, RefusesWhatCannotBeSimulated) {
+    const BlockRecording recording = EmptyRecording(500), empty;
+    const JudgedBlock block = MakeBlock(recording);
+    for (const char* rule :
+         {"", "oracle:1", "luxtile", "dammertz:0.1:area", "fixed:x", "cycles:-1", "thresholds:"})
+        EXPECT_THROW(MakeSimulator(rule), std::invalid_argument) << rule;
+    EXPECT_THROW(MakeSimulator("thresholds:/no/such/file.csv"), std::runtime_error);
+    try {
+        MakeSimulator("denoised:0.5");
+        FAIL();
+    } catch (const std::invalid_argument& e) {
+        EXPECT_NE(std::string(e.what()).find("no denoised pictures"), std::string::npos);
+    }
+    EXPECT_THROW(MakeSimulator("learned:/no/such/model.h5"), std::runtime_error);
+    EXPECT_THROW(MakeSimulator("learned"), std::runtime_error);
+    EXPECT_THROW(MakeSimulator("fixed:20")(MakeBlock(empty)), std::invalid_argument);
+
+    const ScratchFile file(".csv", "crown;100;150;\nkitchen;100;\n");
+    const Simulator thresholds = MakeSimulator("thresholds:" + file.path);
+    EXPECT_THROW(thresholds(block), std::runtime_error);  // the row has no block 1
+    JudgedBlock other = block;
+    other.viewpoint = "dragon";
+    EXPECT_THROW(thresholds(other), std::runtime_error);
+
+    // Beyond 400 spp, only every second pass is there.
+    const ScratchFile model(".h5");
+    WriteModel(model.path, RandomNetwork(25, {4}, 1), {.k = 3, .n = 20, .m = 25});
+    EXPECT_THROW(MakeSimulator("learned:" + model.path)(block), std::runtime_error);
+}
+
+TEST(Simulation, GroupsBlocksByViewpoint) {
+    const BlockRecording recording = EmptyRecording(500);
+    std::vector<JudgedBlock> blocks(3, MakeBlock(recording));
+    blocks[0].viewpoint = "crown";
+    blocks[2].human = 700;
+    const auto viewpoints = Simulate(blocks, MakeSimulator("fixed:90"), "90");
+    ASSERT_EQ(viewpoints.size(), 2u);
+    EXPECT_EQ(viewpoints[0].name, "crown");
+    EXPECT_EQ(viewpoints[0].setting, "90");
+    EXPECT_EQ(viewpoints[0].blocks.size(), 1u);
+    ASSERT_EQ(viewpoints[1].blocks.size(), 2u);
+    EXPECT_EQ(viewpoints[1].blocks[1].human, 700);
+    EXPECT_EQ(viewpoints[1].blocks[1].outcome.stop, 100);
+}
+
+}  // namespace
+}  // namespace lull

@@ -1,0 +1,73 @@
+#include "stopping/lab/observers/observer_tables.h"
+
+#include <gtest/gtest.h>
+
+#include "stopping/base/csv.h"
+#include "stopping/lab/evaluation/single_answers.h"
+#include "tests/stopping/lab/observers/example_answers.h"
+
+namespace lull {
+namespace {
+
+TEST(CsvField, QuotesWhatWouldBreakTheLine) {
+    EXPECT_EQ(CsvField("a b;c"), "a b;c");
+    EXPECT_EQ(CsvField("a,b"), "\"a,b\"");
+    EXPECT_EQ(CsvField("say \"a\""), "\"say \"\"a\"\"\"");
+    EXPECT_EQ(CsvField("a\nb"), "\"a\nb\"");
+    EXPECT_EQ(CsvField("a\rb"), "\"a\rb\"");
+    EXPECT_EQ(CsvField(""), "");
+}
+
+TEST(CsvField, LeavesNoFormula) {
+    EXPECT_EQ(CsvField("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+    EXPECT_EQ(CsvField("@SUM(1,2)"), "\"'@SUM(1,2)\"");
+    EXPECT_EQ(CsvField("+1+A1"), "'+1+A1");
+    EXPECT_EQ(CsvField("-"), "'-");
+    EXPECT_EQ(CsvField("-1.5"), "-1.5");
+    EXPECT_EQ(CsvField("a=b"), "a=b");
+}
+
+TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
+    std::vector<ObserverAnswers> answers;
+    for (const ExampleAnswers& example :
+         {ExampleAnswers{.observer = "a, b", .session = "1"},
+          ExampleAnswers{.observer = "c", .session = "2", .levels = {3, 2, 3, 4}},
+          ExampleAnswers{.observer = "d", .session = "3", .failed = 3}}) {
+        answers.push_back(ParseAnswers(example.Text()));
+        answers.back().file = example.session;
+    }
+    Collected collected = CollectObservers(std::move(answers), {});
+    collected.refused.push_back({"x.json", "is no JSON, or cut short"});
+    const std::string details = DetailsCsv(collected);
+    EXPECT_TRUE(
+        details.starts_with("viewpoint,block,observers,mean,low,high,lowest,highest,"
+                            "deviation,octaves,agreement,answers\n"
+                            "room,0,2,100,20,320,40,160,84.85,1.414,,2\n"))
+        << details;
+    EXPECT_NE(details.find("\nroom,all,2,,,,,,,,"), std::string::npos);
+    const std::string observers = ObserversCsv(collected);
+    EXPECT_NE(observers.find("\n1,room,\"a, b\",yes,,adjust,4,0,0,,"), std::string::npos)
+        << observers;
+    EXPECT_NE(observers.find("\n3,room,d,no,failed 3 of 4 checks,"), std::string::npos);
+    EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is no JSON, or cut short\",,,,,,,,,,\n"));
+}
+
+// `lull evaluate --answers` reads what is written; who is left out says nothing.
+TEST(SingleAnswersCsv, HasWhatWasSeenUpToWhereItEnded) {
+    std::vector<ObserverAnswers> answers;
+    for (const ExampleAnswers& example :
+         {ExampleAnswers{.session = "1", .levels = {2, 4}, .starts = {0, 3}},
+          ExampleAnswers{.observer = "b", .session = "2", .levels = {1, 1}, .starts = {1, 2}},
+          ExampleAnswers{.observer = "c", .session = "3", .levels = {3, 3}, .failed = 3}})
+        answers.push_back(ParseAnswers(example.Text()));
+    const std::string csv = SingleAnswersCsv(CollectObservers(std::move(answers), {}), "room");
+    EXPECT_EQ(csv,
+              "block,spp,noise_seen\n0,20,1\n0,40,1\n0,80,0\n1,160,1\n"
+              "0,40,0\n1,40,0\n");
+    std::istringstream in(csv);
+    EXPECT_EQ(ReadSingleAnswers(in, "answers.csv").size(), 6u);
+    EXPECT_EQ(SingleAnswersCsv({}, "room"), "");
+}
+
+}  // namespace
+}  // namespace lull

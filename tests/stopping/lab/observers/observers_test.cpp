@@ -1,0 +1,180 @@
+#include "stopping/lab/observers/observers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/stopping/lab/observers/example_answers.h"
+
+namespace lull {
+namespace {
+
+// Collects examples, which are files "0", "1", ...
+Collected Collect(const std::vector<ExampleAnswers>& examples, const CollectOptions& options = {}) {
+    std::vector<ObserverAnswers> answers;
+    for (const ExampleAnswers& example : examples) {
+        answers.push_back(ParseAnswers(example.Text()));
+        answers.back().file = std::to_string(answers.size() - 1);
+    }
+    return CollectObservers(std::move(answers), options);
+}
+
+void ExpectRefused(const Collected& collected, size_t i, const std::string& file,
+                   const std::string& part) {
+    ASSERT_GT(collected.refused.size(), i);
+    EXPECT_EQ(collected.refused[i].file, file);
+    EXPECT_NE(collected.refused[i].reason.find(part), std::string::npos)
+        << collected.refused[i].reason;
+}
+
+TEST(CollectObservers, TakesMeansWithTheirConfidence) {
+    const Collected collected =
+        Collect({{.observer = "a", .session = "1", .levels = {1, 2, 4, 4}},
+                 {.observer = "b", .session = "2", .levels = {2, 2, 4, 3}}});
+    ASSERT_EQ(collected.viewpoints.size(), 1u);
+    const CollectedViewpoint& room = collected.viewpoints[0];
+    EXPECT_EQ(room.name, "room");
+    EXPECT_EQ(room.observers, 2);
+    EXPECT_EQ(room.blocks[0].mean, 60);
+    EXPECT_EQ(room.blocks[0].lowest, 40);
+    EXPECT_EQ(room.blocks[0].highest, 80);
+    EXPECT_NEAR(room.blocks[0].deviation.value(), 20 * std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(room.blocks[0].octaves.value(), std::sqrt(0.5), 1e-9);
+    EXPECT_EQ(room.blocks[0].low, 20);  // 60 - 12.7 * 20 is below the ladder
+    EXPECT_NEAR(room.blocks[0].high.value(), 60 + 12.7062 * 20, 1e-2);
+    EXPECT_EQ(room.blocks[2].low, 320);
+    EXPECT_EQ(room.blocks[2].high, 320);
+    EXPECT_GT(room.agreement.value(), 0.5);
+    EXPECT_EQ(collected.observers[0].shiftOctaves, 0);  // lower in one block, higher in another
+
+    const std::vector<ThresholdsRow> rows = ThresholdsOf(collected);
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].spp, (std::vector<int>{60, 80, 320, 240}));
+}
+
+TEST(CollectObservers, KnowsLittleOfOne) {
+    const Collected collected = Collect({{}});
+    const BlockConsensus& block = collected.viewpoints.at(0).blocks[0];
+    EXPECT_EQ(block.mean, 40);
+    EXPECT_FALSE(block.deviation || block.low || collected.viewpoints[0].agreement);
+}
+
+TEST(CollectObservers, MeasuresRepeats) {
+    // Twice the spp the first time, half of it the second.
+    const Collected collected = Collect({{.levels = {1, 2, 3}, .repeats = {2, 1}}});
+    EXPECT_EQ(collected.observers[0].repeats, 2);
+    EXPECT_NEAR(collected.observers[0].repeatOctaves.value(), std::sqrt(0.5), 1e-9);
+    EXPECT_FALSE(Collect({{}}).observers[0].repeatOctaves);
+}
+
+TEST(CollectObservers, LeavesOutWhoDoesNotLook) {
+    const Collected collected = Collect({{.observer = "a", .session = "1"},
+                                         {.observer = "b", .session = "2", .failed = 2},
+                                         {.observer = "c", .session = "3", .failed = 1},
+                                         {.observer = "d", .session = "4", .clicks = 0}});
+    EXPECT_EQ(collected.viewpoints.at(0).observers, 2);
+    EXPECT_EQ(collected.observers[0].leftOut, "");
+    EXPECT_EQ(collected.observers[1].leftOut, "failed 2 of 4 checks");
+    EXPECT_EQ(collected.observers[2].leftOut, "");
+    EXPECT_EQ(collected.observers[3].leftOut, "pointed at nothing");
+    EXPECT_FALSE(collected.observers[1].shiftOctaves);
+    EXPECT_TRUE(collected.refused.empty());
+    EXPECT_TRUE(Collect({{.failed = 4}}).viewpoints.empty());
+}
+
+TEST(CollectObservers, RefusesAnswersToOtherStudies) {
+    const Collected collected =
+        Collect({{.observer = "a", .session = "1", .study = "other"},
+                 {.observer = "b", .session = "2"},
+                 {.observer = "c", .session = "3"},
+                 {.observer = "a", .session = "4", .study = "hall", .viewpoint = "hall"}});
+    ExpectRefused(collected, 0, "0", "another study of 'room'");
+    ASSERT_EQ(collected.viewpoints.size(), 2u);
+    EXPECT_EQ(collected.viewpoints[0].name, "hall");
+    EXPECT_EQ(collected.viewpoints[1].observers, 2);
+
+    const Collected one =
+        Collect({{.session = "1"}, {.session = "2", .study = "hall", .viewpoint = "hall"}},
+                {.study = "hall"});
+    ExpectRefused(one, 0, "0", "answers another study");
+    EXPECT_EQ(one.viewpoints.size(), 1u);
+
+    const Collected changed = Collect(
+        {{.observer = "a", .session = "1"}, {.observer = "b", .session = "2", .levels = {1, 2}}});
+    ExpectRefused(changed, 0, "1", "in another way");
+}
+
+TEST(CollectObservers, RefusesCopiesAndContradictions) {
+    const Collected copies = Collect({{}, {}});
+    ExpectRefused(copies, 0, "1", "copy of 0");
+    EXPECT_EQ(copies.viewpoints.at(0).observers, 1);
+
+    const Collected contradicting =
+        Collect({{}, {.levels = {1, 2, 3, 3}}, {.observer = "b", .session = "2"}});
+    ExpectRefused(contradicting, 0, "0", "same session");
+    ExpectRefused(contradicting, 1, "1", "same session");
+    EXPECT_EQ(contradicting.viewpoints.at(0).observers, 1);
+
+    const Collected again = Collect({{.session = "1", .started = "2026-02-01T00:00:00.000Z"},
+                                     {.session = "2", .started = "2026-01-01T00:00:00.000Z"}});
+    ExpectRefused(again, 0, "0", "has judged 'room' before");
+    EXPECT_EQ(again.observers.at(0).answers.session, "2");
+}
+
+TEST(CollectFiles, NamesFilesThatCannotBeRead) {
+    const Collected collected = CollectFiles({"no such file"}, {});
+    ASSERT_EQ(collected.refused.size(), 1u);
+    EXPECT_EQ(collected.refused[0].file, "no such file");
+    EXPECT_TRUE(collected.viewpoints.empty());
+}
+
+TEST(CollectObservers, SaysOfWhomItDoubts) {
+    const Collected collected = Collect({{.observer = "a", .session = "1", .failed = 1},
+                                         {.observer = "b", .session = "2", .seconds = 3},
+                                         {.observer = "c", .session = "3", .seconds = 7},
+                                         {.observer = "d", .session = "4", .repeats = {4, 0}}});
+    EXPECT_EQ(collected.observers[0].doubts, "failed 1 of 4 checks");
+    EXPECT_EQ(collected.observers[1].leftOut, "took 0.12 s an answer, in which nobody looks");
+    EXPECT_EQ(collected.observers[1].doubts, "");
+    EXPECT_EQ(collected.observers[2].doubts, "took only 0.29 s an answer");
+    EXPECT_EQ(collected.observers[3].doubts,
+              "asked twice, gave answers that differ by a factor of 5.9");
+    EXPECT_EQ(collected.viewpoints.at(0).observers, 3);
+    EXPECT_EQ(collected.viewpoints[0].blocks[0].answers, 4);
+    EXPECT_EQ(FewestAnswers(collected.viewpoints[0]), 3);
+    EXPECT_EQ(Collect({{}}).observers[0].doubts, "");
+}
+
+// Thresholds of adjustment are not those of staircases, whatever the pictures.
+TEST(CollectObservers, NeverMixesProcedures) {
+    std::vector<ObserverAnswers> answers;
+    for (const char* session : {"1", "2", "3"}) {
+        answers.push_back(
+            ParseAnswers(ExampleAnswers{.observer = session, .session = session}.Text()));
+        answers.back().file = session;
+    }
+    answers[0].procedure = "staircase";
+    const Collected most = CollectObservers(answers, {});
+    EXPECT_EQ(most.viewpoints.at(0).procedure, "adjust");
+    EXPECT_EQ(most.viewpoints[0].observers, 2);
+    ExpectRefused(most, 0, "1", "was asked by staircase, most files of 'room' by adjustment");
+    const Collected wanted = CollectObservers(answers, {.procedure = "staircase"});
+    EXPECT_EQ(wanted.viewpoints.at(0).observers, 1);
+    ExpectRefused(wanted, 0, "2", "by adjustment, not by staircase");
+}
+
+TEST(CollectObservers, TakesTheConfidenceOfOneFromTheStaircase) {
+    ObserverAnswers answers = ParseAnswers(ExampleAnswers{}.Text());
+    for (BlockAnswer& answer : answers.answers) {
+        answer.octaves = 0.5;
+        answer.answers = 40;
+    }
+    const Collected collected = CollectObservers({answers}, {});
+    const BlockConsensus& block = collected.viewpoints.at(0).blocks[1];  // of 80
+    EXPECT_NEAR(block.low.value(), 80 / std::exp2(0.98), 1e-6);
+    EXPECT_NEAR(block.high.value(), 80 * std::exp2(0.98), 1e-6);
+    EXPECT_EQ(block.answers, 40);
+}
+
+}  // namespace
+}  // namespace lull
