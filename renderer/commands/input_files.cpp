@@ -12,12 +12,6 @@ std::vector<NamedFile> InputsOf(const SceneOptions& options, const Description& 
     return inputs;
 }
 
-std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {
-    std::vector<NamedFile> inputs = {{"--human", plan.human}};
-    for (const std::string& file : plan.datasets) inputs.push_back({"DATASET.h5", file});
-    return inputs;
-}
-
 void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs) {
     const size_t colon = rule.find(':');
     if (colon == std::string::npos) return;

@@ -5,16 +5,12 @@
 
 #include "renderer/commands/scene_options.h"
 #include "renderer/files/outputs.h"
-#include "stopping/lab/training/training_plan.h"
 
 namespace lull {
 
 // Returns the files of a scene that has been read, with the one that --environment names; for
 // CheckOutputs().
 std::vector<NamedFile> InputsOf(const SceneOptions&, const Description&);
-
-// Returns the recordings and thresholds that a training reads.
-std::vector<NamedFile> InputsOf(const TrainingPlan&);
 
 // Adds the file that a stopping rule names, "learned:M.h5" or "thresholds:F.csv:NAME", if it does.
 void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs);

@@ -8,7 +8,6 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
-#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"

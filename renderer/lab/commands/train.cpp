@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"

@@ -310,6 +310,12 @@ void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan) {
     if (plan->settings.voteSpacing == 0) plan->settings.voteSpacing = plan->settings.n;
 }
 
+std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {
+    std::vector<NamedFile> inputs = {{"--human", plan.human}};
+    for (const std::string& file : plan.datasets) inputs.push_back({"DATASET.h5", file});
+    return inputs;
+}
+
 ProgressStyle StyleOf(const TrainOptions& options) {
     return options.jsonProgress    ? ProgressStyle::Json
            : options.quiet         ? ProgressStyle::Silent

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/files/outputs.h"
 #include "renderer/render/progress.h"
 #include "stopping/lab/training/search_run.h"
 
@@ -26,6 +27,9 @@ void AddTrainOptions(CLI::App& app, TrainOptions* options);
 // Sets options of the model and its training as `--name=value` would; any of them can be set.
 // Throws std::invalid_argument saying what is wrong.
 void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan);
+
+// Returns the recordings and thresholds that a training reads; for CheckOutputs().
+std::vector<NamedFile> InputsOf(const TrainingPlan&);
 
 // Says how progress is to be shown.
 ProgressStyle StyleOf(const TrainOptions& options);
