@@ -5,11 +5,13 @@
 namespace lull {
 
 VisibleError BlockDenoiser::MeasureBlock(int block) const {
-    constexpr int rowsPerFit = 2;  // the picture in the end is a little better than that judged
     const PixelRect& pixels = blocks.at(size_t(block)).pixels;
-    const DenoisedPicture denoised = Denoise(PictureOf(*film, *featureFilm, pixels), rowsPerFit);
-    if (showPicture) showPicture(pixels, Interleaved(denoised.picture));
-    return MeasureVisibleError(MeasureError(denoised), 0, 0, pixels.Width(), pixels.Height());
+    const PictureBlock whole{0, 0, pixels.Width(), pixels.Height()};
+    // The picture in the end is a little better than that which is judged.
+    const DenoiserResult result = RunDenoiser(PictureOf(*film, *featureFilm, pixels), {&whole, 1},
+                                              {.isQuick = true, .withDeviation = false});
+    if (showPicture) showPicture(pixels, result.rgb);
+    return result.blocks.front().value();
 }
 
 SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser> denoiser) {

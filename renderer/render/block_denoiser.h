@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "renderer/denoise/visible_error.h"
+#include "renderer/denoise/denoiser.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
@@ -28,6 +28,7 @@ class BlockDenoiser {
         showPicture = std::move(show);
     }
 
+    // Of a block of at least kSmallestMeasuredSide.
     VisibleError MeasureBlock(int block) const;
 
   private:

@@ -7,6 +7,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
+#include "renderer/denoise/denoiser.h"
 #include "renderer/files/file_io.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
@@ -14,8 +15,6 @@
 namespace lull {
 
 namespace {
-
-constexpr int64_t kDenoiserBytes = 230;  // a pixel, while it works
 
 template <typename... Arguments>
 void Tell(const std::function<void(const std::string&)>& listener,

@@ -4,30 +4,17 @@
 
 namespace lull {
 
-namespace {
-
-constexpr int kSmallest = 10;  // pixels a side of a block whose visible error can be measured
-
-}  // namespace
-
 DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
-    DenoisedPicture denoised = Denoise(std::move(picture));
-    std::vector<float> standardError = StandardError(denoised).values;
-    const EstimatedError error = MeasureError(denoised);
-    denoised.halves = denoised.noisy = {};  // a large picture needs the memory
-    DenoisedImage result{{region.Width(), region.Height(), Interleaved(denoised.picture)},
-                         std::move(standardError),
-                         {}};
-    denoised = {};
+    std::vector<PictureBlock> measured;
     for (const Block& block : blocks) {
         const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
-        const bool isSmall = std::min(max.x() - min.x(), max.y() - min.y()) < kSmallest;
-        result.blocks.emplace_back();
-        if (!isSmall)
-            result.blocks.back() = MeasureVisibleError(error, min.x(), min.y(), max.x(), max.y());
+        measured.push_back({min.x(), min.y(), max.x(), max.y()});
     }
-    return result;
+    DenoiserResult result = RunDenoiser(std::move(picture), measured);
+    return {{region.Width(), region.Height(), std::move(result.rgb)},
+            std::move(result.deviation),
+            std::move(result.blocks)};
 }
 
 std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
@@ -35,7 +22,8 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     for (const auto& error : blocks)
         if (error) upper.push_back(error->upper);
     if (upper.empty())
-        return fmt::format("visible error not known of blocks below {} pixels a side", kSmallest);
+        return fmt::format("visible error not known of blocks below {} pixels a side",
+                           kSmallestMeasuredSide);
     std::ranges::sort(upper);
     return fmt::format(
         "visible error in lightness, of 0 to 100, probably at most {:.2f} in half of "

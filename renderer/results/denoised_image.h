@@ -1,9 +1,7 @@
 // Denoises a finished render.
 #pragma once
 
-#include <optional>
-
-#include "renderer/denoise/visible_error.h"
+#include "renderer/denoise/denoiser.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/rgb_image.h"
@@ -14,7 +12,7 @@ namespace lull {
 struct DenoisedImage {
     RgbImage image;
     std::vector<float> error;  // estimated standard error of each pixel in lightness
-    // Of each block; not known of those below 10 pixels a side.
+    // Of each block; not known of those below kSmallestMeasuredSide.
     std::vector<std::optional<VisibleError>> blocks;
 };
 

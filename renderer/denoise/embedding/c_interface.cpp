@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "renderer/denoise/visible_error.h"
+#include "renderer/denoise/denoiser.h"
 
 namespace lull {
 
 namespace {
 
-constexpr int kLargestSide = 1 << 16, kSmallestBlock = 10;
+constexpr int kLargestSide = 1 << 16;
 
 // Of fixed length, so that running out of memory can be said too.
 thread_local std::array<char, 512> lastError = {};
@@ -95,28 +95,27 @@ void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& c
             std::to_string(clean.block_count) + " blocks, of which there are none");
     for (int i = 0; i < clean.block_count; ++i) {
         const lull_block_error& block = clean.blocks[i];
-        Require(block.x >= 0 && block.y >= 0 && block.width >= kSmallestBlock &&
-                    block.height >= kSmallestBlock && block.x <= noisy.width - block.width &&
+        Require(block.x >= 0 && block.y >= 0 && block.width >= kSmallestMeasuredSide &&
+                    block.height >= kSmallestMeasuredSide && block.x <= noisy.width - block.width &&
                     block.y <= noisy.height - block.height,
                 "block " + std::to_string(i) +
                     " must lie within the picture, and have at least 10 pixels a side");
     }
 }
 
-void Write(DenoisedPicture denoised, lull_denoised_picture* clean) {
-    const Planes standard = clean->error ? StandardError(denoised) : Planes();
-    const EstimatedError error = MeasureError(denoised);
-    denoised.halves = denoised.noisy = {};  // a large picture needs the memory
-    const std::vector<float> colours = Interleaved(denoised.picture);
-    for (int i = 0; i < clean->block_count; ++i) {
-        lull_block_error& block = clean->blocks[i];
-        const VisibleError visible = MeasureVisibleError(
-            error, block.x, block.y, block.x + block.width, block.y + block.height);
-        block.estimate = visible.estimate;
-        block.upper = visible.upper;
+void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
+    const std::span<lull_block_error> blocks(clean->blocks, size_t(clean->block_count));
+    std::vector<PictureBlock> measured;
+    for (const lull_block_error& block : blocks)
+        measured.push_back({block.x, block.y, block.x + block.width, block.y + block.height});
+    const DenoiserResult result =
+        RunDenoiser(std::move(picture), measured, {.withDeviation = clean->error != nullptr});
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        blocks[i].estimate = result.blocks[i]->estimate;
+        blocks[i].upper = result.blocks[i]->upper;
     }
-    std::ranges::copy(standard.values, clean->error);
-    std::ranges::copy(colours, clean->colour);
+    std::ranges::copy(result.deviation, clean->error);
+    std::ranges::copy(result.rgb, clean->colour);
 }
 
 }  // namespace
@@ -128,7 +127,7 @@ extern "C" const char* lull_denoise(const lull_noisy_picture* noisy, lull_denois
         if (!noisy || !clean) return lull::Fail("a null pointer instead of a picture");
         lull::NoisyPicture picture = lull::Read(*noisy);
         lull::CheckOutput(*noisy, *clean);
-        lull::Write(lull::Denoise(std::move(picture)), clean);
+        lull::DenoiseInto(std::move(picture), clean);
         return nullptr;
     } catch (const std::bad_alloc&) {
         return lull::Fail("out of memory");

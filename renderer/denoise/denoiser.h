@@ -1,0 +1,37 @@
+// Denoises a picture and measures its error: the one place where the program, its studies and its
+// C library do so. Which algorithm does the work is known here alone.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "renderer/denoise/visible_error.h"
+
+namespace lull {
+
+inline constexpr int kDenoiserBytes = 230;        // of memory a pixel, while it works
+inline constexpr int kSmallestMeasuredSide = 10;  // pixels of a block whose error can be measured
+
+// A part of a picture, [x0, x1) x [y0, y1).
+struct PictureBlock {
+    int x0, y0, x1, y1;
+};
+
+struct DenoiserOptions {
+    bool isQuick = false;  // a little worse, in 60 % of the time: for a look at how far a render is
+    bool withDeviation = true;  // measure the standard error of pixels, too
+};
+
+struct DenoiserResult {
+    std::vector<float> rgb;        // R, G, B of each pixel, row by row
+    std::vector<float> deviation;  // estimated standard error of each pixel in lightness
+    // Of each block; not known of those below kSmallestMeasuredSide.
+    std::vector<std::optional<VisibleError>> blocks;
+};
+
+// Denoises a picture, whose memory it uses, and measures the error of blocks within it. The same
+// bits for any number of threads.
+DenoiserResult RunDenoiser(NoisyPicture, std::span<const PictureBlock>,
+                           const DenoiserOptions& = {});
+
+}  // namespace lull
