@@ -10,6 +10,7 @@ std::string FileLoc::Prefix() const {
 }
 
 std::string OneLine(const std::string& text) {
+    constexpr char kDigits[] = "0123456789abcdef";
     std::string line;
     bool isBetween = false;
     for (const char c : text) {
@@ -18,7 +19,10 @@ std::string OneLine(const std::string& text) {
             continue;
         }
         if (std::exchange(isBetween, false) && !line.empty()) line += "; ";
-        line += c;
+        if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f)
+            line += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+        else
+            line += c;
     }
     return line;
 }

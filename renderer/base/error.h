@@ -19,7 +19,8 @@ struct FileLoc {
     std::string Prefix() const;
 };
 
-// Returns the text as one line: what libraries say in several has "; " between them.
+// Returns the text as one line that a terminal prints as it is: "; " stands between lines, and \xNN
+// for other control characters.
 std::string OneLine(const std::string& text);
 
 // Signals that the input or the environment is at fault; what() is the one message a user sees,

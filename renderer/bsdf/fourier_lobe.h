@@ -20,7 +20,7 @@ struct FourierTable {
 
     float eta = 1;           // index beyond the surface
     int channels = 1;        // 1, or 3: luminance, red, blue
-    std::vector<float> mu;   // ascending
+    std::vector<float> mu;   // ascending; two may be equal, but not at the ends
     std::vector<float> cdf;  // integrals of the first coefficient over mu of i, by row
     std::vector<Series> series;
     std::vector<float> coefficients;

@@ -73,7 +73,7 @@ void Talk::Warn(const std::string& message) const {
     if (isJson)
         Say("warning", message);
     else
-        lull::Say("\nlull: warning: {}\n", message);
+        lull::Say("\nlull: warning: {}\n", OneLine(message));
 }
 
 void Talk::Say(const std::string& event, const std::string& message) const {
@@ -83,7 +83,7 @@ void Talk::Say(const std::string& event, const std::string& message) const {
         PrintTalk(message);
 }
 
-void PrintTalk(const std::string& message) { Say("lull: {}\n", message); }
+void PrintTalk(const std::string& message) { Say("lull: {}\n", OneLine(message)); }
 
 void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
     WriteFileAtomically(path, bytes);

@@ -12,6 +12,8 @@
 namespace lull {
 namespace {
 
+constexpr size_t kLongestPath = 4096;  // that a system knows
+
 class Descriptor {
   public:
     explicit Descriptor(int fd) : fd(fd) {}
@@ -28,7 +30,7 @@ class Descriptor {
 
 FileContents ReadFile(const std::string& path, const FileLoc& loc) {
     const auto fail = [&](const std::string& why) {
-        throw Error(loc, "cannot read '" + Printable(path) + "': " + why);
+        throw Error(loc, "cannot read '" + Printable(path, kLongestPath) + "': " + why);
     };
     // A name with a NUL byte would silently stand for its beginning.
     if (path.find('\0') != std::string::npos) fail("the name holds a NUL character");
@@ -55,21 +57,6 @@ FileContents ReadFile(const std::string& path, const FileLoc& loc) {
         done += size_t(n);
     }
     return contents;
-}
-
-std::string Printable(std::string_view text) {
-    constexpr size_t kLongest = 200;
-    constexpr char kDigits[] = "0123456789abcdef";
-    std::string result;
-    for (const char c : text.substr(0, std::min(text.size(), kLongest))) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte < 0x7f)
-            result += c;
-        else
-            result += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
-    }
-    if (text.size() > kLongest) result += "...";
-    return result;
 }
 
 }  // namespace lull

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "renderer/base/error.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -19,8 +20,5 @@ struct FileContents {
 // Reads the regular file `path` in one go. Throws Error, beginning with `loc` (the place that names
 // the file), if it is missing, a directory, or cannot be read.
 FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
-
-// Returns untrusted text for a message: control and non-ASCII bytes as \xNN, long text cut short.
-std::string Printable(std::string_view text);
 
 }  // namespace lull

@@ -25,11 +25,14 @@ Image ReadImage(const std::string& path);
 // and `name` stands for the path in messages.
 Image ReadImage(const std::string& name, const std::string& type, std::span<const std::byte> bytes);
 
+// The largest finite number of 16 bits.
+inline constexpr float kLargestHalf = 65504;
+
 // Holds one channel of an EXR, row-major over the data window.
 struct ExrChannel {
     std::string name;
     std::vector<float> values;
-    bool isHalf = false;  // stored in 16 bits; infinite where a float is too large
+    bool isHalf = false;  // stored in 16 bits, clamped to +-kLargestHalf
 };
 
 // A matrix is in pbrt's convention: applied to column vectors, stored row by row.
@@ -48,14 +51,14 @@ struct ExrImage {
 };
 
 // Writes a scan-line EXR with ZIP compression, whole or not at all (see WriteFileAtomically).
-// Throws Error with the path and the reason.
-void WriteExr(const std::string& path, const ExrImage& image);
+// Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
+int64_t WriteExr(const std::string& path, const ExrImage& image);
 
 // Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
 // Does the same with channels of `image` that have no values: they come row by row, from the top.
-void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
+int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
 // Reads an EXR with all its channels and those attributes that ExrAttribute can hold; of another
 // format what ReadImage() reads, as channels R, G, B, A or Y, A. Throws Error as that does.

@@ -1,4 +1,5 @@
 #include "renderer/input/description.h"
+#include "stopping/base/input_file.h"
 
 #include <filesystem>
 #include <utility>
@@ -115,7 +116,7 @@ void Parameters::ReportUnused(const std::string& owner, Warnings& warnings) cons
     for (const Parameter& parameter : parameters)
         if (!parameter.lookedUp)
             warnings.Add(parameter.loc, "unused parameter",
-                         "'" + parameter.name + "' of " + owner + " has no effect");
+                         "'" + Printable(parameter.name) + "' of " + owner + " has no effect");
 }
 
 bool IntegratorSeesMedia(const std::string& name) {

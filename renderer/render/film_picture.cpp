@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "renderer/base/error.h"
 
 namespace lull {
@@ -17,9 +20,10 @@ Halves MakeHalves(int width, int height, int count) {
     return {Planes(width, height, count), Planes(width, height, count)};
 }
 
-// Returns the variance of the mean luminance, from the sum of the samples' squares.
+// Returns the variance of the mean luminance, from the sum of the samples' squares; finite.
 float VarianceOfMean(double squares, double mean, double count) {
-    return float(std::max(0.0, squares / count - mean * mean) / (count - 1));
+    const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
+    return float(std::min(variance, double(std::numeric_limits<float>::max())));
 }
 
 // Says how sums over both halves of a pixel's samples become means.

@@ -1,7 +1,6 @@
 #include "renderer/render/render.h"
 
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/ranks/rank.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -32,7 +32,7 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
                     const RenderState* interrupted) {
     if (interrupted && !Fits(*interrupted, film->Region(), options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
-    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    const int threads = ThreadCount(options.threads);
     if (!options.layers.AreOf(film->Region()))
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;

@@ -121,18 +121,32 @@ RowSource MeansOf(const Film& film) {
     };
 }
 
-// Returns the rows without what samples that met nothing brought, multiplied by alpha therefore.
-// Where they were denoised it can be a little more than they are.
-RowSource WithoutBackground(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
-    return [&, rows](int y, std::span<float> row) {
+// Returns the share of a mean that is left without `background`.
+float ShareOfForeground(double mean, double background) {
+    return mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
+}
+
+// Returns the rows without the light of samples that met nothing, multiplied by alpha therefore.
+// Denoised colours, of which no sample tells, are split as the mean of the samples is: what is left
+// is neither negative nor more than there was.
+RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& film,
+                            const MatteFilm& mattes) {
+    return [&, rows, isDenoised](int y, std::span<float> row) {
         rows(y, row);
         for (size_t x = 0; x < row.size() / 3; ++x) {
             const Vec2i p = film.Region().min + Vec2i(int(x), y);
-            const AlphaPixel& pixel = mattes.alpha.At(p);
-            const double count = film.At(p).count;
-            for (size_t c = 0; c < 3 && count > 0; ++c)
-                row[3 * x + c] =
-                    pixel.covered == 0 ? 0 : row[3 * x + c] - float(pixel.background[c] / count);
+            const AlphaPixel& matte = mattes.alpha.At(p);
+            const FilmPixel pixel = film.At(p);
+            for (size_t c = 0; c < 3 && pixel.count > 0; ++c) {
+                float& value = row[3 * x + c];
+                const double background = matte.background[c] / pixel.count;
+                if (matte.covered == 0)
+                    value = 0;
+                else if (isDenoised)
+                    value *= ShareOfForeground(pixel.sum[c] / pixel.count, background);
+                else
+                    value -= float(background);
+            }
         }
     };
 }
@@ -190,7 +204,7 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Fi
     ApplyTo(&exr, format);
     RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
     if (format.isTransparent) {
-        colours = WithoutBackground(colours, film, *mattes);
+        colours = WithoutBackground(colours, denoised != nullptr, film, *mattes);
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
     results->Write(files.exr,

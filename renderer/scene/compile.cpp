@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "renderer/base/seconds_since.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -27,8 +28,8 @@ void ReadSampler(const Entity& entity, Scene* scene, Warnings& warnings) {
         scene->samplesPerPixel = params.GetInt("xsamples", 4) * params.GetInt("ysamples", 4);
     }
     if (entity.name != "random" && entity.name != "sobol" && entity.loc.file)
-        warnings.Add(entity.loc,
-                     fmt::format("Sampler \"{}\" is rendered with \"sobol\"", entity.name));
+        warnings.Add(entity.loc, fmt::format("Sampler \"{}\" is rendered with \"sobol\"",
+                                             Printable(entity.name)));
     if (scene->samplesPerPixel < 1)
         throw Error(entity.loc, "the number of samples a pixel has to be at least 1");
 }
@@ -44,8 +45,9 @@ void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& 
     // volpath is path where there is nothing else for it to see.
     scene->isVolumetric &= IntegratorSeesMedia(entity.name);
     if (entity.name != "path" && entity.name != "volpath")
-        warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"", entity.name,
-                                             scene->isVolumetric ? "volpath" : "path"));
+        warnings.Add(entity.loc,
+                     fmt::format("Integrator \"{}\" is rendered as \"{}\"", Printable(entity.name),
+                                 scene->isVolumetric ? "volpath" : "path"));
     scene->maxDepth = params.GetInt("maxdepth", 5);
     scene->rrThreshold = params.GetFloat("rrthreshold", 1);
     if (maxDepth >= 0) scene->maxDepth = maxDepth;

@@ -1,4 +1,5 @@
 #include "renderer/scene/film_settings.h"
+#include "stopping/base/input_file.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,8 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
                               Warnings& warnings) {
     const Entity& entity = description.film;
     if (entity.name != "image")
-        throw Error(entity.loc,
-                    fmt::format("Film \"{}\" is not modelled; only \"image\" is", entity.name));
+        throw Error(entity.loc, fmt::format("Film \"{}\" is not modelled; only \"image\" is",
+                                            Printable(entity.name)));
     const Parameters& params = entity.parameters;
     FilmSettings film;
     film.resolution = {params.GetInt("xresolution", 1280), params.GetInt("yresolution", 720)};

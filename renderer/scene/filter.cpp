@@ -1,4 +1,5 @@
 #include "renderer/scene/filter.h"
+#include "stopping/base/input_file.h"
 
 #include <fmt/format.h>
 
@@ -51,7 +52,7 @@ Filter::Filter(const Description& description, Warnings& warnings) {
     } else if (!isBox) {
         throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
                                             "mitchell, sinc and triangle are",
-                                            entity.name));
+                                            Printable(entity.name)));
     }
     params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);
     if (isBox) return;

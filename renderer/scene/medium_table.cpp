@@ -5,6 +5,7 @@
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
 #include "renderer/scene/media/presets.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -19,7 +20,7 @@ void CheckCoefficient(const MediumEntity& entity, const char* name, const Rgb& v
     if (!(value >= 0).all() || !IsFinite(value))
         throw Error(entity.loc, fmt::format("\"{}\" of medium \"{}\" has to be finite and at least "
                                             "0",
-                                            name, entity.mediumName));
+                                            name, Printable(entity.mediumName)));
 }
 
 // A ray is stopped to look at the density as often, on the mean, as its length times the greatest
@@ -32,7 +33,7 @@ void CheckDepth(const MediumEntity& entity, const GridMedium& grid, const Mat4d&
         throw Error(entity.loc,
                     fmt::format("medium \"{}\" is too dense to be traced: its greatest extinction "
                                 "times its length is {:.3g}, which has to be {:g} at most",
-                                entity.mediumName, deepest, kDeepest));
+                                Printable(entity.mediumName), deepest, kDeepest));
 }
 
 GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& sigmaS, float g) {
@@ -43,7 +44,7 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
         throw Error(entity.loc, fmt::format("medium \"{}\": \"sigma_a\" plus \"sigma_s\" of a "
                                             "heterogeneous medium has to be the same in red, green "
                                             "and blue",
-                                            entity.mediumName));
+                                            Printable(entity.mediumName)));
     grid.sigmaT = sigmaT.x();
     grid.albedo = grid.sigmaT > 0 ? Rgb(sigmaS / grid.sigmaT) : Rgb(Rgb::Zero());
     grid.g = g;
@@ -54,14 +55,14 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
         size_t(grid.size.x()) * grid.size.y() * grid.size.z() != values.size())
         throw Error(entity.loc, fmt::format("medium \"{}\" has {} values of \"density\" for a grid "
                                             "of {}x{}x{}",
-                                            entity.mediumName, values.size(), grid.size.x(),
-                                            grid.size.y(), grid.size.z()));
+                                            Printable(entity.mediumName), values.size(),
+                                            grid.size.x(), grid.size.y(), grid.size.z()));
     grid.density.assign(values.begin(), values.end());
     for (const float d : grid.density) {
         if (!(d >= 0) || !std::isfinite(d))
             throw Error(entity.loc,
                         fmt::format("medium \"{}\": a density is not finite or negative",
-                                    entity.mediumName));
+                                    Printable(entity.mediumName)));
         grid.maxDensity = std::max(grid.maxDensity, d);
     }
     const Vec3f p0 = params.GetPoint3("p0", Vec3f::Zero());
@@ -73,13 +74,13 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
     grid.gridFromWorld = worldFromGrid.inverse();
     if (!grid.gridFromWorld.allFinite())
         throw Error(entity.loc, fmt::format("medium \"{}\": \"p0\" and \"p1\" have to span a box",
-                                            entity.mediumName));
+                                            Printable(entity.mediumName)));
     CheckDepth(entity, grid, worldFromGrid);
     if (!(Farthest(TransformBox(worldFromGrid, {Vec3f::Zero(), Vec3f::Ones()})) <=
           double(kFarthest)))
         throw Error(entity.loc, fmt::format("medium \"{}\" reaches farther than {:g} from the "
                                             "origin, where no ray is traced; scale the scene down",
-                                            entity.mediumName, kFarthest));
+                                            Printable(entity.mediumName), kFarthest));
     return grid;
 }
 
@@ -89,7 +90,8 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
     Rgb sigmaA(0.0011f, 0.0024f, 0.014f), sigmaS(2.55f, 3.21f, 3.77f);
     const std::string preset = params.GetString("preset", "");
     if (!preset.empty() && !FindMediumPreset(preset, &sigmaA, &sigmaS))
-        warnings.Add(entity.loc, "unknown medium preset, pbrt-v3's default is used", preset);
+        warnings.Add(entity.loc, "unknown medium preset, pbrt-v3's default is used",
+                     Printable(preset));
     const float scale = params.GetFloat("scale", 1);
     const float g = params.GetFloat("g", 0);
     sigmaA = params.GetSpectrum("sigma_a", sigmaA) * scale;
@@ -98,7 +100,7 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
     CheckCoefficient(entity, "sigma_s", sigmaS);
     if (!(std::abs(g) < 1))
         throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",
-                                            entity.mediumName));
+                                            Printable(entity.mediumName)));
     std::optional<Medium> made;
     if (entity.name == "homogeneous")
         made = HomogeneousMedium{sigmaS, sigmaA + sigmaS, g};
@@ -107,8 +109,8 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
     else
         throw Error(entity.loc, fmt::format("medium \"{}\": kind \"{}\" is not modelled; "
                                             "homogeneous and heterogeneous are",
-                                            entity.mediumName, entity.name));
-    params.ReportUnused("medium \"" + entity.mediumName + "\"", warnings);
+                                            Printable(entity.mediumName), Printable(entity.name)));
+    params.ReportUnused("medium \"" + Printable(entity.mediumName) + "\"", warnings);
     return *made;
 }
 

@@ -14,6 +14,7 @@
 #include "renderer/scene/textures/scale.h"
 #include "renderer/scene/textures/uv.h"
 #include "renderer/scene/textures/windy.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -102,13 +103,13 @@ TextureHandle<TypeOf<Node>> MakeTexture(const Kind<Node> (&kinds)[N], const Text
     for (const Kind<Node>& kind : kinds) {
         if (entity.name != kind.name) continue;
         const auto handle = kind.make(input, nodes);
-        entity.parameters.ReportUnused(fmt::format("texture \"{}\"", entity.textureName),
+        entity.parameters.ReportUnused(fmt::format("texture \"{}\"", Printable(entity.textureName)),
                                        input.warnings);
         return handle;
     }
-    const std::string what =
-        fmt::format("{} texture \"{}\": kind \"{}\" is not modelled",
-                    entity.isSpectrum ? "spectrum" : "float", entity.textureName, entity.name);
+    const std::string what = fmt::format("{} texture \"{}\": kind \"{}\" is not modelled",
+                                         entity.isSpectrum ? "spectrum" : "float",
+                                         Printable(entity.textureName), Printable(entity.name));
     if (!input.substitute) throw Error(entity.loc, what);
     input.warnings.Add(entity.loc, "texture that is not modelled replaced by 1", what);
     return ConstantTexture<TypeOf<Node>>(1);
@@ -123,9 +124,9 @@ TextureHandle<T> Resolve(const std::vector<TextureHandle<T>>& made, const Parame
     if (index >= 0 && size_t(index) < made.size()) return made[size_t(index)];
     const bool isOther = (wantsFloat ? ref.spectrumIndex : ref.floatIndex) >= 0;
     throw Error(parameter.loc,
-                fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}", parameter.name,
-                            wantsFloat ? "float" : "spectrum", ref.name,
-                            isOther ? ", only one of the other type" : ""));
+                fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}",
+                            Printable(parameter.name), wantsFloat ? "float" : "spectrum",
+                            Printable(ref.name), isOther ? ", only one of the other type" : ""));
 }
 
 template <typename T>

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 namespace {
@@ -50,7 +52,7 @@ void CheckSeal(uLong crc, const std::string& seal) {
 }  // namespace
 
 std::string FileChecksum(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
+    std::ifstream file = OpenInput(path);
     uLong crc = 0;
     ForEachPart(file, ~uint64_t(0), [&](const auto& part) { crc = Continue(crc, part); });
     if (!file.eof()) throw std::runtime_error(path + ": cannot be read");
@@ -64,6 +66,8 @@ void Seal(std::vector<std::byte>* content) {
 }
 
 void CheckSeal(const std::string& path) {
+    if (const std::string reason = ReasonNotToRead(path); !reason.empty())
+        throw std::runtime_error("cannot read it: " + reason);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error(std::string("cannot read it: ") + std::strerror(errno));
     const std::streamoff end = file.seekg(0, std::ios::end).tellg();

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 namespace {
@@ -116,6 +118,8 @@ void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t spa
 Hdf5Group Hdf5Group::Open(const std::string& path) {
     BeQuiet();
     // The library does not say why it cannot.
+    if (const std::string reason = ReasonNotToRead(path); !reason.empty())
+        Fail("open it: " + reason);
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (!file) Fail(std::string("open it: ") + std::strerror(errno));
     std::fclose(file);

@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace lull {
 
 namespace {
@@ -31,8 +33,13 @@ void ForEachIndex(int count, const std::function<void(int)>& body) {
     ordered.order.Enter();
 }
 
+int ThreadCount(int threads) {
+    const int cores = tbb::info::default_concurrency();
+    return threads <= 0 ? cores : std::min(threads, std::max(256, 4 * cores));
+}
+
 void RunWithThreads(int threads, const std::function<void()>& body) {
-    if (threads <= 0) threads = tbb::info::default_concurrency();
+    threads = ThreadCount(threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
     arena.execute(body);

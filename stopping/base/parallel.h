@@ -22,6 +22,9 @@ class TaskOrder {
 // RunWithThreads() allows; may be nested. Rethrows what a body throws.
 void ForEachIndex(int count, const std::function<void(int)>& body);
 
+// Returns how many threads `threads` stands for: 0 for one per core, and no more than oneTBB gives.
+int ThreadCount(int threads);
+
 // Runs `body` with at most `threads` threads for its parallel parts; 0: one per core.
 void RunWithThreads(int threads, const std::function<void()>& body);
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 // Parses all of `text` as a number > 0, finite. Throws std::invalid_argument saying that it is not
@@ -16,7 +18,7 @@ T ParsePositive(const std::string& text, const std::string& needed) {
     const char* end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, value);
     if (error != std::errc() || rest != end || !(value > 0) || !std::isfinite(double(value)))
-        throw std::invalid_argument("'" + text + "' is not " + needed);
+        throw std::invalid_argument("'" + Printable(text) + "' is not " + needed);
     return value;
 }
 

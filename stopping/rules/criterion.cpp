@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -45,7 +46,7 @@ CriterionFactory MakeCriterionFactory(const std::string& given, const RuleContex
         }
         return factory;
     } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument("stopping rule '" + text + "': " + error.what());
+        throw std::invalid_argument("stopping rule '" + Printable(text) + "': " + error.what());
     }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "stopping/base/input_file.h"
 #include "stopping/features/block_memory.h"
 
 namespace lull {
@@ -135,7 +136,7 @@ std::string ModelPath(const std::string& argument, const std::string& models) {
     std::ranges::sort(names);
     std::string known;
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-    throw std::runtime_error("there is no model '" + name + "' in '" + models + "'; " +
+    throw std::runtime_error("there is no model '" + Printable(name) + "' in '" + models + "'; " +
                              (known.empty() ? "there are none" : "there are " + known) +
                              ". Name a file, learned:MODEL.h5, or choose another rule");
 }

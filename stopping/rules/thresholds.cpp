@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 namespace {
@@ -35,12 +37,12 @@ ThresholdsRow ParseRow(const std::string& line) {
         int spp = 0;
         const auto [rest, error] = std::from_chars(begin, end, spp);
         if (error != std::errc() || rest != end || spp < 0)
-            throw std::invalid_argument("'" + fields[i] +
+            throw std::invalid_argument("'" + Printable(fields[i]) +
                                         "' is no threshold; a whole number of samples is needed");
         row.spp.push_back(spp);
     }
     if (row.spp.empty())
-        throw std::invalid_argument("'" + row.name +
+        throw std::invalid_argument("'" + Printable(row.name) +
                                     "' has no thresholds; 'name;t0;t1;...;' is needed");
     return row;
 }
@@ -57,7 +59,8 @@ std::vector<ThresholdsRow> ReadThresholds(std::istream& in, const std::string& f
         try {
             rows.push_back(ParseRow(line));
             if (!names.insert(rows.back().name).second)
-                throw std::invalid_argument("'" + rows.back().name + "' has a row already");
+                throw std::invalid_argument("'" + Printable(rows.back().name) +
+                                            "' has a row already");
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(fileName + ":" + std::to_string(number) + ": " + error.what());
         }
@@ -67,8 +70,7 @@ std::vector<ThresholdsRow> ReadThresholds(std::istream& in, const std::string& f
 }
 
 std::vector<ThresholdsRow> ReadThresholds(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw std::runtime_error(path + ": cannot be opened");
+    std::ifstream file = OpenInput(path);
     return ReadThresholds(file, path);
 }
 

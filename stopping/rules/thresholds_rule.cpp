@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stopping/base/checksum.h"
+#include "stopping/base/input_file.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/thresholds.h"
 
@@ -24,9 +25,10 @@ const ThresholdsRow& ChooseRow(const std::vector<ThresholdsRow>& rows, const std
     if (row == rows.end() && name.empty() && rows.size() == 1) row = rows.begin();
     if (row != rows.end()) return *row;
     if (rows.empty()) throw std::runtime_error(path + ": has no rows");
-    const std::string example = "such as '" + rows.front().name + "'";
+    const std::string example = "such as '" + Printable(rows.front().name) + "'";
     if (!name.empty())
-        throw std::runtime_error(path + ": has no row '" + name + "', but rows " + example);
+        throw std::runtime_error(path + ": has no row '" + Printable(name) + "', but rows " +
+                                 example);
     throw std::runtime_error(path + ": has several rows; name one, " + example);
 }
 
@@ -43,12 +45,13 @@ CriterionFactory ReadThresholdsRule(const std::string& argument, const RuleConte
     }
     const ThresholdsRow row = ChooseRow(ReadThresholds(path), path, name, context.sceneName);
     if (context.blockCount > 0 && int(row.spp.size()) != context.blockCount)
-        throw std::runtime_error(path + ": '" + row.name + "' has thresholds for " +
+        throw std::runtime_error(path + ": '" + Printable(row.name) + "' has thresholds for " +
                                  std::to_string(row.spp.size()) + " blocks, the image has " +
                                  std::to_string(context.blockCount));
     CriterionFactory factory = CountingFactory([row](const BlockInfo& block) {
         if (block.index < 0 || block.index >= int(row.spp.size()))
-            throw std::invalid_argument("'" + row.name + "' has no threshold for block " +
+            throw std::invalid_argument("'" + Printable(row.name) +
+                                        "' has no threshold for block " +
                                         std::to_string(block.index));
         return row.spp[size_t(block.index)];
     });

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <exception>
 #include <optional>
@@ -97,17 +98,26 @@ Imf::Header MakeHeader(const ExrImage& image) {
 // 16 rows are compressed together, and several such on all threads.
 constexpr int kStrip = 64;
 
-void WriteRows(const ExrImage& image, const RowSource& rows, Imf::OutputFile* file) {
+// Returns a value in 16 bits, and counts it if these cannot hold it.
+Half Clamped(float v, int64_t* clamped) {
+    if (std::abs(v) <= kLargestHalf) return Half(v);
+    ++*clamped;
+    return Half(std::isnan(v) ? 0 : std::copysign(kLargestHalf, v));
+}
+
+// Returns how many values of 16 bits were clamped.
+int64_t WriteRows(const ExrImage& image, const RowSource& rows, Imf::OutputFile* file) {
     const size_t count = image.channels.size(), row = size_t(image.width) * count;
     std::vector<float> strip(row * size_t(std::min(kStrip, image.height)));
     std::vector<Half> halves(std::ranges::any_of(image.channels, &ExrChannel::isHalf) ? strip.size()
                                                                                       : 0);
+    int64_t clamped = 0;
     for (int y = 0; y < image.height; y += kStrip) {
         const int height = std::min(kStrip, image.height - y);
         for (int k = 0; k < height; ++k)
             rows(y + k, std::span(strip).subspan(row * size_t(k), row));
-        std::transform(strip.begin(), strip.begin() + ptrdiff_t(halves.size()), halves.begin(),
-                       [](float v) { return Half(v); });
+        for (size_t i = 0; i < std::min(halves.size(), row * size_t(height)); ++i)
+            if (image.channels[i % count].isHalf) halves[i] = Clamped(strip[i], &clamped);
         const Imath::Box2i window = Box(image.origin + Vec2i(0, y), Vec2i(image.width, height));
         Imf::FrameBuffer frame;
         for (size_t c = 0; c < count; ++c)
@@ -120,30 +130,32 @@ void WriteRows(const ExrImage& image, const RowSource& rows, Imf::OutputFile* fi
         file->setFrameBuffer(frame);
         file->writePixels(height);
     }
+    return clamped;
 }
 
 }  // namespace
 
-void WriteExr(const std::string& path, const ExrImage& image) {
+int64_t WriteExr(const std::string& path, const ExrImage& image) {
     const size_t pixels = size_t(image.width) * size_t(image.height);
     for (const ExrChannel& c : image.channels)
         if (c.values.size() != pixels)
             FailToWriteExr(path, fmt::format("channel {} does not fit the size", c.name));
-    WriteExr(path, image, [&](int y, std::span<float> row) {
+    return WriteExr(path, image, [&](int y, std::span<float> row) {
         const size_t count = image.channels.size();
         for (size_t i = 0; i < row.size(); ++i)
             row[i] = image.channels[i % count].values[size_t(y) * size_t(image.width) + i / count];
     });
 }
 
-void WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows) {
+int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows) {
     if (image.width < 1 || image.height < 1 || image.channels.empty())
         FailToWriteExr(path, fmt::format("its size of {}x{}x{} is absurd", image.width,
                                          image.height, image.channels.size()));
     FileStream stream(path);
+    int64_t clamped = 0;
     try {
         Imf::OutputFile file(stream, MakeHeader(image), UseExrThreads());
-        WriteRows(image, rows, &file);
+        clamped = WriteRows(image, rows, &file);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {
@@ -151,6 +163,7 @@ void WriteExr(const std::string& path, const ExrImage& image, const RowSource& r
     }
     if (stream.failure) throw *stream.failure;
     stream.file.Commit();
+    return clamped;
 }
 
 }  // namespace lull

@@ -164,7 +164,7 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     } catch (const std::exception& e) {
         error = e.what();
     }
-    if (!isRead) throw Error(file + ": " + Printable(error.substr(0, error.find('\n'))));
+    if (!isRead) throw Error(file + ": " + Printable(error.substr(0, error.find('\n')), 200));
     DecodeMeshopt(&document);
     DecodeDraco(&document);
     return document;

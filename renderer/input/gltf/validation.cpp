@@ -299,7 +299,7 @@ json ParseGltfJson(const std::string& file, std::string_view text) {
         if (!root.is_object()) throw Error(file + ": is no JSON object");
         return root;
     } catch (const json::exception& e) {
-        throw Error(fmt::format("{}: is no valid JSON: {}", file, Printable(e.what())));
+        throw Error(fmt::format("{}: is no valid JSON: {}", file, Printable(e.what(), 200)));
     }
 }
 

@@ -59,7 +59,8 @@ void PbrtBuilder::End(ScopeKind kind) {
     const std::string name = ScopeName(int(kind));
     if (scopes.empty()) throw Error(loc, name + "End without " + name + "Begin");
     Scope& scope = scopes.back();
-    if (scope.kind != kind)
+    // In pbrt-v3 attributes and objects share a stack, and their ends may cross.
+    if ((scope.kind == ScopeKind::Transform) != (kind == ScopeKind::Transform))
         throw Error(loc, name + "End where the " + ScopeName(int(scope.kind)) + "Begin of line " +
                              std::to_string(scope.loc.line) + " is still open");
     if (kind == ScopeKind::Transform) {
@@ -100,6 +101,10 @@ void PbrtBuilder::WorldEnd() {
         throw Error(loc, std::string("WorldEnd where the ") + ScopeName(int(scopes.back().kind)) +
                              "Begin of line " + std::to_string(scopes.back().loc.line) +
                              " is still open");
+    if (currentObject >= 0)
+        throw Error(loc, "WorldEnd where the ObjectBegin of line " +
+                             std::to_string(description.objects[currentObject].loc.line) +
+                             " is still open");
     // pbrt-v3 makes its camera only here, in the medium that is then in force.
     description.cameraMedium = MediumNamed(state.outsideMedium);
     stage = Stage::Done;
@@ -118,6 +123,7 @@ void PbrtBuilder::ObjectBegin() {
 }
 
 void PbrtBuilder::ObjectEnd() {
+    if (currentObject < 0) throw Error(loc, "ObjectEnd without ObjectBegin");
     End(ScopeKind::Object);
     currentObject = -1;
 }

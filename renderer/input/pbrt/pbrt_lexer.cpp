@@ -79,7 +79,8 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     source.canonical = std::filesystem::canonical(file, ignored).string();
     for (const Source& open : sources)
         if (open.canonical == source.canonical)
-            throw Error(loc, "'" + Printable(file) + "' includes itself; remove this Include");
+            throw Error(loc,
+                        "'" + Printable(file, 4096) + "' includes itself; remove this Include");
     if (inclusions[source.canonical]++ > 0)
         repeatedBytes += std::max(source.contents.size, kLeastBytes);
     if (repeatedBytes > kMostRepeatedBytes)

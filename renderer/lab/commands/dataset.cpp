@@ -136,8 +136,9 @@ ExitCode RunDataset(const Options& options, Job* job) {
     printer.Finish(result.progress);
     if (result.cancelled) return SayInterrupted(settings, CheckpointName(options));
 
-    AddToDataset(viewpoint, &dataset);
-    WriteFileAtomically(options.output, EncodeDataset(dataset));
+    AddToDatasetFile(viewpoint, options.output, [&] {
+        TalkOf(settings).Note("waiting for another process to write " + options.output);
+    });
     std::filesystem::remove(CheckpointName(options));
     fmt::print("{}\n", options.output);
     return kDone;

@@ -102,8 +102,9 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
     if (records) {
-        AddToDataset(viewpoint, &dataset);
-        WriteFileAtomically(options.record, EncodeDataset(dataset));
+        AddToDatasetFile(viewpoint, options.record, [&] {
+            TalkOf(settings).Note("waiting for another process to write " + options.record);
+        });
         fmt::print("{}\n", options.record);
     }
     std::filesystem::remove(file);

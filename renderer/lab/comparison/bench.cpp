@@ -5,10 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
+#include <sstream>
 
 #include "renderer/base/error.h"
+#include "renderer/files/file_contents.h"
 #include "stopping/base/parallel.h"
 #include "stopping/rules/rule_table.h"
 
@@ -100,8 +101,7 @@ std::string BenchCsv(const std::vector<BenchPoint>& points) {
 }
 
 std::vector<ExternalImage> ReadExternalImages(const std::string& csv) {
-    std::ifstream in(csv);
-    if (!in) throw Error(csv + ": cannot be read");
+    std::istringstream in{std::string(ReadFile(csv).View())};
     std::vector<ExternalImage> images;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {

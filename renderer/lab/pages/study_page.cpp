@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "renderer/base/error.h"
+#include "renderer/files/file_contents.h"
 #include "renderer/image/image_io.h"
 #include "renderer/pages/html_page.h"
 #include "stopping/base/parallel.h"
@@ -65,13 +65,7 @@ std::string_view ScriptText(std::string_view page, const std::string& id) {
     return page.substr(begin + open.size(), end - begin - open.size());
 }
 
-std::string ReadWholeFile(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    if (!file) throw Error(path + ": cannot be read");
-    return std::move(text).str();
-}
+std::string ReadWholeFile(const std::string& path) { return std::string(ReadFile(path).View()); }
 
 }  // namespace
 

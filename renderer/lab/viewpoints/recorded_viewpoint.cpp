@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/files/file_io.h"
+#include "renderer/files/file_lock.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/small_blocks.h"
 #include "stopping/rules/thresholds.h"
@@ -59,6 +61,14 @@ std::string CheckViewpointName(const std::string& name) {
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path) {
     if (!std::filesystem::exists(path)) return {};
     return ReadDataset(path);
+}
+
+void AddToDatasetFile(const ViewpointRecording& viewpoint, const std::string& path,
+                      const std::function<void()>& onWait) {
+    const FileLock lock = FileLock::Wait(path, onWait);
+    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(path);
+    AddToDataset(viewpoint, &dataset);
+    WriteFileAtomically(path, EncodeDataset(dataset));
 }
 
 ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions& schedule,

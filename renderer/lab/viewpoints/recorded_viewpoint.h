@@ -1,6 +1,8 @@
 // Records a viewpoint: renders its blocks and keeps what stopping rules can learn from.
 #pragma once
 
+#include <functional>
+
 #include "renderer/render/checkpoint.h"
 #include "stopping/lab/recordings/dataset.h"
 
@@ -14,6 +16,12 @@ std::string CheckViewpointName(const std::string& name);
 
 // Returns the data set of a file; nothing if there is no such file. Throws std::runtime_error.
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path);
+
+// Adds a recording to the data set of a file, or makes it. Processes that do so at the same time
+// wait for each other, of which onWait() tells, and none loses what another has added. Throws Error
+// and std::runtime_error.
+void AddToDatasetFile(const ViewpointRecording&, const std::string& path,
+                      const std::function<void()>& onWait);
 
 // Describes a whole recording, without the blocks themselves.
 ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions&,

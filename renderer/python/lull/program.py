@@ -49,7 +49,7 @@ def run(command, inputs, given, progress=None):
     Raises TypeError for options that the command does not have, ValueError for values that it does
     not take, and Error for all else that it says is wrong."""
     known = options(command)
-    words = [find(), command, *map(os.fspath, inputs), *_options.arguments(command, known, given)]
+    words = [find(), command, *map(_file, inputs), *_options.arguments(command, known, given)]
     if "--json-progress" in _help(find(), command):
         words.append("--json-progress")
     show = _Line() if progress is None else progress or (lambda event: None)
@@ -86,6 +86,12 @@ def run(command, inputs, given, progress=None):
         message = "\n".join(said) or "%s ended with exit code %d" % (command, code)
         raise ValueError(message) if code == 2 else Error(message)
     return last
+
+
+def _file(path):
+    """Returns the path of a file as a word that is not taken for an option."""
+    path = os.fspath(path)
+    return os.path.join(os.curdir, path) if path.startswith("-") else path
 
 
 def _event(line):

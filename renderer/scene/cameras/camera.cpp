@@ -114,7 +114,7 @@ Projection ReadProjection(const Entity& entity) {
     if (entity.name == "realistic") return Projection::Realistic;
     throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic, "
                                         "environment and realistic are",
-                                        entity.name));
+                                        Printable(entity.name)));
 }
 
 LensSystem ReadLenses(const Description& description, const FilmSettings& film,
@@ -125,7 +125,7 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     if (file.empty()) throw Error(entity.loc, "Camera \"realistic\" needs a \"lensfile\"");
     LensSystem::Settings settings;
     settings.loc = entity.loc;
-    settings.file = Printable(file);
+    settings.file = Printable(file, 4096);
     settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
     const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
     if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");

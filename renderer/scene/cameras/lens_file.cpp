@@ -10,7 +10,7 @@ namespace lull {
 std::vector<LensInterface> LoadLens(const std::string& path, const FileLoc& loc) {
     const std::vector<float> numbers = ReadNumberFile(path, "lens", loc);
     const auto fail = [&](const std::string& what) {
-        throw Error(loc, fmt::format("the lens file '{}' {}", Printable(path), what));
+        throw Error(loc, fmt::format("the lens file '{}' {}", Printable(path, 4096), what));
     };
     constexpr size_t kMost = 1000;
     if (numbers.empty() || numbers.size() % 4 != 0 || numbers.size() > 4 * kMost)

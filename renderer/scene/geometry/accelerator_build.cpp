@@ -3,6 +3,7 @@
 
 #include "renderer/scene/geometry/accelerator_internal.h"
 #include "renderer/scene/geometry/coverage.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 namespace {
@@ -215,9 +216,12 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads)
     : implementation(std::make_unique<Implementation>()) {
     Implementation& impl = *implementation;
-    impl.device.reset(
-        rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr));
-    if (!impl.device) throw Error("Embree does not run on this machine");
+    impl.device.reset(rtcNewDevice(
+        threads > 0 ? fmt::format("threads={}", ThreadCount(threads)).c_str() : nullptr));
+    if (!impl.device)
+        throw Error(rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
+                        ? "Embree does not support this processor"
+                        : "Embree cannot be started: there is not enough memory");
     rtcSetDeviceErrorFunction(impl.device.get(), ReportEmbreeError, nullptr);
 
     impl.shapeCount = int(shapes.shapes.size());

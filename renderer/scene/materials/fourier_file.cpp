@@ -73,8 +73,12 @@ FourierTable LoadFourierTable(const std::string& path) {
     table.coefficients = in.Take<float>(coefficients);
     for (const auto* values : {&table.mu, &table.cdf, &table.coefficients})
         CheckFinite(*values, in);
-    for (int i = 1; i < nodes; ++i)
-        if (!(table.mu[i] > table.mu[i - 1])) in.Fail("has nodes that do not ascend");
+    // Files hold the node of the horizon twice: seen from above, and from below.
+    for (int i = 1; i < nodes; ++i) {
+        const bool isEnd = i == 1 || i == nodes - 1;
+        if (table.mu[i] < table.mu[i - 1] || (isEnd && table.mu[i] == table.mu[i - 1]))
+            in.Fail("has nodes that do not ascend");
+    }
     table.series.resize(entries);
     for (size_t e = 0; e < entries; ++e) {
         const int first = places[2 * e], length = places[2 * e + 1];

@@ -1,4 +1,5 @@
 #include "renderer/scene/materials/mix.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -10,7 +11,8 @@ std::string Mix::Problem(const MaterialReader& in) const {
         const std::string parameter = "namedmaterial" + std::to_string(i + 1);
         const std::string name = in.entity.parameters.GetString(parameter, "");
         if (operands[i] < 0 || operands[i] >= int(in.made.size()))
-            return "\"" + parameter + "\" of a mix: there is no material \"" + name + "\"";
+            return "\"" + parameter + "\" of a mix: there is no material \"" + Printable(name) +
+                   "\"";
     }
     return "";
 }

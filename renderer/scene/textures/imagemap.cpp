@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "renderer/base/color.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -38,7 +39,7 @@ float GetMaxAnisotropy(const TextureInput& input) {
         throw Error(input.entity.loc,
                     fmt::format("texture \"{}\": \"maxanisotropy\" has to be above 0 and at most "
                                 "1024 to filter by it",
-                                input.entity.textureName));
+                                Printable(input.entity.textureName)));
     return value;
 }
 
@@ -89,7 +90,7 @@ Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input
         }
     } catch (const Error& error) {
         const std::string what =
-            fmt::format("texture \"{}\": {}", entity.textureName, error.what());
+            fmt::format("texture \"{}\": {}", Printable(entity.textureName), error.what());
         if (!input.substitute) throw Error(entity.loc, what);
         input.warnings.Add(entity.loc, "unreadable image replaced by grey", what);
         const float grey = map.scale * (gamma ? LinearFromSrgb(0.5f) : 0.5f);

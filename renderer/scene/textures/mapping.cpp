@@ -1,4 +1,5 @@
 #include "renderer/scene/textures/mapping.h"
+#include "stopping/base/input_file.h"
 
 #include <fmt/core.h>
 
@@ -103,8 +104,9 @@ Mapping2D MakeMapping2D(const TextureInput& input) {
         return PlanarMapping{parameters.GetVector3("v1", Vec3f::UnitX()),
                              parameters.GetVector3("v2", Vec3f::UnitY()), offset()};
     if (!input.substitute)
-        throw Error(input.entity.loc, fmt::format("texture mapping \"{}\" is not known", name));
-    input.warnings.Add(input.entity.loc, "unknown texture mapping replaced by uv", name);
+        throw Error(input.entity.loc,
+                    fmt::format("texture mapping \"{}\" is not known", Printable(name)));
+    input.warnings.Add(input.entity.loc, "unknown texture mapping replaced by uv", Printable(name));
     return UvMapping{};
 }
 

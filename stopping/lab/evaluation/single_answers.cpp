@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 namespace {
@@ -32,7 +34,7 @@ SingleAnswer ParseAnswer(const std::string& line) {
     const std::optional<std::array<int, 3>> numbers = ParseNumbers(line);
     if (!numbers)
         throw std::invalid_argument(
-            "'" + line.substr(0, 80) +
+            "'" + Printable(line) +
             "' is no answer; three whole numbers are needed, as in 5,640,1");
     const auto [block, spp, seen] = *numbers;
     if (block < 0 || block >= kMostBlocks)
@@ -75,8 +77,7 @@ std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string&
 }
 
 std::vector<SingleAnswer> ReadSingleAnswers(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw std::runtime_error(path + ": cannot be opened");
+    std::ifstream file = OpenInput(path);
     return ReadSingleAnswers(file, path);
 }
 

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 namespace {
@@ -85,7 +87,7 @@ AnswerKind ReadKind(const Json& answer) {
     if (kind == "asked") return AnswerKind::Asked;
     if (kind == "repeat") return AnswerKind::Repeat;
     if (kind == "catch") return AnswerKind::Catch;
-    Refuse("an answer of the unknown kind '" + kind + "'");
+    Refuse("an answer of the unknown kind '" + Printable(kind) + "'");
 }
 
 BlockAnswer ReadAnswer(const Json& json, const ObserverAnswers& head, int blocks) {
@@ -146,10 +148,10 @@ ObserverAnswers Read(const Json& json) {
     result.study = GetText(study, "id");
     result.viewpoint = GetText(study, "viewpoint");
     if (result.viewpoint.find_first_of(";/") != std::string::npos)
-        Refuse("the viewpoint '" + result.viewpoint + "' has a ; or / in its name");
+        Refuse("the viewpoint '" + Printable(result.viewpoint) + "' has a ; or / in its name");
     result.procedure = GetText(study, "procedure");
     if (result.procedure != "adjust" && result.procedure != "staircase")
-        Refuse("unknown procedure '" + result.procedure + "'");
+        Refuse("unknown procedure '" + Printable(result.procedure) + "'");
     result.levels = ReadLevels(study);
     const int blocks = GetInt(study, "blocks", 1, kMostBlocks);
 
@@ -196,8 +198,10 @@ ObserverAnswers ParseAnswers(std::string_view text) try {
 }
 
 ObserverAnswers ReadAnswers(const std::string& path) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    const auto size = file.tellg();
+    if (const std::string reason = ReasonNotToRead(path); !reason.empty())
+        Refuse("cannot be read: " + reason);
+    std::ifstream file = OpenInput(path);
+    const auto size = file.seekg(0, std::ios::end).tellg();
     if (!file || size < 0) Refuse("cannot be read");
     if (size_t(size) > kMostBytes) Refuse("is far too large for a file of answers");
     file.seekg(0);

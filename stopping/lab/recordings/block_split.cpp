@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 BlockSplit LeaveOut(std::span<const JudgedBlock> blocks, std::span<const std::string> names) {
     BlockSplit split;
     for (const std::string& name : names) {
         if (std::ranges::find(blocks, name, &JudgedBlock::viewpoint) == blocks.end())
-            throw std::invalid_argument("there is no viewpoint '" + name + "' to leave out");
+            throw std::invalid_argument("there is no viewpoint '" + Printable(name) +
+                                        "' to leave out");
         split.name.append(split.name.empty() ? "" : ", ").append(name);
     }
     for (const JudgedBlock& block : blocks) {
@@ -34,7 +37,7 @@ void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split) {
     for (const JudgedBlock& block : split->training) {
         const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
         if (row == rows.end())
-            throw std::invalid_argument("there is no row '" + block.viewpoint + "'");
+            throw std::invalid_argument("has no row '" + Printable(block.viewpoint) + "'");
         const bool isListed = std::ranges::find(row->spp, block.block) != row->spp.end();
         (isListed ? kept : split->test).push_back(block);
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& paths) {
@@ -26,14 +28,15 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
     for (const std::string& name : without)
         if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0 &&
             std::ranges::find(viewpoints, name, &ViewpointRecording::name) == viewpoints.end())
-            throw std::runtime_error(fmt::format("--without: there is no viewpoint '{}'", name));
+            throw std::runtime_error(
+                fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
     std::vector<std::string> unknown;
     std::vector<JudgedBlock> blocks = JoinHuman(viewpoints, rows, &unknown);
     for (const std::string& name : unknown)
         if (std::ranges::find(without, name) == without.end())
-            warn(fmt::format("{} has no thresholds for '{}'", human, name));
+            warn(fmt::format("{} has no thresholds for '{}'", human, Printable(name)));
     if (blocks.empty())
-        throw std::runtime_error("no block is left that was recorded and judged by people");
+        throw std::runtime_error(human + ": has thresholds for none of the recorded blocks");
     return blocks;
 } catch (const std::invalid_argument& error) {
     throw std::runtime_error(human + ": " + error.what());

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "stopping/base/checksum.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/state.h"
 
 namespace lull {
@@ -18,8 +19,9 @@ constexpr uint32_t checkpointTag = 0x3143524c;  // "LRC1"
 }  // namespace
 
 void TrainingCheckpoint::Read() try {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error("there is no checkpoint to resume from");
+    if (const std::string reason = ReasonNotToRead(path); !reason.empty())
+        throw std::runtime_error("there is no checkpoint to resume from: " + reason);
+    std::ifstream file = OpenInput(path);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     StateReader reader(CheckSeal(std::as_bytes(std::span(text))));
     reader.Expect(checkpointTag);

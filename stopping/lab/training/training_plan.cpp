@@ -41,7 +41,11 @@ std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan,
     for (BlockSplit& split : splits) split.name = "without " + split.name;
     if (!plan.withLast) return splits;
     BlockSplit split = LeaveOut(blocks, plan.leaveOut);
-    if (!plan.split.empty()) KeepListed(ReadThresholds(plan.split), &split);
+    if (!plan.split.empty()) try {
+            KeepListed(ReadThresholds(plan.split), &split);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(plan.split + ": " + error.what());
+        }
     split.name = "";
     splits.push_back(std::move(split));
     return splits;

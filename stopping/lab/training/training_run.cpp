@@ -1,6 +1,7 @@
 #include "stopping/lab/training/training_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -78,8 +79,14 @@ std::optional<TrainingResult> TrainAll(
     if (plan.crossValidate) outcomes.push_back({.name = "each viewpoint left out"});
     for (size_t i = 0; i < splits.size(); ++i) {
         const BlockSplit& split = splits[i];
-        std::optional<Network> network =
-            TrainNetwork(plan.settings, plan.training, split, i, checkpoint, eventsOf(split));
+        std::optional<Network> network;
+        try {
+            network =
+                TrainNetwork(plan.settings, plan.training, split, i, checkpoint, eventsOf(split));
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(
+                fmt::format("{}: {}", fmt::join(plan.datasets, ", "), error.what()));
+        }
         if (!network) {
             checkpoint->Write();
             return {};

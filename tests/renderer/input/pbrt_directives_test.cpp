@@ -317,6 +317,19 @@ TEST_F(Directives, ObjectsHoldShapesAndInstancesPlaceThem) {
     EXPECT_EQ(d.instances[1].loc.line, 2);
 }
 
+// As pbrt-v3's exporters write it: attributes and objects share a stack, and their ends may cross.
+TEST_F(Directives, EndsOfAttributesAndObjectsMayCross) {
+    const auto d = folder.ParseWorld(
+        "AttributeBegin Translate 1 0 0 ObjectBegin \"o\" Translate 0 1 0 Shape \"sphere\"\n"
+        "AttributeEnd Shape \"disk\" ObjectEnd Shape \"cone\"");
+    ASSERT_EQ(d.objects.size(), 1u);
+    ASSERT_EQ(d.objects[0].shapes.size(), 2u);
+    EXPECT_EQ(d.objects[0].shapes[0].worldFromObject, Translation(1, 1, 0));
+    EXPECT_EQ(d.objects[0].shapes[1].worldFromObject, Translation(1, 0, 0));
+    ASSERT_EQ(d.shapes.size(), 1u);
+    EXPECT_EQ(d.shapes[0].worldFromObject, Mat4d::Identity());
+}
+
 TEST_F(Directives, RedefinedObjectCountsForWhatFollows) {
     const auto d = folder.ParseWorld(
         "ObjectBegin \"o\" ObjectEnd ObjectInstance \"o\" ObjectBegin \"o\" ObjectEnd "

@@ -46,8 +46,11 @@ TEST_F(PbrtErrors, Scopes) {
                   "AttributeEnd where the TransformBegin of line 2 is still open");
     ExpectInWorld("TransformBegin AttributeBegin TransformEnd",
                   "TransformEnd where the AttributeBegin of line 2 is still open");
+    ExpectInWorld("ObjectBegin \"o\" TransformBegin ObjectEnd",
+                  "ObjectEnd where the TransformBegin of line 2 is still open");
+    ExpectInWorld("AttributeBegin ObjectEnd", "ObjectEnd without ObjectBegin");
     ExpectInWorld("ObjectBegin \"o\" AttributeEnd",
-                  "AttributeEnd where the ObjectBegin of line 2 is still open");
+                  "WorldEnd where the ObjectBegin of line 2 is still open");
     Expect("WorldBegin\nAttributeBegin\nWorldEnd",
            "scene.pbrt:3: WorldEnd where the AttributeBegin of line 2 is still open");
 }

@@ -50,10 +50,10 @@ std::vector<float> IntegralsOf(const std::vector<float>& x, const std::vector<fl
 }
 
 // Scatters to both sides: luminance (1 + cos phi / 2) g(muI, muO), smooth and positive.
-BsdfFile Example() {
+BsdfFile ExampleAt(std::vector<float> mu) {
     BsdfFile file;
-    constexpr int kNodes = 20;
-    for (int i = 0; i < kNodes; ++i) file.mu.push_back(-std::cos(kPi * float(i) / (kNodes - 1)));
+    const int kNodes = int(mu.size());
+    file.mu = std::move(mu);
     for (int o = 0; o < kNodes; ++o) {
         std::vector<float> row;
         for (int i = 0; i < kNodes; ++i) {
@@ -68,6 +68,22 @@ BsdfFile Example() {
         for (const float v : IntegralsOf(file.mu, row)) file.cdf.push_back(v);
     }
     return file;
+}
+
+BsdfFile Example() {
+    constexpr int kNodes = 20;
+    std::vector<float> mu;
+    for (int i = 0; i < kNodes; ++i) mu.push_back(-std::cos(kPi * float(i) / (kNodes - 1)));
+    return ExampleAt(std::move(mu));
+}
+
+// Has the node of the horizon twice, as files of measured and layered materials do.
+BsdfFile ExampleWithTwoHorizons() {
+    std::vector<float> mu;
+    for (int i = 0; i <= 10; ++i) mu.push_back(-std::cos(kPi / 2 * float(i) / 10));
+    mu.back() = 0;
+    for (int i = 10; i >= 0; --i) mu.push_back(-mu[size_t(i)]);
+    return ExampleAt(std::move(mu));
 }
 
 FourierTable Load(const BsdfFile& file) {
@@ -109,10 +125,8 @@ TEST(Fourier, RefractionScalesRadiance) {
     EXPECT_NEAR(b.Evaluate(down, wo).f.x(), a.Evaluate(down, wo).f.x() * 2.25f, 1e-4);
 }
 
-TEST(Fourier, FollowsItsDensity) {
-    const FourierTable table = Load(Example());
+void ExpectThatItFollowsItsDensity(const FourierTable& table, uint64_t seed) {
     const FourierLobe lobe{Rgb(1, 1, 1), &table};
-    uint64_t seed = 1;
     for (const double angle : {0.0, 25.0, 70.0, 89.0, 130.0, 180.0}) {
         const Vec3f wo = FromAngles(angle, 37);
         const SphereGrid grid = EvenGrid(24, 24);
@@ -130,6 +144,21 @@ TEST(Fourier, FollowsItsDensity) {
                 ++observed[grid.CellOf(s->wi)];
         EXPECT_GT(ChiSquarePValue(expected, observed, kSamples), 1e-4) << angle;
     }
+}
+
+TEST(Fourier, FollowsItsDensity) { ExpectThatItFollowsItsDensity(Load(Example()), 1); }
+
+TEST(Fourier, MayHaveTheHorizonTwice) {
+    const FourierTable table = Load(ExampleWithTwoHorizons());
+    ASSERT_EQ(table.mu[10], table.mu[11]);
+    ExpectThatItFollowsItsDensity(table, 7);
+    const FourierLobe lobe{Rgb(1, 1, 1), &table};
+    for (const double angle : {89.9999, 90., 90.0001})
+        for (const double other : {1., 89.9999, 90., 90.0001, 179.}) {
+            const BsdfValue value = lobe.Evaluate(FromAngles(angle, 0), FromAngles(other, 50));
+            EXPECT_TRUE(IsFinite(value.f) && value.pdf >= 0 && std::isfinite(value.pdf))
+                << angle << " " << other;
+        }
 }
 
 TEST(Fourier, RefusesBrokenFiles) {
@@ -156,7 +185,9 @@ TEST(Fourier, RefusesBrokenFiles) {
     expect("order", [](BsdfFile* f) { f->order = 100000; });
     expect("index of refraction", [](BsdfFile* f) { f->eta = -1; });
     expect("1 nodes", [](BsdfFile* f) { f->mu.resize(1); });
-    expect("do not ascend", [](BsdfFile* f) { f->mu[3] = f->mu[4]; });
+    expect("do not ascend", [](BsdfFile* f) { std::swap(f->mu[3], f->mu[4]); });
+    expect("do not ascend", [](BsdfFile* f) { f->mu[1] = f->mu[0]; });
+    expect("do not ascend", [](BsdfFile* f) { f->mu[18] = f->mu[19]; });
     expect("not finite", [](BsdfFile* f) { f->coefficients[7] = std::nanf(""); });
     expect("cut short",
            [](BsdfFile* f) { f->cdf.resize(300), f->places.clear(), f->coefficients.clear(); });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/scene/geometry/shapes/placement.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -16,7 +17,7 @@ CurveKind ReadKind(const Entity& entity) {
     if (kind == "ribbon") return CurveKind::Ribbon;
     throw Error(entity.loc, fmt::format("curves of type \"{}\" are not modelled; flat, cylinder "
                                         "and ribbon are",
-                                        kind));
+                                        Printable(kind)));
 }
 
 int ReadSplitDepth(const Entity& entity) {
@@ -66,7 +67,7 @@ Basis ReadBasis(const Entity& entity) {
     if (basis != "bezier" && basis != "bspline")
         throw Error(entity.loc, fmt::format("curves of basis \"{}\" are not modelled; bezier and "
                                             "bspline are",
-                                            basis));
+                                            Printable(basis)));
     return {basis == "bspline", degree};
 }
 

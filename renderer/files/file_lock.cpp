@@ -1,0 +1,84 @@
+#include "renderer/files/file_lock.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+namespace {
+
+// Links are followed, so that all who write to a file meet at the same lock.
+std::string NameOfLock(const std::string& path) {
+    std::error_code error;
+    std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+    if (error) target = path;
+    return target.parent_path() / fmt::format(".{}.lock", target.filename().string());
+}
+
+[[noreturn]] void Fail(const std::string& name) {
+    throw Error(fmt::format("cannot lock \"{}\": {}", name, std::strerror(errno)));
+}
+
+// Says whether the open file still has its name: who had the lock before has removed it.
+bool IsNamed(int fd, const std::string& name) {
+    struct stat opened, named;
+    return fstat(fd, &opened) == 0 && lstat(name.c_str(), &named) == 0 &&
+           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// Returns the locked file; -1 where another process has it and `mode` is not to wait.
+int Lock(const std::string& name, int mode) {
+    for (;;) {
+        const int fd = open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (fd < 0) Fail(name);
+        int result;
+        do result = flock(fd, mode);
+        while (result != 0 && errno == EINTR);
+        if (result == 0 && IsNamed(fd, name)) return fd;
+        const int reason = result == 0 ? 0 : errno;
+        close(fd);
+        if (reason == EWOULDBLOCK) return -1;
+        errno = reason;
+        if (reason != 0) Fail(name);
+    }
+}
+
+}  // namespace
+
+FileLock FileLock::Wait(const std::string& path, const std::function<void()>& onWait) {
+    const std::string name = NameOfLock(path);
+    int fd = Lock(name, LOCK_EX | LOCK_NB);
+    if (fd < 0) {
+        onWait();
+        fd = Lock(name, LOCK_EX);
+    }
+    return {name, fd};
+}
+
+std::optional<FileLock> FileLock::Try(const std::string& path) {
+    const std::string name = NameOfLock(path);
+    const int fd = Lock(name, LOCK_EX | LOCK_NB);
+    if (fd < 0) return {};
+    return FileLock(name, fd);
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : name(std::move(other.name)), fd(std::exchange(other.fd, -1)) {}
+
+FileLock::~FileLock() {
+    if (fd < 0) return;
+    unlink(name.c_str());
+    close(fd);
+}
+
+}  // namespace lull
