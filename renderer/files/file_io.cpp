@@ -156,6 +156,10 @@ Target FindTarget(const std::string& path) {
     if (error) Fail(path, error.message());
     target.status = fs::status(target.path, error);
     if (fs::is_directory(target.status)) Fail(path, "it is a directory");
+    // To open a FIFO would be to wait for its reader.
+    if (fs::exists(target.status) && !fs::is_regular_file(target.status) &&
+        !fs::is_character_file(target.status))
+        Fail(path, "it is not a regular file");
     if (path.back() == '/') Fail(path, "it names a directory");
     const fs::path directory = target.path.parent_path();
     const fs::file_status parent = fs::status(directory, error);

@@ -1,0 +1,59 @@
+// Tests what is no regular file, names that would command a terminal, and writers that meet.
+#include <sys/stat.h>
+
+#include "stopping/lab/recordings/dataset.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull {
+namespace {
+
+// A command that hangs would hang the test.
+constexpr const char* kLimit = "timeout 20 LULL ";
+
+TEST(Writers, OfOneDatasetLoseNothing) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome outcome = RunShell(
+        directory,
+        "for v in v1 v2 v3; do LULL dataset scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
+        "--threads 1 --name $v -o d.h5 --quiet & done; wait");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(ReadDataset(directory.File("d.h5")).size(), 3u);
+    EXPECT_EQ(directory.CountFiles(), 2);
+}
+
+TEST(SpecialFiles, AreNotWaitedFor) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    for (const char* name : {"f.exr", "f.h5", "f.csv", "f.json"})
+        ASSERT_EQ(mkfifo(directory.File(name).c_str(), 0600), 0);
+    for (const char* command :
+         {"render scene.pbrt --spp 2 -o f.exr", "render scene.pbrt --spp 2 --report f.json",
+          "render scene.pbrt --spp 20 --checkpoint f.h5 --resume",
+          "render scene.pbrt --stop learned:f.h5", "render scene.pbrt --stop thresholds:f.csv",
+          "render scene.pbrt --stop thresholds:/dev/zero", "evaluate f.h5 --human f.csv",
+          "train f.h5 --human f.csv -o m.h5", "judge --collect f.json -o t.csv"}) {
+        const Outcome outcome = RunShell(directory, kLimit + std::string(command));
+        EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, "not a regular file")) << command << "\n" << outcome.err;
+    }
+}
+
+TEST(Messages, AreShortAndCommandNoTerminal) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("t.csv", "scene;" + std::string(100'000, '\x1b') + ";\n");
+    directory.Write(
+        "m.pbrt", SceneText("Material \"a\x1b[31m\a" + std::string(5000, 'x') + "\"\n" + kSphere));
+    for (const char* command : {"render scene.pbrt --stop thresholds:t.csv", "render m.pbrt",
+                                "render scene.pbrt --stop \"$(printf 'x%.0s' $(seq 5000))\"",
+                                "render m.pbrt --substitute --spp 1 -o x.exr"}) {
+        const Outcome outcome = RunShell(directory, kLimit + std::string(command));
+        EXPECT_EQ(outcome.err.find_first_of("\x1b\a"), std::string::npos) << command;
+        EXPECT_LT(outcome.err.size(), 2000u) << command;
+        EXPECT_NE(outcome.err, "") << command;
+    }
+}
+
+}  // namespace
+}  // namespace lull
