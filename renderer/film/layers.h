@@ -7,7 +7,7 @@
 #include "renderer/film/aov_film.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/film/matte_film.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
 
