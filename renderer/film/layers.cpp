@@ -159,13 +159,11 @@ void GetPlane(StateReader* reader, const PixelRect& rect, PixelPlane<Pixel>* pla
 
 }  // namespace
 
-PathSample Layers::Take(Sampler& sampler, const Vec2i& pixel, uint32_t index) const {
-    FirstHit firstHit;
-    const PathSample sample = source(sampler, pixel, index, &firstHit);
-    if (aovs) aovs->At(pixel).Add(firstHit, sample.radiance);
-    if (features) features->At(pixel).Add(firstHit, sample.radiance, InHalf(index));
-    if (mattes) mattes->Add(pixel, firstHit, sample.radiance);
-    return sample;
+void Layers::Add(const Vec2i& pixel, uint32_t index, const FirstHit& firstHit,
+                 const Rgb& radiance) const {
+    if (aovs) aovs->At(pixel).Add(firstHit, radiance);
+    if (features) features->At(pixel).Add(firstHit, radiance, InHalf(index));
+    if (mattes) mattes->Add(pixel, firstHit, radiance);
 }
 
 void PutLayers(const Layers& layers, const PixelRect& rect, StateWriter* writer) {

@@ -14,8 +14,8 @@ namespace {
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
 // render has taken further already keep what they have. Adds them to `spread`, if there is one.
 // Returns how many were taken.
-template <typename Source>
-int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film,
+template <typename Take>
+int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
                    SampleSpread* spread) {
     int64_t samples = 0;
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -25,7 +25,7 @@ int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             double sum = 0, squares = 0;  // of luminance
             for (uint32_t k = first; k < end; ++k) {
-                const PathSample sample = source(sampler, pixel, k);
+                const PathSample sample = take(sampler, pixel, k);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
                 if (!spread) continue;
@@ -124,9 +124,18 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     SampleSpread* spread =
         options.learner ? options.learner->SpreadOf(*film, tile.pixels) : nullptr;
-    if (!options.layers) return RenderTile(source, tile, sampler, film, spread);
-    const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-        return options.layers.Take(s, pixel, index);
+    if (!options.layers) {
+        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
+            return source(s, pixel, index, nullptr);
+        };
+        return RenderTile(alone, tile, sampler, film, spread);
+    }
+    const auto withLayers = [&, asks = options.layers.NeedFirstHits()](
+                                Sampler& s, const Vec2i& pixel, uint32_t index) {
+        FirstHit firstHit;
+        const PathSample sample = source(s, pixel, index, asks ? &firstHit : nullptr);
+        options.layers.Add(pixel, index, firstHit, sample.radiance);
+        return sample;
     };
     return RenderTile(withLayers, tile, sampler, film, spread);
 }
