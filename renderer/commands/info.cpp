@@ -120,9 +120,9 @@ void PrintView(const Description& description, const Scene& scene) {
                                     "itself",
                                     scene.samplesPerPixel));
     Line("paths",
-         fmt::format("{}, up to {}; Russian roulette below a throughput of {:g}",
-                     UsedText(scene.isVolumetric ? "volpath" : "path", description.integrator),
-                     Number(scene.maxDepth, "bounce"), scene.rrThreshold));
+         fmt::format("{}, {}",
+                     UsedText(NameOf(scene.integrator, scene.isVolumetric), description.integrator),
+                     TextOf(scene.integrator)));
 }
 
 void PrintCosts(const Scene& scene, double parseSeconds) {

@@ -48,8 +48,8 @@ std::string EndOf(const PathLog& log, const Scene& scene) {
     if (log.steps.empty()) return "It meets nothing that shines or scatters.\n";
     const PathStep& last = log.steps.back();
     if (last.kind == PathStep::Kind::Sky) return "";
-    if (int(log.steps.size()) > scene.maxDepth)
-        return fmt::format("It ends at the greatest depth, {} bounces.\n", scene.maxDepth);
+    if (const int maxDepth = MaxDepth(scene.integrator); int(log.steps.size()) > maxDepth)
+        return fmt::format("It ends at the greatest depth, {} bounces.\n", maxDepth);
     return last.goesOn ? "It ends by chance, as little light could come this way.\n"
                        : "It ends here: nothing goes on.\n";
 }

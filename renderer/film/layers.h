@@ -1,26 +1,19 @@
 // What a render collects of its samples beside the film.
 #pragma once
 
-#include <functional>
-
 #include "renderer/film/aov_film.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/film/film.h"
 #include "renderer/film/matte_film.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/first_hit.h"
 
 namespace lull {
-
-// As SampleSource, and says what the sample's path has met first.
-using AovSource =
-    std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
 
 struct Layers {
     // Of the film's region; null: not collected.
     AovFilm* aovs = nullptr;
     FeatureFilm* features = nullptr;  // what a denoiser is shown
     MatteFilm* mattes = nullptr;
-    AovSource source = {};  // where the samples of film and layers come from then
 
     explicit operator bool() const { return aovs || features || mattes; }
     // Says whether they are of this region.
@@ -33,6 +26,10 @@ struct Layers {
         if (aovs) aovs->At(pixel).Add(hit, radiance);
         if (features) features->At(pixel).Add(hit, radiance, InHalf(index));
         if (mattes) mattes->Add(pixel, hit, radiance);
+    }
+    // Says whether any of them needs the samples' first hits; noise does not.
+    bool NeedFirstHits() const {
+        return features || mattes || (aovs && aovs->Wanted().FirstHits());
     }
 };
 

@@ -14,8 +14,8 @@ namespace {
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
 // render has taken further already keep what they have. Adds them to `spread`, if there is one.
 // Returns how many were taken.
-template <typename Source>
-int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film,
+template <typename Take>
+int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
                    SampleSpread* spread) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
@@ -26,7 +26,7 @@ int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             double sum = 0, squares = 0;  // of luminance
             for (uint32_t k = first; k < end; ++k) {
-                const PathSample sample = source(sampler, pixel, k);
+                const PathSample sample = take(sampler, pixel, k);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
                 if (!spread) continue;
@@ -125,11 +125,17 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     SampleSpread* spread =
         options.learner ? options.learner->SpreadOf(*film, tile.pixels) : nullptr;
-    if (!options.layers) return RenderTile(source, tile, sampler, film, spread);
-    const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-        FirstHit hit;
-        const PathSample sample = options.layers.source(s, pixel, index, &hit);
-        options.layers.Add(pixel, index, hit, sample.radiance);
+    if (!options.layers) {
+        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
+            return source(s, pixel, index, nullptr);
+        };
+        return RenderTile(alone, tile, sampler, film, spread);
+    }
+    const auto withLayers = [&, asks = options.layers.NeedFirstHits()](
+                                Sampler& s, const Vec2i& pixel, uint32_t index) {
+        FirstHit firstHit;
+        const PathSample sample = source(s, pixel, index, asks ? &firstHit : nullptr);
+        options.layers.Add(pixel, index, firstHit, sample.radiance);
         return sample;
     };
     return RenderTile(withLayers, tile, sampler, film, spread);

@@ -65,7 +65,8 @@ std::string NameOf(GuideMode mode) {
 
 std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator) {
     if (estimator != Estimator::Combined) return "the estimator is pbrt-v3's";
-    if (scene.maxDepth < 2) return "paths have one bounce at most";
+    if (!CanBeGuided(scene.integrator)) return "the integrator takes no guide";
+    if (MaxDepth(scene.integrator) < 2) return "paths have one bounce at most";
     if (scene.lights.Count() == 0) return "the scene has no light";
     return {};
 }

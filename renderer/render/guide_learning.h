@@ -20,7 +20,7 @@
 #include "renderer/guiding/guide_refine.h"
 #include "renderer/render/guide_tally.h"
 #include "renderer/render/schedule.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 

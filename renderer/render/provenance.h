@@ -6,7 +6,7 @@
 
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/schedule.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
 
 namespace lull {

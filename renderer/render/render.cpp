@@ -49,31 +49,18 @@ RenderResult Render(const SampleSource& source, const RenderOptions& options, Fi
 }
 
 SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
-    return [&scene, options](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderSample(scene, options, sampler, pixel, index);
+    return [&scene, options](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                             FirstHit* firstHit) {
+        return RenderSample(scene, options, sampler, pixel, index, firstHit);
     };
 }
 
-SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner) {
-    return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-        return RenderSample(scene, learner.Paths(), sampler, pixel, index);
-    };
-}
-
-AovSource AovSamplesOf(const Scene& scene, PathOptions options, const AovSet& wanted) {
-    options.throughSpecular = wanted.throughSpecular;
-    return [&scene, options, asks = wanted.FirstHits()](Sampler& sampler, const Vec2i& pixel,
-                                                        uint32_t index, FirstHit* firstHit) {
-        return RenderSample(scene, options, sampler, pixel, index, asks ? firstHit : nullptr);
-    };
-}
-
-AovSource AovSamplesOf(const Scene& scene, const GuideLearner& learner, const AovSet& wanted) {
-    return [&, through = wanted.throughSpecular, asks = wanted.FirstHits()](
-               Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
+SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner, bool throughSpecular) {
+    return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                FirstHit* firstHit) {
         PathOptions options = learner.Paths();
-        options.throughSpecular = through;
-        return RenderSample(scene, options, sampler, pixel, index, asks ? firstHit : nullptr);
+        options.throughSpecular = throughSpecular;
+        return RenderSample(scene, options, sampler, pixel, index, firstHit);
     };
 }
 

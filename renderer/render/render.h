@@ -7,6 +7,7 @@
 #include "renderer/film/layers.h"
 #include "renderer/render/progress.h"
 #include "renderer/render/schedule.h"
+#include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
 
 namespace lull {
@@ -107,7 +108,9 @@ struct RenderResult {
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
-using SampleSource = std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index)>;
+// A FirstHit, where one is given, receives what the sample has met first, and changes nothing else.
+using SampleSource =
+    std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
 
 // Renders the film's region, from the start or from where an interrupted render left film, layers
 // and state. The pixels are the same bits for any number of threads and ranks and, at equal samples
@@ -122,11 +125,8 @@ RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
 // source.
 SampleSource SamplesOf(const Scene&, const PathOptions&);
-// The same, traced as the learner says at the time, which must outlive it too.
-SampleSource SamplesOf(const Scene&, const GuideLearner&);
-
-// Return the same samples with what they have met first, as far as layers that are wanted need it.
-AovSource AovSamplesOf(const Scene&, PathOptions, const AovSet& wanted);
-AovSource AovSamplesOf(const Scene&, const GuideLearner&, const AovSet& wanted);
+// The same, traced as the learner says at the time, which must outlive it too. For
+// `throughSpecular` see PathOptions.
+SampleSource SamplesOf(const Scene&, const GuideLearner&, bool throughSpecular = false);
 
 }  // namespace lull

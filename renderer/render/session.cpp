@@ -113,7 +113,7 @@ void Session::Preview(double seconds, std::function<void(const RenderResult&)> s
 
 RenderResult Session::Run(const RenderFunction& render) {
     RenderOptions& o = options.render;
-    SetSources();
+    SetSource();
     KeepCheckpoints();
     if (options.clock) {
         double reserve = SecondsToWrite(region.Area());
@@ -130,22 +130,12 @@ RenderResult Session::Run(const RenderFunction& render) {
     return result;
 }
 
-void Session::SetSources() {
-    Layers& layers = options.render.layers;
-    AovSet wanted = options.aovs;
-    if (options.features) {
-        // A denoiser does best with what is seen in mirrors and through glass; layers, which are of
-        // the same hits, come first.
-        if (!options.aovs.Any()) wanted.throughSpecular = true;
-        wanted.albedo = wanted.normal = wanted.depth = true;
-    }
-    if (learner) {
-        source = SamplesOf(scene, *learner);
-        if (layers) layers.source = AovSamplesOf(scene, *learner, wanted);
-    } else {
-        source = SamplesOf(scene, options.estimator);
-        if (layers) layers.source = AovSamplesOf(scene, options.estimator, wanted);
-    }
+void Session::SetSource() {
+    // A denoiser does best with what is seen in mirrors and through glass; layers, which are of the
+    // same hits, come first.
+    PathOptions paths = options.estimator;
+    paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
+    source = learner ? SamplesOf(scene, *learner, paths.throughSpecular) : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the

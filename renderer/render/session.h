@@ -87,7 +87,7 @@ class Session {
     const RenderOptions& Options() const { return options.render; }
 
   private:
-    void SetSources();
+    void SetSource();
     void KeepCheckpoints();
     std::string TryToWrite(const RenderState&, const std::string& said);
     bool HasCheckpoint() const { return !options.checkpoint.file.empty(); }

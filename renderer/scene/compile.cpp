@@ -40,23 +40,6 @@ bool HasInterfaces(const Description& description) {
                        [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
 }
 
-void ReadIntegrator(const Entity& entity, int maxDepth, Scene* scene, Warnings& warnings) {
-    const Parameters& params = entity.parameters;
-    // volpath is path where there is nothing else for it to see.
-    scene->isVolumetric &= IntegratorSeesMedia(entity.name);
-    if (entity.name != "path" && entity.name != "volpath")
-        warnings.Add(entity.loc,
-                     fmt::format("Integrator \"{}\" is rendered as \"{}\"", Printable(entity.name),
-                                 scene->isVolumetric ? "volpath" : "path"));
-    scene->maxDepth = params.GetInt("maxdepth", 5);
-    scene->rrThreshold = params.GetFloat("rrthreshold", 1);
-    if (maxDepth >= 0) scene->maxDepth = maxDepth;
-    if (scene->maxDepth < 0) throw Error(entity.loc, "\"maxdepth\" has to be at least 0");
-    params.GetString("lightsamplestrategy", "");  // the light table reads it
-    if (entity.name == "path" || entity.name == "volpath")
-        params.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
-}
-
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
     if (!(Farthest(scene.camera, scene.film) <= double(scene.shapes.reach)))
@@ -76,8 +59,10 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
     ReadSampler(description.sampler, scene.get(), warnings);
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
     scene->media = MediumTable(description, warnings);
-    scene->isVolumetric = !scene->media.media.empty() || HasInterfaces(description);
-    ReadIntegrator(description.integrator, options.maxDepth, scene.get(), warnings);
+    scene->isVolumetric = IntegratorSeesMedia(description.integrator.name) &&
+                          (!scene->media.media.empty() || HasInterfaces(description));
+    scene->integrator =
+        MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric, warnings);
 
     scene->textureSeconds = Timed([&] {
         scene->textures =

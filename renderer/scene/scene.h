@@ -9,6 +9,7 @@
 #include "renderer/scene/filter.h"
 #include "renderer/scene/geometry/accelerator.h"
 #include "renderer/scene/geometry/shape_table.h"
+#include "renderer/scene/integrator.h"
 #include "renderer/scene/light_table.h"
 #include "renderer/scene/material.h"
 #include "renderer/scene/medium_table.h"
@@ -24,8 +25,7 @@ struct Scene {
     // As the scene's directives ask; the command line can override them.
     SamplerKind sampler = SamplerKind::Sobol;
     int samplesPerPixel = 16;
-    int maxDepth = 5;
-    float rrThreshold = 1;
+    Integrator integrator;
     bool isMoving = false;      // shapes, instances or the camera, while the shutter is open
     bool isVolumetric = false;  // has visible media, or interfaces that shadow rays pass
 

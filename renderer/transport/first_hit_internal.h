@@ -1,5 +1,5 @@
-// Lets the loop over a path say what it meets first. The loop is compiled once with a recorder
-// and once without, so that where nobody asks for layers there is not even a branch.
+// Recorders, which are told of a path's vertices. The loop over a path is compiled for each of
+// them, so that where nobody asks there is not even a branch.
 #pragma once
 
 #include "renderer/bsdf/albedo.h"
@@ -13,43 +13,41 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
                                            : scene.shapes.worldShapeCount + found.instance);
 }
 
-// Is not told what happens between first hits.
-struct FirstHitAlone {
-    static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
-    static void Emit(const Rgb&) {}
-    static void Light(const Rgb&) {}
-    static void Scatter(const Path&, bool) {}
-};
-
-// Stands where nobody asks.
-struct NoFirstHit : FirstHitAlone {
+// Stands where nobody asks, and in a recorder for what it does not need.
+struct NoRecorder {
+    // Says whether a path at its greatest depth has to go on for the recorder.
     static constexpr bool Wanted() { return false; }
-    static void Advance(float) {}
+    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface of which the
+    // BSDF is not known yet, or is scattered by a medium at p, so far away. The path has found what
+    // is emitted there.
     static void LeaveScene(const Path&) {}
+    static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
+    static void MeetMedium(const Path&, float, const Vec3f&) {}
+    // It has come to a surface of this BSDF.
     static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
-    static void MeetMedium(const Path&, const Vec3f&) {}
+    // It goes on; `isTransmission` says whether through the surface, or medium.
+    static void Scatter(const Path&, bool) {}
+    static void End(const Path&) {}
 };
 
-class FirstHitRecorder : public FirstHitAlone {
+class FirstHitRecorder : public NoRecorder {
   public:
     // `direction` is that of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
                      float time, FirstHit* hit)
         : scene(scene), options(options), direction(direction), time(time), hit(hit) {}
 
-    // Says whether it has still to be found.
     bool Wanted() const { return !done; }
 
-    // The path's ray, of unit direction, has gone so far.
-    void Advance(float t) {
-        if (!done) distance += t;
-    }
-
-    // Nothing is there: what shines from there stands for the albedo.
+    // What shines from there stands for the albedo.
     void LeaveScene(const Path& path) {
         if (done) return;
         done = true;
         StoreColor(Emission(scene, options.estimator, path, nullptr, {}) * scene.film.scale, path);
+    }
+
+    void ReachSurface(const Path&, const Hit& found, const SurfaceInteraction&) {
+        if (!done) distance += found.t;
     }
 
     void MeetSurface(const Path& path, const Hit& found, const SurfaceInteraction& at,
@@ -69,9 +67,11 @@ class FirstHitRecorder : public FirstHitAlone {
         hit->material = 1 + uint32_t(at.material);
     }
 
-    // The path is scattered by a medium; `path.beta` knows of its albedo.
-    void MeetMedium(const Path& path, const Vec3f& p) {
-        if (!done) Store(Rgb::Ones(), p, path);
+    // `path.beta` knows of the medium's albedo.
+    void MeetMedium(const Path& path, float t, const Vec3f& p) {
+        if (done) return;
+        distance += t;
+        Store(Rgb::Ones(), p, path);
     }
 
   private:

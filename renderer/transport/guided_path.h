@@ -12,13 +12,13 @@ struct Unguided {
     void Enter(const MediumVertex&) {}
     float Pdf(float pdf, const Vec3f&) const { return pdf; }
     template <typename Vertex>
-    bool Scatter(const Vertex& v, const Rgb&, Sampler& sampler, Path* path, bool* isTransmission) {
+    bool Scatter(const Vertex& v, Sampler& sampler, Path* path, bool* isTransmission) {
         return lull::Scatter(v, sampler, path, isTransmission);
     }
     bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
         return lull::SurvivesRoulette(threshold, sampler, path);
     }
-    void End(const Rgb&) {}
+    void End(const Path&) {}
 };
 
 // Chooses directions from the guide and the BSDF or phase function, and weighs them by the density
@@ -42,10 +42,10 @@ class Guided {
         return fraction * guide.Pdf(leaf, w) + (1 - fraction) * pdf;
     }
 
-    // Continues the path, which has found L so far; returns false where it ends. Inlined, so that
-    // the path needs not lie in memory.
+    // Continues the path; returns false where it ends. Inlined, so that the path needs not lie in
+    // memory.
     template <typename Vertex>
-    [[gnu::always_inline]] bool Scatter(const Vertex& v, const Rgb& L, Sampler& sampler, Path* path,
+    [[gnu::always_inline]] bool Scatter(const Vertex& v, Sampler& sampler, Path* path,
                                         bool* isTransmission) {
         Vec2f u = sampler.Get2D();
         BsdfSample sample;
@@ -71,7 +71,7 @@ class Guided {
         density *= pdf / sample.pdf;
         if (mayRecord && !sample.isSpecular) {
             visited[count] = {v.Position(), sample.wi, place, pdf, sample.pdf, guidePdf, 0};
-            before[count++] = L;
+            before[count++] = path->L;
         }
         return true;
     }
@@ -82,10 +82,10 @@ class Guided {
         return lull::SurvivesRoulette(threshold, sampler, path, density);
     }
 
-    // Records the path, which has found L in all.
-    void End(const Rgb& L) {
+    // Records the path.
+    void End(const Path& path) {
         for (int i = 0; i < count; ++i) {
-            visited[i].found = Luminance(L - before[i]) / usual;
+            visited[i].found = Luminance(path.L - before[i]) / usual;
             record->Add(guide, visited[i]);
         }
     }

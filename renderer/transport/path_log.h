@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 
@@ -34,7 +34,8 @@ struct PathLog {
     PathSample sample;
 };
 
-// Takes the same sample as RenderSample(), without a guide, and tells what happens to its path.
+// Takes the same sample of a scene that has a PathIntegrator as RenderSample(), without a guide,
+// and tells what happens to its path.
 PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
 
 }  // namespace lull

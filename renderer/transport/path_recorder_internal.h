@@ -1,35 +1,31 @@
 // Records all of a path, in place of its first hit alone.
 #pragma once
 
-#include <utility>
-
 #include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/path_log.h"
 
 namespace lull {
 
-class PathRecorder {
+class PathRecorder : public NoRecorder {
   public:
     PathRecorder(const Scene& scene, std::vector<PathStep>* steps) : scene(scene), steps(steps) {}
 
-    static constexpr bool Wanted() { return false; }
-    void Advance(float t) { distance += t; }
-
-    void LeaveScene(const Path& path) { Add(PathStep::Kind::Sky, path, path.ray.d.normalized()); }
-    // Comes to a surface, before anything is known of its material.
+    void LeaveScene(const Path& path) {
+        Add(PathStep::Kind::Sky, path, 0, path.ray.d.normalized());
+        Gain(path, &PathStep::emitted);
+    }
     void ReachSurface(const Path& path, const Hit& found, const SurfaceInteraction& at) {
-        PathStep& step = Add(PathStep::Kind::Surface, path, at.p);
+        PathStep& step = Add(PathStep::Kind::Surface, path, found.t, at.p);
         step.normal = at.n;
         step.object = NumberOfObject(scene, found);
         step.material = 1 + uint32_t(at.material);
+        Gain(path, &PathStep::emitted);
     }
-    static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
-    void MeetMedium(const Path& path, const Vec3f& p) { Add(PathStep::Kind::Medium, path, p); }
-
-    // `L` is what the path has brought by now.
-    void Emit(const Rgb& L) { Gain(L, &PathStep::emitted); }
-    void Light(const Rgb& L) { Gain(L, &PathStep::direct); }
+    void MeetMedium(const Path& path, float t, const Vec3f& p) {
+        Add(PathStep::Kind::Medium, path, t, p);
+    }
     void Scatter(const Path& path, bool isTransmission) {
+        Gain(path, &PathStep::direct);
         PathStep& step = steps->back();
         step.goesOn = true;
         step.direction = path.ray.d.normalized();
@@ -37,25 +33,28 @@ class PathRecorder {
         step.isSpecular = path.seesLights;
         step.isTransmission = isTransmission;
     }
+    void End(const Path& path) {
+        if (!steps->empty()) Gain(path, &PathStep::direct);
+    }
 
   private:
-    PathStep& Add(PathStep::Kind kind, const Path& path, const Vec3f& position) {
+    PathStep& Add(PathStep::Kind kind, const Path& path, float distance, const Vec3f& position) {
         PathStep& step = steps->emplace_back();
         step.kind = kind;
-        step.distance = std::exchange(distance, 0.f);
+        step.distance = distance;
         step.position = position;
         step.throughput = path.beta;
         return step;
     }
-    void Gain(const Rgb& L, Rgb PathStep::*part) {
-        steps->back().*part += L - before;
-        before = L;
+    // Adds what the path has found since the last time.
+    void Gain(const Path& path, Rgb PathStep::*part) {
+        steps->back().*part += path.L - before;
+        before = path.L;
     }
 
     const Scene& scene;
     std::vector<PathStep>* steps;
     Rgb before = Rgb::Zero();
-    float distance = 0;
 };
 
 }  // namespace lull

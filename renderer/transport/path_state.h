@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/base/sampling.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 #include "renderer/transport/path_vertex.h"
 
 namespace lull {
@@ -12,6 +12,7 @@ namespace lull {
 template <typename Media>
 struct PathContext {
     const Scene& scene;
+    const PathIntegrator& integrator;
     Estimator estimator;
     Sampler& sampler;
     const CameraSample& camera;
@@ -21,6 +22,7 @@ struct PathContext {
 // Carries the state of a path from one vertex to the next.
 struct Path {
     Ray ray;
+    Rgb L = Rgb::Zero();     // radiance found so far
     Rgb beta = Rgb::Ones();  // product of f cos / pdf so far
     float etaScale = 1;      // undoes the radiance scaling of refractions for Russian roulette
     bool seesLights = true;  // emission counts in full: camera ray, or after a specular bounce

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 #include "tests/hard_cases/hard_case.h"
 
 namespace lull {

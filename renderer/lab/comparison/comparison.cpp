@@ -47,7 +47,7 @@ void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Fil
                   FeatureFilm* features = nullptr) {
     RenderState state;
     RenderOptions options;
-    if (features) options.layers = {.features = features, .source = render.options.layers.source};
+    options.layers.features = features;
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
     options.sampler = render.options.sampler;

@@ -12,12 +12,6 @@ namespace {
 
 const PixelRect kRegion = {{5, 3}, {75, 63}};
 
-PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
-    const PathSample sample = SyntheticSample(sampler, pixel, index);
-    *hit = SyntheticHit(sampler, pixel, index);
-    return sample;
-}
-
 struct Rendered {
     Film film;
     AovFilm aovs;
@@ -33,10 +27,11 @@ struct Rendered {
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
         };
-        options.layers = {.aovs = &aovs, .source = SampleWithHit};
+        options.layers = {.aovs = &aovs};
     }
-    void Run(const RenderState* interrupted = nullptr) {
-        result = Render(SyntheticSample, options, &film, interrupted);
+    void Run(const RenderState* interrupted = nullptr,
+             const SampleSource& source = SyntheticSample) {
+        result = Render(source, options, &film, interrupted);
     }
 };
 
@@ -48,7 +43,7 @@ AovFilm Expected(const Film& film, const AovSet& wanted) {
         for (int x = kRegion.min.x(); x < kRegion.max.x(); ++x)
             for (uint32_t k = 0; k < film.At({x, y}).count; ++k) {
                 FirstHit hit;
-                const PathSample sample = SampleWithHit(sampler, {x, y}, k, &hit);
+                const PathSample sample = SyntheticSample(sampler, {x, y}, k, &hit);
                 aovs.At({x, y}).Add(hit, sample.radiance);
             }
     return aovs;
@@ -68,19 +63,33 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
     }
 }
 
+TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
+    for (const bool withDepth : {false, true}) {
+        Rendered render;
+        AovFilm aovs(kRegion, {.depth = withDepth, .noise = true});
+        render.options.layers = {.aovs = &aovs};
+        render.options.schedule.cap = 6;
+        int64_t asked = 0;
+        render.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+            asked += hit != nullptr;
+            return SyntheticSample(sampler, pixel, k, hit);
+        });
+        EXPECT_EQ(asked, withDepth ? render.film.SampleCount() : 0);
+        EXPECT_GT(aovs.At(kRegion.min).squares, 0);
+    }
+}
+
 // Passes that the time does not suffice for are undone in the layers as well.
 TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     Rendered render;
     std::atomic<int> taken = 0;
     render.options.threads = 2;
     render.options.makeCriterion = nullptr;
-    render.options.layers.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
-                                       FirstHit* h) {
-        ++taken;
-        return SampleWithHit(sampler, pixel, k, h);
-    };
     render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
-    render.Run();
+    render.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+        ++taken;
+        return SyntheticSample(sampler, pixel, k, hit);
+    });
     EXPECT_TRUE(render.result.timeUp);
     EXPECT_LT(render.film.SampleCount(), taken);  // some were undone
     EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
@@ -96,16 +105,15 @@ TEST(Aovs, GoOnFromCheckpoints) {
     {
         Rendered first;
         std::atomic<int> taken = 0;
-        first.options.layers.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* h) {
-            ++taken;
-            return SampleWithHit(s, pixel, k, h);
-        };
         first.options.isCancelled = [&] { return taken > 50001; };
         first.options.onCheckpoint = [&](const RenderState& s) {
             WriteCheckpoint(path, identity, s, first.film, first.options.layers);
         };
         first.options.checkpointInterval = 1e6;
-        first.Run();
+        first.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+            ++taken;
+            return SyntheticSample(sampler, pixel, k, hit);
+        });
         EXPECT_TRUE(first.result.cancelled);
     }
     Rendered second;

@@ -87,9 +87,10 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
         for (int run = 0; run < 1000; ++run) {
             RenderOptions options = SmallRender(1 + run % 3);
             std::atomic<int> samples = 0;
-            const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                    FirstHit* hit) {
                 ++samples;
-                return SyntheticSample(sampler, pixel, index);
+                return SyntheticSample(sampler, pixel, index, hit);
             };
             options.isCancelled = [&] { return samples >= samplesARun; };
             options.onCheckpoint = [&](const RenderState& s) {

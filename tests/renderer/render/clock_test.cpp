@@ -15,7 +15,7 @@ namespace lull {
 namespace {
 
 // Blocks of 20x20 pixels in a row, of which block i has noise of 1, 2, 4, ...
-PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
     sampler.StartSample(pixel, index);
     const float u = sampler.Get1D() - 0.5f;
     const float deviation = 0.02f * float(1 << (pixel.x() / 20));
@@ -40,9 +40,10 @@ struct Clocked {
             return MakeVoting(LightnessNoiseRule(0.07));
         };
         if (change) change(&options);
-        const auto source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        const auto source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                   FirstHit* hit) {
             ++taken;
-            return UnevenSample(sampler, pixel, index);
+            return UnevenSample(sampler, pixel, index, hit);
         };
         result = Render(source, options, &film, state);
     }
@@ -179,9 +180,9 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     options.makeCriterion = [](const BlockInfo&) { return MakeVoting(LightnessNoiseRule(0.07)); };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
-    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
         --left;
-        return UnevenSample(sampler, pixel, index);
+        return UnevenSample(sampler, pixel, index, hit);
     };
     RenderState ended;
     options.onCheckpoint = [&](const RenderState& s) { ended = s; };

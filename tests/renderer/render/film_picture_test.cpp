@@ -13,12 +13,6 @@ namespace {
 
 const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
 
-PathSample SampleWithFeatures(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
-    const PathSample sample = SyntheticSample(sampler, pixel, index);
-    *hit = SyntheticHit(sampler, pixel, index);
-    return sample;
-}
-
 struct FeatureRender {
     Film film{kPictureRegion};
     FeatureFilm features{kPictureRegion};
@@ -30,7 +24,7 @@ struct FeatureRender {
         options.makeCriterion = [](const BlockInfo&) {
             return std::make_unique<ScriptedCriterion>(1000);
         };
-        options.layers = {.features = &features, .source = SampleWithFeatures};
+        options.layers = {.features = &features};
         Render(SyntheticSample, options, &film);
     }
 };

@@ -124,7 +124,7 @@ Estimate Measure(const Scene& scene, const SampleSource& source, int spp, uint64
         for (int x = 0; x < region.Width(); ++x) {
             double sum = 0, squares = 0;
             for (int k = 0; k < spp; ++k) {
-                const PathSample sample = source(sampler, {x, y}, uint32_t(k));
+                const PathSample sample = source(sampler, {x, y}, uint32_t(k), nullptr);
                 e.rejected += sample.rejected;
                 const double value = double(sample.radiance.y());
                 sum += value;
@@ -247,18 +247,17 @@ TEST(Learning, LayersAreThoseWithout) {
     render.Run();
     const Guide guide = render.TheGuide();
     for (const bool throughSpecular : {false, true}) {
-        const AovSet wanted{.depth = true, .throughSpecular = throughSpecular};
-        const AovSource guided = AovSamplesOf(*scene, guide, wanted),
-                        plain = AovSamplesOf(*scene, Estimator::Combined, wanted);
+        PathOptions guided = guide, plain = Estimator::Combined;
+        guided.throughSpecular = plain.throughSpecular = throughSpecular;
         Sampler a(SamplerKind::Sobol, 1), b = a, c = a;
         for (uint32_t k = 0; k < 1000; ++k) {
             const Vec2i pixel(int(k % 16), int(k / 16 % 16));
             FirstHit hit, usual;
-            const Rgb with = guided(a, pixel, k, &hit).radiance,
-                      without = SamplesOf(*scene, guide)(b, pixel, k).radiance;
+            const Rgb with = SamplesOf(*scene, guided)(a, pixel, k, &hit).radiance,
+                      without = SamplesOf(*scene, guide)(b, pixel, k, nullptr).radiance;
             for (int channel = 0; channel < 3; ++channel)
                 ASSERT_EQ(with[channel], without[channel]);
-            plain(c, pixel, k, &usual);
+            SamplesOf(*scene, plain)(c, pixel, k, &usual);
             ASSERT_EQ(hit.found, usual.found);
             ASSERT_EQ(hit.object, usual.object);
             ASSERT_EQ(hit.material, usual.material);
@@ -267,13 +266,6 @@ TEST(Learning, LayersAreThoseWithout) {
             ASSERT_TRUE(hit.normal.isApprox(usual.normal, 1e-4f));
         }
     }
-    // Noise needs no first hits.
-    Sampler a(SamplerKind::Sobol, 1), b = a;
-    const AovSource noise = AovSamplesOf(*scene, guide, {.noise = true});
-    FirstHit hit;
-    EXPECT_EQ(noise(a, {3, 4}, 5, &hit).radiance.x(),
-              SamplesOf(*scene, guide)(b, {3, 4}, 5).radiance.x());
-    EXPECT_FALSE(hit.found);
 }
 
 // Inside a closed sphere of albedo r that emits e, radiance is e / (1 - r) everywhere.

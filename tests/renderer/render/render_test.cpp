@@ -126,13 +126,13 @@ TEST(Render, SpreadsASingleBlockOverAllThreads) {
     std::mutex mutex;
     std::condition_variable changed;
     std::set<std::thread::id> inside;
-    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
         std::unique_lock lock(mutex);
         inside.insert(std::this_thread::get_id());
         changed.notify_all();
         changed.wait_for(lock, std::chrono::seconds(20), [&] { return inside.size() >= 4; });
         lock.unlock();
-        return SyntheticSample(sampler, pixel, index);
+        return SyntheticSample(sampler, pixel, index, hit);
     };
     RenderOptions options = SmallRender();
     options.threads = 4;
@@ -150,9 +150,9 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
     const RenderResult result = Render(
-        [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index);
+            return SyntheticSample(sampler, pixel, index, hit);
         },
         options, &film);
     EXPECT_TRUE(result.cancelled);

@@ -8,19 +8,7 @@
 
 namespace lull {
 
-// Returns noise around a smooth image. Like any source it depends only on pixel, index and seed.
-// The sums are inexact in double, so that the order of additions shows in the last bits.
-inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-    sampler.StartSample(pixel, index);
-    const Vec2f u = sampler.Get2D();
-    const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
-    const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
-    return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
-}
-
-// Returns the first hit of a synthetic sample. The sampler continues where the sample left it.
-inline FirstHit SyntheticHit(Sampler& sampler, const Vec2i& pixel, uint32_t index) {
-    const Vec2f u = sampler.Get2D();
+inline FirstHit SyntheticHit(const Vec2f& u, const Vec2i& pixel, uint32_t index) {
     return {.albedo = Rgb(u.x(), u.y(), 0.1f),
             .normal = Vec3f(u.y(), 0, 1),
             .position = Vec3f(1e5f * u.x(), 1, 2),
@@ -30,6 +18,18 @@ inline FirstHit SyntheticHit(Sampler& sampler, const Vec2i& pixel, uint32_t inde
             .found = u.x() < 0.7f,
             .weight = 1,
             .offset2 = u.y()};
+}
+
+// Returns noise around a smooth image. Like any source it depends only on pixel, index and seed.
+// The sums are inexact in double, so that the order of additions shows in the last bits.
+inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                  FirstHit* hit = nullptr) {
+    sampler.StartSample(pixel, index);
+    const Vec2f u = sampler.Get2D();
+    if (hit) *hit = SyntheticHit(sampler.Get2D(), pixel, index);
+    const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
+    const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
+    return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
 }
 
 // Says whether all sums of both films are the same bits.

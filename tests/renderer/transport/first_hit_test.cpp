@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"

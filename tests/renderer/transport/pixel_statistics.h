@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 

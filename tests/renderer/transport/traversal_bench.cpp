@@ -30,7 +30,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
-#include "renderer/transport/path_tracer.h"
+#include "renderer/transport/integrator.h"
 #include "tests/renderer/bench_scenes.h"
 #include "tests/renderer/transport/recording_accelerator.h"
 

@@ -103,14 +103,6 @@ using SourceOfRank = std::function<SampleSource(int rank)>;
 
 SampleSource SameForAll(int) { return SyntheticSample; }
 
-AovSource WithHits(const SampleSource& source) {
-    return [source](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
-        const PathSample sample = source(sampler, pixel, index);
-        *hit = SyntheticHit(sampler, pixel, index);
-        return sample;
-    };
-}
-
 // Renders with `ranks` ranks; 0: without peers.
 Shared RenderShared(int ranks, const Change& change = {}, const Shared* before = nullptr,
                     const SourceOfRank& sourceOf = SameForAll, const Habits& how = {},
@@ -136,7 +128,7 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
             state = &before->state;
         }
         const SampleSource source = sourceOf(rank);
-        if (withLayers) options.layers = {.aovs = layers.get(), .source = WithHits(source)};
+        if (withLayers) options.layers = {.aovs = layers.get()};
         RenderResult result = Render(source, options, film.get(), state);
         if (rank > 0) return;
         shared.film = std::move(film);
@@ -235,10 +227,11 @@ TEST(Ranks, PauseForCheckpoints) {
         o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
     };
     // Takes many times the interval, however fast the machine is.
-    const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+    const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                 FirstHit* hit) {
         if (pixel.x() == kImage.min.x() && index % 5 == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        return SyntheticSample(sampler, pixel, index);
+        return SyntheticSample(sampler, pixel, index, hit);
     };
     const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
     EXPECT_GT(checkpoints, 2);
@@ -258,9 +251,10 @@ TEST(Ranks, MayAnswerAtOnce) {
 TEST(Ranks, EndByTheClockWithWholePasses) {
     for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
         std::atomic<int64_t> taken = 0;
-        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                FirstHit* hit) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index);
+            return SyntheticSample(sampler, pixel, index, hit);
         };
         const Shared shared = RenderShared(
             3,
@@ -324,10 +318,10 @@ TEST(Ranks, DealOutEveryTileOnce) {
 // `isSlow(rank, index)` is true for.
 SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSlow) {
     return [isSlow](int rank) -> SampleSource {
-        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
             if (index % 20 == 0 && isSlow(rank, index))
                 std::this_thread::sleep_for(std::chrono::microseconds(100));
-            return SyntheticSample(sampler, pixel, index);
+            return SyntheticSample(sampler, pixel, index, hit);
         };
     };
 }
@@ -439,9 +433,10 @@ TEST(Ranks, GoOnWithoutOneThatSleeps) {
 TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     for (const int messages : {0, 8, 20}) {
         std::atomic<int64_t> taken = 0;
-        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                FirstHit* hit) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index);
+            return SyntheticSample(sampler, pixel, index, hit);
         };
         GivenUp givenUp;
         const Shared shared = RenderShared(3, givenUp.Soon([&](RenderOptions* o, int rank) {
@@ -469,10 +464,10 @@ TEST(Ranks, UndoLayers) {
     for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](int) -> SampleSource {
-            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index) {
+            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
                 if (++taken > time && index % 20 == 0)
                     std::this_thread::sleep_for(std::chrono::microseconds(100));
-                return SyntheticSample(sampler, pixel, index);
+                return SyntheticSample(sampler, pixel, index, hit);
             };
         };
         const Shared timed = RenderLayers(

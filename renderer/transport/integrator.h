@@ -1,4 +1,4 @@
-// Estimates the radiance along camera rays by tracing paths.
+// Takes samples of the image by the scene's integrator.
 #pragma once
 
 #include "renderer/scene/scene.h"

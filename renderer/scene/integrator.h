@@ -1,0 +1,37 @@
+// The ways of finding the light that reaches the camera, each with its parameters: the scene's
+// Integrator. Their work is in transport/.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "renderer/input/description.h"
+
+namespace lull {
+
+// Paths from the camera, with light sampled at each vertex: pbrt-v3's "path" and "volpath".
+struct PathIntegrator {
+    // Whether a Guide can choose its directions, for which the render is cut into rounds.
+    static constexpr bool kCanBeGuided = true;
+
+    int maxDepth = 5;       // bounces, >= 0
+    float rrThreshold = 1;  // Russian roulette ends paths of a throughput below
+
+    static const char* Name(bool isVolumetric) { return isVolumetric ? "volpath" : "path"; }
+    std::string Text() const;
+};
+
+// All kinds.
+using Integrator = std::variant<PathIntegrator>;
+
+std::string NameOf(const Integrator&, bool isVolumetric);
+std::string TextOf(const Integrator&);  // its parameters in words
+int MaxDepth(const Integrator&);
+bool CanBeGuided(const Integrator&);
+
+// Reads a scene's directive, with a warning where another kind stands in for what it names.
+// `maxDepth`, unless negative, replaces that of the scene, which may be `isVolumetric`. Throws
+// Error for bad parameters.
+Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, Warnings&);
+
+}  // namespace lull

@@ -1,0 +1,46 @@
+// How a sample starts and ends whatever the integrator, and what each kind of Integrator is asked
+// for in between.
+#pragma once
+
+#include "renderer/base/color.h"
+#include "renderer/transport/integrator.h"
+
+namespace lull {
+
+// Holds the camera's ray, and what came of the dimensions before those of its path.
+struct SampleStart {
+    FilterSample filter;
+    CameraSample camera;
+    float cameraWeight;
+    Ray ray;
+};
+
+[[gnu::always_inline]] inline SampleStart StartSample(const Scene& scene, Sampler& sampler,
+                                                      const Vec2i& pixel, uint32_t index) {
+    SampleStart start;
+    sampler.StartSample(pixel, index);
+    start.filter = scene.filter.Sample(sampler.Get2D());
+    start.camera.film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + start.filter.offset;
+    if (scene.camera.HasLens()) start.camera.lens = sampler.Get2D();
+    if (scene.isMoving) start.camera.time = sampler.Get1D();
+    start.ray = scene.camera.GenerateRay(start.camera, &start.cameraWeight);
+    return start;
+}
+
+// Refuses what is no radiance, limits it, and applies the weights.
+[[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
+                                                  PathSample sample) {
+    Rgb& L = sample.radiance;
+    const float luminance = Luminance(L);
+    if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true, sample.vertices};
+    if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
+    L *= start.cameraWeight * start.filter.weight * scene.film.scale;
+    return sample;
+}
+
+// Return an estimate of the radiance along the camera's ray, without these weights. `firstHit` is
+// null, or gets all of a FirstHit but what it says of the sample itself.
+PathSample Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
+              FirstHit* firstHit);
+
+}  // namespace lull
