@@ -8,6 +8,7 @@
 #include "renderer/render/progress.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
+#include "stopping/rules/trend.h"
 
 namespace lull {
 
@@ -15,6 +16,7 @@ namespace lull {
 struct DecisionRecord {
     int spp;
     Decision decision;
+    std::optional<double> noiseTold = {};  // Criterion::NoiseTold(), for forecasts
 };
 
 struct BlockResult {
@@ -22,7 +24,7 @@ struct BlockResult {
     double seconds = 0;  // of processors, spent on its samples
     // Spent on its criterion and, with a clock, on its noise, the view of the pixels included.
     double criterionSeconds = 0;
-    std::vector<DecisionRecord> decisions;  // those for which the block was looked at
+    std::vector<DecisionRecord> decisions;  // those for which the block was checked
 };
 
 // Holds, together with the film, all that is needed to go on with a render: the pixels will be the
