@@ -33,7 +33,7 @@ bash -c '. /usr/share/bash-completion/completions/lull && complete -p lull'
 cp -r /usr/share/doc/lull/examples .
 if [[ -e /usr/include/png.h ]]; then
     cmake -S examples -B build && cmake --build build
-    build/judge_pngs 20 20.png 40.png 60.png
+    build/watch_pngs 20 20.png 40.png 60.png
 fi
 if grep -q '/lull/_stopping\.[^/]*\.so$' files; then
     /usr/bin/python3 -c 'import lull; print(lull.Stopper(200, 200).blocks)'

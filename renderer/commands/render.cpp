@@ -131,20 +131,19 @@ void AddOptions(CLI::App& app, Options* o) {
 
 // Returns the length of passes: shorter where the rule counts samples and stops blocks within the
 // first, as one that repeats a render that was short of time.
-int PassLengthFor(const CriterionFactory& factory, const PixelRect& region,
-                  const ScheduleOptions& schedule) {
+int PassLengthFor(const Rule& rule, const PixelRect& region, const ScheduleOptions& schedule) {
     int length = schedule.passLength;
-    if (!factory.stopAt) return length;
+    if (!rule.stopAt) return length;
     const int blocks = int(MakeBlocks(region, schedule).size());
     for (int i = 0; i < blocks; ++i)
-        if (const int stop = factory.stopAt({.index = i}); stop < std::min(length, schedule.cap))
+        if (const int stop = rule.stopAt({.index = i}); stop < std::min(length, schedule.cap))
             length = std::gcd(length, stop);
     return std::max(1, length);
 }
 
 // Reads the rule and lets the schedule suit it.
-CriterionFactory ReadRule(const Options& options, const PixelRect& region,
-                          std::shared_ptr<BlockDenoiser>* denoiser, RenderSettings* settings) {
+Rule ReadRule(const Options& options, const PixelRect& region,
+              std::shared_ptr<BlockDenoiser>* denoiser, RenderSettings* settings) {
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
     if (settings->cap) settings->schedule.cap = *settings->cap;
     if (const int spp = FixedSpp(options.rule))
@@ -154,11 +153,10 @@ CriterionFactory ReadRule(const Options& options, const PixelRect& region,
         *denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(region, settings->schedule));
         measures[denoisedRuleName] = MeasureOf(*denoiser);
     }
-    const CriterionFactory factory =
-        ReadRule("--stop", options.rule, *settings, region, std::move(measures));
-    settings->schedule.smallestSide = factory.smallestSide;
-    settings->schedule.passLength = PassLengthFor(factory, region, settings->schedule);
-    return factory;
+    const Rule rule = ReadRule("--stop", options.rule, *settings, region, std::move(measures));
+    settings->schedule.smallestSide = rule.smallestSide;
+    settings->schedule.passLength = PassLengthFor(rule, region, settings->schedule);
+    return rule;
 }
 
 // Warns of blocks that no criterion will ever stop.
@@ -185,11 +183,11 @@ bool CollectsFeatures(const Options& options) { return options.denoise || option
 
 // Makes the criteria; for a page, they also keep the curves of each block.
 std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
-    const CriterionFactory& factory, bool withCurves, std::vector<BlockHistory>* histories) {
-    if (!withCurves) return factory.make;
-    return [=, &factory](const BlockInfo& info) {
+    const Rule& rule, bool withCurves, std::vector<BlockHistory>* histories) {
+    if (!withCurves) return CriteriaOf(rule);
+    return [criteriaOf = CriteriaOf(rule), histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
-        rules.push_back(factory.make(info));
+        rules.push_back(criteriaOf(info));
         return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
                                                &(*histories)[size_t(info.index)]);
     };
@@ -197,10 +195,9 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
 
 // Says how the film is kept. Throws Error where the memory cannot hold it, or where it cannot be as
 // the user wants it.
-FilmOptions CheckedFilm(const Options& options, const CriterionFactory& factory,
-                        const PixelRect& region) {
+FilmOptions CheckedFilm(const Options& options, const Rule& rule, const PixelRect& region) {
     const RenderSettings& settings = options.render;
-    const HalfUse use{.rule = LooksAtHalf(factory, settings.schedule) ? factory.rule : "",
+    const HalfUse use{.rule = LooksAtHalf(rule, settings.schedule) ? rule.text : "",
                       .clock = !options.clock.Text().empty(),
                       .page = IsHtml(options.report),
                       .denoiser = CollectsFeatures(options),
@@ -211,14 +208,14 @@ FilmOptions CheckedFilm(const Options& options, const CriterionFactory& factory,
     return film;
 }
 
-Provenance ProvenanceOf(const Options& options, const CriterionFactory& factory, const Scene& scene,
+Provenance ProvenanceOf(const Options& options, const Rule& rule, const Scene& scene,
                         const FilmSettings& film) {
     Provenance provenance = MakeProvenance(options.render, scene, film);
-    provenance.criterion = factory.rule;
-    provenance.checksum = factory.checksum;
+    provenance.criterion = rule.text;
+    provenance.checksum = rule.checksum;
     provenance.clock = options.clock.Text();
-    provenance.logRatios = factory.logRatios;
-    provenance.trend = factory.trend;
+    provenance.logRatios = rule.logRatios;
+    provenance.trend = rule.trend;
     provenance.guide = options.guide.mode;
     provenance.guideMegabytes = options.guide.megabytes;
     return provenance;
@@ -307,9 +304,9 @@ ExitCode RunRender(Options options, Job* job) {
     SceneInput input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = false}, talk);
     const PixelRect& region = input.region;
     std::shared_ptr<BlockDenoiser> denoiser;
-    const CriterionFactory factory = ReadRule(options, region, &denoiser, &settings);
+    const Rule rule = ReadRule(options, region, &denoiser, &settings);
     CheckBlocks(region, settings.schedule, input.warnings);
-    const FilmOptions film = CheckedFilm(options, factory, region);
+    const FilmOptions film = CheckedFilm(options, rule, region);
     const RenderFiles files =
         NameFiles(options.output.empty() ? input.film.filename : options.output, options.report);
     if (leads) CheckFiles(options, files, input.description);
@@ -318,17 +315,17 @@ ExitCode RunRender(Options options, Job* job) {
         options.pictures, std::filesystem::path(files.exr).filename(), region, job->Count(), talk);
     const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
 
-    Provenance provenance = ProvenanceOf(options, factory, *scene, input.film);
+    Provenance provenance = ProvenanceOf(options, rule, *scene, input.film);
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
     ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
     SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
-    how.render.makeCriterion = MakeCriteria(factory, IsHtml(options.report), &histories);
-    how.render.trend = factory.trend;
+    how.render.makeCriterion = MakeCriteria(rule, IsHtml(options.report), &histories);
+    how.render.trend = rule.trend;
     how.render.display = display.get();
     if (clock)
         how.render.onProgress =
             WarnOfFirstSamples(region.Area(), talk, std::move(how.render.onProgress));
-    if (talk.isJson) how.render.onStop = StopEvents(factory.trend.kind);
+    if (talk.isJson) how.render.onStop = StopEvents(rule.trend.kind);
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);

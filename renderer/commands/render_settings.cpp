@@ -22,7 +22,7 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
 }
 
 void AddCautionOption(CLI::App& app, double* caution) {
-    const std::string rules = RuleNames([](const Rule& rule) { return rule.takesCaution; });
+    const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
     app.add_option("--caution", *caution,
                    "Divides the threshold of visible noise (" + rules +
                        "): 2 stops\nlater, rarely too early, 0.5 sooner")
@@ -85,9 +85,8 @@ std::string ModelFolder() {
     return (program.parent_path().parent_path() / "share/lull/models").string();
 }
 
-CriterionFactory ReadRule(const std::string& option, const std::string& rule,
-                          const RenderSettings& settings, const PixelRect& region,
-                          std::map<std::string, SignalMeasure> measures) try {
+Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
+              const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
     if (rule.starts_with(denoisedRuleName) && measures.empty())
         throw Error(
             option + " " + rule +
@@ -101,7 +100,7 @@ CriterionFactory ReadRule(const std::string& option, const std::string& rule,
                               .models = ModelFolder(),
                               .caution = settings.caution,
                               .measures = std::move(measures)};
-    return MakeCriterionFactory(rule, context);
+    return ParseRule(rule, context);
 } catch (const std::logic_error& e) {
     throw UsageError(option + ": " + e.what());
 }

@@ -3,6 +3,7 @@
 
 #include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/scene_options.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -41,9 +42,8 @@ std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
 // Error that a bad rule is; `measures` are those of RuleContext.
-CriterionFactory ReadRule(const std::string& option, const std::string& rule,
-                          const RenderSettings& settings, const PixelRect& region,
-                          std::map<std::string, SignalMeasure> measures = {});
+Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
+              const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
 
 // Says from what an image is made; the rule is left to be filled in.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);

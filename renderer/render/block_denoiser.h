@@ -7,7 +7,7 @@
 #include "renderer/denoise/denoiser.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/render/schedule.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 

@@ -32,8 +32,9 @@ std::vector<std::byte> PackBooks(const BlockResult& result) {
     writer.Put(result.seconds);
     writer.Put(result.criterionSeconds);
     writer.Put(uint32_t(result.decisions.size()));
-    for (const auto& [spp, d] : result.decisions) {
-        writer.Put(int32_t(spp));
+    for (const DecisionRecord& record : result.decisions) {
+        const Decision& d = record.decision;
+        writer.Put(int32_t(record.spp));
         writer.Put(uint8_t(d.stop));
         writer.Put(d.value);
         writer.Put(d.threshold);
@@ -54,7 +55,7 @@ BlockResult UnpackBooks(std::span<const std::byte> bytes) {
     result.criterionSeconds = reader.Get<double>();
     for (uint32_t left = reader.Get<uint32_t>(); left > 0; --left) {
         DecisionRecord record{reader.Get<int32_t>(), {}};
-        record.decision.judged = true;
+        record.decision.checked = true;
         record.decision.stop = reader.Get<uint8_t>();
         record.decision.value = reader.Get<double>();
         record.decision.threshold = reader.Get<double>();

@@ -58,7 +58,7 @@ Executor::Executor(const SampleSource& source, const RenderOptions& options, Fil
                    TileShare share, RankHooks given)
     : schedule(options, film, starts, std::move(share)),
       ledger(options, interrupted, schedule.Unlocked().Blocks().size(), film->SampleCount()),
-      judge(options, *film, schedule.Unlocked().Blocks(), interrupted),
+      criteria(options, *film, schedule.Unlocked().Blocks(), interrupted),
       tasks([this] { RunTile(); }, given.onException),
       source(source),
       options(options),
@@ -143,16 +143,16 @@ int64_t Executor::TakeSamples(const Tile& tile) {
 
 int Executor::DecideBlock(int i) {
     const int spp = schedule.Unlocked().PassEnd(i);
-    Judgement judgement;
+    BlockCheck check;
     // Isolation keeps a criterion that waits for tasks of its own from running a tile here, which
     // would fill the same view.
     tbb::this_task_arena::isolate([&] {
-        judgement =
-            judge.Judge(i, schedule.BlockAt(i), spp, ledger.SecondsOf(i), hooks.completeView);
+        check =
+            criteria.Check(i, schedule.BlockAt(i), spp, ledger.SecondsOf(i), hooks.completeView);
     });
-    ledger.AddJudgement(i, spp, judgement);
-    if (hooks.onDecided) hooks.onDecided(i, judgement.answer);
-    return schedule.Decide(i, judgement.answer);
+    ledger.AddCheck(i, spp, check);
+    if (hooks.onDecided) hooks.onDecided(i, check.answer);
+    return schedule.Decide(i, check.answer);
 }
 
 std::vector<int> Executor::Undo() {
@@ -163,7 +163,8 @@ std::vector<int> Executor::Undo() {
 
 void Executor::WriteCheckpoint() {
     if (options.onCheckpoint && !(schedule.Unlocked().Done() && !options.checkpointAtEnd))
-        options.onCheckpoint({ledger.Blocks(schedule.Unlocked()), judge.Save(), ledger.Seconds()});
+        options.onCheckpoint(
+            {ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()});
     nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
 }
 

@@ -55,7 +55,7 @@ class Executor {
 
     LiveSchedule schedule;
     ProgressLedger ledger;
-    BlockJudge judge;
+    BlockCriteria criteria;
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;

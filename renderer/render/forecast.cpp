@@ -15,10 +15,10 @@ constexpr double kCertain = 0.85;
 // A slope that this many points show counts as much as that of the other blocks.
 constexpr double kPointsOfOthers = 4;
 
-double Level(const RuleTrend& rule, const Decision& d) {
+double Level(const RuleTrend& rule, const Decision& d, std::optional<double> noise) {
     double level = 0;
     if (rule.undecided > 0) {
-        level = std::log(*d.noise / rule.undecided);
+        level = std::log(*noise / rule.undecided);
     } else {
         level = std::log(d.value / d.threshold);
         if (rule.kind == RuleTrend::Probability)
@@ -97,11 +97,12 @@ double StopTrend::SppAt(double abscissa) const {
     return 1 / (std::exp(-abscissa) + InverseOf(Reference()));
 }
 
-void StopTrend::Add(int spp, const Decision& decision, double newVariance) {
-    if (rule.undecided > 0 && !decision.noise) return;
+void StopTrend::Add(int spp, const Decision& decision, double newVariance,
+                    std::optional<double> noise) {
+    if (rule.undecided > 0 && !noise) return;
     if (newVariance != variance) bins = {};
     variance = newVariance;
-    const double level = Level(rule, decision);
+    const double level = Level(rule, decision, noise);
     Bin& bin = bins[size_t(PlaceOf(spp))];
     bin.abscissa += float(Abscissa(spp));
     bin.level += float(level);

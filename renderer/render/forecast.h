@@ -8,6 +8,7 @@
 
 #include "renderer/render/schedule.h"
 #include "stopping/rules/criterion.h"
+#include "stopping/rules/trend.h"
 
 namespace lull {
 
@@ -18,11 +19,12 @@ class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
-    // Notes what the criterion said when it looked at the block at `spp` > 0, which increases. A
-    // decision without the noise that is followed (one from a checkpoint) says nothing. `variance`
-    // is what the criterion was told (BlockView); once it is another, what went before is
-    // forgotten.
-    void Add(int spp, const Decision& decision, double variance = 1);
+    // Notes what the criterion said when it checked the block at `spp` > 0, which increases.
+    // `variance` is what the criterion was told (BlockView); once it is another, what went before
+    // is forgotten. `noise` is Criterion::NoiseTold(): where that is followed, a decision without
+    // it (one from a checkpoint) says nothing.
+    void Add(int spp, const Decision& decision, double variance = 1,
+             std::optional<double> noise = {});
 
     // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
     // above `certain` are left out: a network that is as sure as it can be does not say by how
@@ -44,7 +46,7 @@ class StopTrend {
     double Abscissa(double spp) const;
     double SppAt(double abscissa) const;
 
-    int LastSpp() const { return lastSpp; }  // 0: the rule has not looked at the block
+    int LastSpp() const { return lastSpp; }  // 0: the block has not been checked
     double Threshold() const { return threshold; }
     // Returns the spp that the votes in a row still take, at the least.
     int VotesLeft() const;

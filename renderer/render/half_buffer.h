@@ -3,7 +3,7 @@
 #pragma once
 
 #include "renderer/render/schedule.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -17,7 +17,7 @@ struct HalfUse {
 };
 
 // Says whether a rule looks at the half after any of the passes of a block.
-bool LooksAtHalf(const CriterionFactory&, const ScheduleOptions&);
+bool LooksAtHalf(const Rule&, const ScheduleOptions&);
 
 // Says whether the half is to be kept. Throws Error where it is needed, but not wanted.
 bool KeepsHalf(HalfBuffer, const HalfUse&);

@@ -45,13 +45,14 @@ void ProgressLedger::AddPart(int block, double processorSeconds, int64_t partSam
     samples += partSamples;
 }
 
-void ProgressLedger::AddJudgement(int block, int spp, const Judgement& judgement) {
+void ProgressLedger::AddCheck(int block, int spp, const BlockCheck& check) {
     BlockResult& result = results[size_t(block)];
-    result.criterionSeconds += judgement.seconds;
-    if (!judgement.decision.judged) return;
-    result.decisions.push_back({spp, judgement.decision});
+    result.criterionSeconds += check.seconds;
+    if (!check.decision.checked) return;
+    result.decisions.push_back({spp, check.decision, check.noiseTold});
     std::lock_guard lock(mutex);
-    if (!trends.empty()) trends[size_t(block)].Add(spp, judgement.decision, judgement.variance);
+    if (!trends.empty())
+        trends[size_t(block)].Add(spp, check.decision, check.variance, check.noiseTold);
 }
 
 TileEffort ProgressLedger::TakeEffort() {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <mutex>
 
-#include "renderer/render/block_judge_internal.h"
+#include "renderer/render/block_criteria_internal.h"
 #include "renderer/render/forecast.h"
 
 namespace lull {
@@ -29,7 +29,7 @@ class ProgressLedger {
     // has rendered of a block.
     void AddTile(int block, double processorSeconds, const TileEffort&);
     void AddPart(int block, double processorSeconds, int64_t samples);
-    void AddJudgement(int block, int spp, const Judgement&);
+    void AddCheck(int block, int spp, const BlockCheck&);
 
     // Return what was noted here since the last call: of all tiles; of a block's seconds of
     // processors.

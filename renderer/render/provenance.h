@@ -7,7 +7,7 @@
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/trend.h"
 
 namespace lull {
 

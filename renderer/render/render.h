@@ -9,6 +9,7 @@
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
+#include "stopping/rules/trend.h"
 
 namespace lull {
 
@@ -16,6 +17,7 @@ namespace lull {
 struct DecisionRecord {
     int spp;
     Decision decision;
+    std::optional<double> noiseTold = {};  // Criterion::NoiseTold(), for forecasts
 };
 
 struct BlockResult {
@@ -23,7 +25,7 @@ struct BlockResult {
     double seconds = 0;  // of processors, spent on its samples
     // Spent on its criterion and, with a clock, on its noise, the view of the pixels included.
     double criterionSeconds = 0;
-    std::vector<DecisionRecord> decisions;  // those for which the block was looked at
+    std::vector<DecisionRecord> decisions;  // those for which the block was checked
 };
 
 // Holds, together with the film, all that is needed to go on with a render: the pixels will be the

@@ -47,12 +47,14 @@ struct ObserverOptions {
 // stops.
 class BlockObserver final : public Criterion {
   public:
-    // A null rule does not judge the block. `history` must outlive the observer.
+    // A null rule does not check the block. `history` must outlive the observer.
     BlockObserver(std::vector<std::unique_ptr<Criterion>> rules, const ObserverOptions& options,
                   BlockHistory* history);
 
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView& view) override;
+    // Of the first rule.
+    std::optional<double> NoiseTold() const override { return noiseTold; }
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 
@@ -63,6 +65,7 @@ class BlockObserver final : public Criterion {
     std::vector<std::unique_ptr<Criterion>> rules;  // null once they have stopped the block
     ObserverOptions options;
     BlockHistory* history;
+    std::optional<double> noiseTold;
 };
 
 }  // namespace lull

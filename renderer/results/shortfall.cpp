@@ -11,8 +11,13 @@ namespace lull {
 namespace {
 
 bool CountsSamples(const std::string& text) {
-    const Rule* rule = FindRule(text);
+    const RuleEntry* rule = FindRule(text);
     return rule && rule->compares == RuleTrend::Samples;
+}
+
+bool ComparesVisibleNoise(const std::string& text) {
+    const RuleEntry* rule = FindRule(text);
+    return rule && rule->name == "lnoise";
 }
 
 // Returns the noise of blocks that the rule has stopped.
@@ -30,7 +35,7 @@ double StopSpp(const BlockResult& result, const std::string& rule, double noiseA
     if (!result.decisions.empty()) {
         const Decision& last = result.decisions.back().decision;
         if (CountsSamples(rule)) return last.threshold;
-        if (last.visibleNoise) noiseAtStop = last.threshold;
+        if (ComparesVisibleNoise(rule)) noiseAtStop = last.threshold;
     }
     const double ratio = result.block.noise / noiseAtStop;
     return result.block.spp * ratio * ratio;
@@ -65,7 +70,8 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
     std::vector<CappedBlock> capped;
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         const auto& decisions = result.blocks[i].decisions;
-        for (const DecisionRecord& record : decisions) trends[i].Add(record.spp, record.decision);
+        for (const DecisionRecord& record : decisions)
+            trends[i].Add(record.spp, record.decision, 1, record.noiseTold);
         blocks.push_back(result.blocks[i].block);
         Block& block = blocks.back();
         if (!block.IsAtCap() || decisions.empty()) continue;

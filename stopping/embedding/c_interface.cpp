@@ -10,7 +10,7 @@
 #include "stopping/embedding/stopper.h"
 
 struct lull_stopper {
-    lull::Stopper judge;
+    lull::Stopper blocks;
 };
 
 namespace lull {
@@ -70,29 +70,29 @@ lull_status lull_stopper_create(const lull_settings* settings, lull_stopper** st
 void lull_stopper_destroy(lull_stopper* stopper) { delete stopper; }
 
 int lull_stopper_block_count(const lull_stopper* stopper) {
-    return stopper ? int(stopper->judge.Grid().blocks.size()) : 0;
+    return stopper ? int(stopper->blocks.Grid().blocks.size()) : 0;
 }
 
 int lull_stopper_column_count(const lull_stopper* stopper) {
-    return stopper ? stopper->judge.Grid().columns : 0;
+    return stopper ? stopper->blocks.Grid().columns : 0;
 }
 
 lull_status lull_stopper_block_rect(const lull_stopper* stopper, int block, lull_rect* rect) {
     return Guarded([&] {
         NotNull(rect, "rect");
-        *rect = NotNull(stopper, "stopper")->judge.RectOf(block);
+        *rect = NotNull(stopper, "stopper")->blocks.RectOf(block);
     });
 }
 
 int lull_stopper_needs_half(const lull_stopper* stopper) {
-    return stopper && stopper->judge.NeedsHalf() ? 1 : 0;
+    return stopper && stopper->blocks.NeedsHalf() ? 1 : 0;
 }
 
 lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* picture, int spp,
                                  lull_answer* answers) {
     return Guarded([&] {
-        lull::Stopper& judge = NotNull(stopper, "stopper")->judge;
-        const auto all = judge.Observe(*NotNull(picture, "picture"), spp);
+        lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
+        const auto all = blocks.Observe(*NotNull(picture, "picture"), spp);
         if (answers) std::ranges::copy(all, answers);
     });
 }
@@ -100,8 +100,8 @@ lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* pict
 lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
                                        const lull_picture* picture, int spp, lull_answer* answer) {
     return Guarded([&] {
-        lull::Stopper& judge = NotNull(stopper, "stopper")->judge;
-        const lull_answer now = judge.ObserveBlock(block, *NotNull(picture, "picture"), spp);
+        lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
+        const lull_answer now = blocks.ObserveBlock(block, *NotNull(picture, "picture"), spp);
         if (answer) *answer = now;
     });
 }
@@ -109,19 +109,19 @@ lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
 lull_status lull_stopper_answer(const lull_stopper* stopper, int block, lull_answer* answer) {
     return Guarded([&] {
         NotNull(answer, "answer");
-        *answer = NotNull(stopper, "stopper")->judge.Answer(block);
+        *answer = NotNull(stopper, "stopper")->blocks.Answer(block);
     });
 }
 
 int lull_stopper_done(const lull_stopper* stopper) {
     int done = 1;
-    if (stopper) Guarded([&] { done = stopper->judge.Done() ? 1 : 0; });
+    if (stopper) Guarded([&] { done = stopper->blocks.Done() ? 1 : 0; });
     return done;
 }
 
 lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes, size_t* size) {
     return Guarded([&] {
-        const std::vector<std::byte> state = NotNull(stopper, "stopper")->judge.Save();
+        const std::vector<std::byte> state = NotNull(stopper, "stopper")->blocks.Save();
         const size_t room = std::exchange(*NotNull(size, "size"), state.size());
         if (bytes && room < state.size())
             throw std::invalid_argument("the state of the stopper has " +
@@ -133,9 +133,9 @@ lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes, size_t* 
 
 lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_t size) {
     return Guarded([&] {
-        lull::Stopper& judge = NotNull(stopper, "stopper")->judge;
+        lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
         NotNull(bytes, "bytes");
-        judge.Restore({static_cast<const std::byte*>(bytes), size});
+        blocks.Restore({static_cast<const std::byte*>(bytes), size});
     });
 }
 

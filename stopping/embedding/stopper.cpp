@@ -17,12 +17,13 @@
 #include "stopping/embedding/picture.h"
 #include "stopping/network/human_range.h"
 #include "stopping/rules/lnoise.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
 namespace {
 
-constexpr uint32_t stopperTag = 0x31504f53;  // "SOP1"
+constexpr uint32_t stopperTag = 0x32504f53;  // "SOP2"
 constexpr int largestSide = 1 << 16;         // pixels
 constexpr int blockSide = 200;               // of the blocks that people have judged
 
@@ -46,23 +47,23 @@ void CheckSettings(const lull_settings& s) {
     Require(std::isfinite(s.caution) && s.caution >= 0, "caution must be above 0");
 }
 
-CriterionFactory MakeFactory(const lull_settings& s, int blockCount) {
-    const std::string rule = s.rule    ? std::string(s.rule)
+Rule MakeRule(const lull_settings& s, int blockCount) {
+    const std::string text = s.rule    ? std::string(s.rule)
                              : s.model ? "learned:" + std::string(s.model)
                                        : std::string(defaultRule);
     // The HDF5 library, which reads the model, has one thread at a time.
     static std::mutex reading;
     const std::lock_guard lock(reading);
-    return MakeCriterionFactory(rule, {.passSpp = s.pass,
-                                       .blockCount = blockCount,
-                                       .cap = s.cap,
-                                       .models = s.models ? s.models : InstalledModels(),
-                                       .caution = s.caution > 0 ? s.caution : 1});
+    return ParseRule(text, {.passSpp = s.pass,
+                            .blockCount = blockCount,
+                            .cap = s.cap,
+                            .models = s.models ? s.models : InstalledModels(),
+                            .caution = s.caution > 0 ? s.caution : 1});
 }
 
-// Returns the first spp from `spp` on at which a criterion looks at a block; 0 if it never does.
-int NextLook(const Criterion& criterion, int spp) {
-    constexpr int horizon = 10000;  // beyond any spacing of looks
+// Returns the first spp from `spp` on at which a criterion checks a block; 0 if it never does.
+int NextCheck(const Criterion& criterion, int spp) {
+    constexpr int horizon = 10000;  // beyond any spacing of checks
     const int end = int(std::min<int64_t>(int64_t(spp) + horizon, std::numeric_limits<int>::max()));
     for (int s = spp; s < end; ++s)
         if (criterion.Need(s) != ViewNeed::Nothing) return s;
@@ -74,13 +75,13 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
 }
 
 // Says what a saved state belongs to.
-std::vector<std::byte> IdentityOf(const lull_settings& settings, const CriterionFactory& factory,
+std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;
     writer.Put(stopperTag);
     writer.Put(settings.pass);
     writer.Put(settings.cap);
-    const std::string who = factory.rule + " " + factory.checksum;
+    const std::string who = rule.text + " " + rule.checksum;
     writer.Put(uint32_t(who.size()));
     writer.PutAll(std::span(who));
     writer.PutAll(std::span(grid.blocks));
@@ -94,13 +95,13 @@ Stopper::Stopper(const lull_settings& settings) {
     const int side = settings.block > 0 ? settings.block : blockSide;
     grid = CutIntoBlocks(settings.width, settings.height, side);
     const int count = int(grid.blocks.size());
-    factory = MakeFactory(settings, count);
-    identity = IdentityOf(settings, factory, grid);
-    const auto first = MakeJudge(0).criterion;
-    firstLook = NextLook(*first, 1);
-    needsHalf = firstLook > 0 && first->Need(firstLook) >= ViewNeed::MeanAndHalf;
-    for (int i = 0; i < count; ++i) judges.push_back(MakeJudge(i));
-    locks = std::vector<std::mutex>(judges.size());
+    rule = std::make_shared<const Rule>(MakeRule(settings, count));
+    identity = IdentityOf(settings, *rule, grid);
+    const auto first = MakeState(0).criterion;
+    firstCheck = NextCheck(*first, 1);
+    needsHalf = firstCheck > 0 && first->Need(firstCheck) >= ViewNeed::MeanAndHalf;
+    for (int i = 0; i < count; ++i) states.push_back(MakeState(i));
+    locks = std::vector<std::mutex>(states.size());
 }
 
 const lull_rect& Stopper::RectOf(int block) const {
@@ -110,16 +111,17 @@ const lull_rect& Stopper::RectOf(int block) const {
     return grid.blocks[size_t(block)];
 }
 
-Stopper::Judge Stopper::MakeJudge(int block) const {
+Stopper::BlockState Stopper::MakeState(int block) const {
     const lull_rect& rect = grid.blocks[size_t(block)];
     const lull_rect& last = grid.blocks.back();
     const double pixels = double(last.x + last.width) * (last.y + last.height);
-    Judge judge{.criterion = factory.make({block, rect.width * double(rect.height) / pixels})};
-    judge.answer.next_spp = firstLook;
-    judge.answer.probability = factory.trend.kind == RuleTrend::Probability ? 1 : -1;
-    judge.answer.visible_noise = -1;
-    judge.answer.votes_needed = factory.trend.votes;
-    return judge;
+    BlockState state{.criterion =
+                         MakeCriterion(rule, {block, rect.width * double(rect.height) / pixels})};
+    state.answer.next_spp = firstCheck;
+    state.answer.probability = rule->trend.kind == RuleTrend::Probability ? 1 : -1;
+    state.answer.visible_noise = -1;
+    state.answer.votes_needed = rule->trend.votes;
+    return state;
 }
 
 std::vector<std::unique_lock<std::mutex>> Stopper::LockAll() const {
@@ -128,13 +130,13 @@ std::vector<std::unique_lock<std::mutex>> Stopper::LockAll() const {
 
 bool Stopper::Done() const {
     const auto all = LockAll();
-    return std::ranges::all_of(judges, [](const Judge& j) { return j.answer.stop == 1; });
+    return std::ranges::all_of(states, [](const BlockState& s) { return s.answer.stop == 1; });
 }
 
 lull_answer Stopper::Answer(int block) const {
     RectOf(block);
     const std::lock_guard lock(locks[size_t(block)]);
-    return judges[size_t(block)].answer;
+    return states[size_t(block)].answer;
 }
 
 std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) {
@@ -142,17 +144,17 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
     CheckPicture(picture, last.x + last.width, last.y + last.height, needsHalf);
     const auto all = LockAll();
     Require(spp > 0, "a picture needs samples: spp must be above 0");
-    for (const Judge& judge : judges)
-        Require(judge.answer.stop || spp > judge.answer.spp,
+    for (const BlockState& state : states)
+        Require(state.answer.stop || spp > state.answer.spp,
                 "spp must increase: a picture at " + std::to_string(spp) + " spp after one at " +
-                    std::to_string(judge.answer.spp));
+                    std::to_string(state.answer.spp));
     // Isolated: this thread has all locks, and must not take up a task that waits for one.
     tbb::this_task_arena::isolate([&] {
-        ForEachIndex(int(judges.size()),
-                     [&](int i) { Look(i, picture, grid.blocks[size_t(i)], spp); });
+        ForEachIndex(int(states.size()),
+                     [&](int i) { Check(i, picture, grid.blocks[size_t(i)], spp); });
     });
     std::vector<lull_answer> answers;
-    for (const Judge& judge : judges) answers.push_back(judge.answer);
+    for (const BlockState& state : states) answers.push_back(state.answer);
     return answers;
 }
 
@@ -160,42 +162,41 @@ lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int sp
     const lull_rect& rect = RectOf(block);
     CheckPicture(picture, rect.width, rect.height, needsHalf);
     const std::lock_guard lock(locks[size_t(block)]);
-    const lull_answer& answer = judges[size_t(block)].answer;
+    const lull_answer& answer = states[size_t(block)].answer;
     Require(spp > 0, "a picture needs samples: spp must be above 0");
     Require(answer.stop || spp > answer.spp, "spp must increase: block " + std::to_string(block) +
                                                  " was shown at " + std::to_string(answer.spp) +
                                                  " spp, and now at " + std::to_string(spp));
-    Look(block, picture, {0, 0, rect.width, rect.height}, spp);
+    Check(block, picture, {0, 0, rect.width, rect.height}, spp);
     return answer;
 }
 
-void Stopper::Look(int block, const lull_picture& picture, const lull_rect& part, int spp) {
-    Judge& judge = judges[size_t(block)];
-    lull_answer& answer = judge.answer;
-    answer.judged = 0;
+void Stopper::Check(int block, const lull_picture& picture, const lull_rect& part, int spp) {
+    BlockState& state = states[size_t(block)];
+    lull_answer& answer = state.answer;
+    answer.checked = 0;
     if (answer.stop) return;
     std::vector<float> mean, half;
-    const ViewNeed need = judge.criterion->Need(spp);
+    const ViewNeed need = state.criterion->Need(spp);
     if (need != ViewNeed::Nothing) {
         mean = ReadPixels(picture, picture.mean, part);
         if (picture.half) half = ReadPixels(picture, picture.half, part);
     }
     const BlockView view{part.width, part.height, spp, mean, half};
-    const Decision decision = judge.criterion->Observe(view);
+    const Decision decision = state.criterion->Observe(view);
     answer.stop = decision.stop;
-    answer.judged = decision.judged;
+    answer.checked = decision.checked;
     answer.spp = spp;
     answer.votes = decision.votes;
     answer.value = decision.value;
     answer.threshold = decision.threshold;
-    if (factory.trend.kind == RuleTrend::Probability) answer.probability = decision.value;
-    if (decision.visibleNoise || !half.empty())
-        answer.visible_noise = decision.visibleNoise ? *decision.visibleNoise : VisibleNoise(view);
+    if (rule->trend.kind == RuleTrend::Probability) answer.probability = decision.value;
+    if (!half.empty()) answer.visible_noise = VisibleNoise(view);
     answer.next_spp = answer.stop || spp == std::numeric_limits<int>::max()
                           ? 0
-                          : NextLook(*judge.criterion, spp + 1);
-    if (answer.stop && !factory.logRatios.empty()) {
-        const HumanRange people = RangeOfPeople(spp, true, factory.logRatios);
+                          : NextCheck(*state.criterion, spp + 1);
+    if (answer.stop && !rule->logRatios.empty()) {
+        const HumanRange people = RangeOfPeople(spp, true, rule->logRatios);
         answer.people_low = people.low;
         answer.people_high = people.high.value_or(0);
     }
@@ -206,11 +207,11 @@ std::vector<std::byte> Stopper::Save() const {
     const auto all = LockAll();
     StateWriter writer;
     writer.bytes = identity;
-    for (const Judge& judge : judges) {
-        const std::vector<std::byte> state = judge.criterion->Save();
-        writer.Put(judge.answer);
-        writer.Put(uint32_t(state.size()));
-        writer.PutAll(std::span(state));
+    for (const BlockState& state : states) {
+        const std::vector<std::byte> own = state.criterion->Save();
+        writer.Put(state.answer);
+        writer.Put(uint32_t(own.size()));
+        writer.PutAll(std::span(own));
     }
     writer.Put(Checksum(writer.bytes));
     return std::move(writer.bytes);
@@ -223,9 +224,9 @@ void Stopper::Restore(std::span<const std::byte> state) {
     if (end < identity.size() || !std::ranges::equal(state.first(identity.size()), identity))
         throw std::runtime_error("the saved state belongs to a stopper with other settings");
     StateReader reader(state.subspan(identity.size(), end - identity.size()));
-    std::vector<Judge> restored;
-    for (int i = 0; i < int(judges.size()); ++i) {
-        restored.push_back(MakeJudge(i));
+    std::vector<BlockState> restored;
+    for (int i = 0; i < int(states.size()); ++i) {
+        restored.push_back(MakeState(i));
         restored.back().answer = reader.Get<lull_answer>();
         std::vector<std::byte> own(std::min<size_t>(reader.Get<uint32_t>(), reader.Left()));
         reader.GetAll(std::span(own));
@@ -233,7 +234,7 @@ void Stopper::Restore(std::span<const std::byte> state) {
     }
     reader.Finish();
     const auto all = LockAll();
-    judges = std::move(restored);
+    states = std::move(restored);
 }
 
 }  // namespace lull

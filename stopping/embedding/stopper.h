@@ -1,5 +1,5 @@
-// Judges all blocks of a picture, behind the C interface; lull/stopping.h describes the functions.
-// Can be used by several threads at once.
+// Decides on all blocks of a picture, behind the C interface; lull/stopping.h describes the
+// functions. Can be used by several threads at once.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "stopping/embedding/grid.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -35,21 +35,21 @@ class Stopper {
     void Restore(std::span<const std::byte> state);
 
   private:
-    struct Judge {
+    struct BlockState {
         std::unique_ptr<Criterion> criterion;
         lull_answer answer = {};
     };
 
-    Judge MakeJudge(int block) const;
+    BlockState MakeState(int block) const;
     std::vector<std::unique_lock<std::mutex>> LockAll() const;
-    void Look(int block, const lull_picture& picture, const lull_rect& part, int spp);
+    void Check(int block, const lull_picture& picture, const lull_rect& part, int spp);
 
-    CriterionFactory factory;
+    std::shared_ptr<const Rule> rule;
     BlockGrid grid;
     std::vector<std::byte> identity;  // of its saved states
-    int firstLook = 0;                // the least spp that is looked at; 0: none
+    int firstCheck = 0;               // the least spp that is checked; 0: none
     bool needsHalf = false;
-    std::vector<Judge> judges;
+    std::vector<BlockState> states;
     mutable std::vector<std::mutex> locks;  // one for each block
 };
 

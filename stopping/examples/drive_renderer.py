@@ -20,7 +20,7 @@ def report(spp, answer):
     print(f"{spp:6} spp: {share:4.0%} of {answer.stopped.size} blocks have stopped{noisy}")
 
 
-def judge_pictures(files, step, **settings):
+def watch_pictures(files, step, **settings):
     """Returns the spp at which each block may stop, 0 where none of the pictures is good enough."""
     from PIL import Image
     stopper, spp = None, 0
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--model", help="entropy (default), noise, paper or a file")
     options = parser.parse_args()
     if options.pictures:
-        print(judge_pictures(options.pictures, options.step, model=options.model))
+        print(watch_pictures(options.pictures, options.step, model=options.model))
     else:
         print(drive(model=options.model)[1])
 

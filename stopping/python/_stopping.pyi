@@ -6,7 +6,7 @@ __version__: str
 
 class BlockAnswer:
     stop: bool
-    judged: bool
+    checked: bool
     spp: int
     next_spp: int
     votes: int
@@ -22,7 +22,7 @@ class BlockAnswer:
 class Answer:
     stop: bool
     stopped: np.ndarray
-    judged: np.ndarray
+    checked: np.ndarray
     spp: np.ndarray
     next_spp: np.ndarray
     votes: np.ndarray

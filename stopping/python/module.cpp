@@ -60,12 +60,12 @@ struct Answer {
 class Spacing {
   public:
     // Returns the samples of the last three pictures if the third has come when it was asked for,
-    // could still not be judged, and each has so many times the samples of the one before; ""
+    // could still not be checked, and each has so many times the samples of the one before; ""
     // otherwise.
     std::string Note(const lull_answer& answer) {
         constexpr double kFar = 1.6;
         const bool isFar = before > 0 && last >= kFar * before && answer.spp >= kFar * last;
-        const bool isMissed = !answer.stop && !answer.judged && answer.spp >= awaited;
+        const bool isMissed = !answer.stop && !answer.checked && answer.spp >= awaited;
         const std::string pictures = std::to_string(before) + ", " + std::to_string(last) +
                                      " and " + std::to_string(answer.spp);
         before = last;
@@ -244,7 +244,7 @@ PYBIND11_MODULE(_stopping, module) {
 
     py::class_<lull_answer>(module, "BlockAnswer", "How it stands with a block.")
         .def_property_readonly("stop", [](const lull_answer& a) { return a.stop == 1; })
-        .def_property_readonly("judged", [](const lull_answer& a) { return a.judged == 1; })
+        .def_property_readonly("checked", [](const lull_answer& a) { return a.checked == 1; })
         .def_readonly("spp", &lull_answer::spp)
         .def_readonly("next_spp", &lull_answer::next_spp)
         .def_readonly("votes", &lull_answer::votes)
@@ -265,8 +265,8 @@ PYBIND11_MODULE(_stopping, module) {
         .def_property_readonly("stop", &Answer::Stop, "Whether all blocks have stopped.")
         .def_property_readonly("stopped",
                                [](const Answer& a) { return a.Of<bool>(&lull_answer::stop); })
-        .def_property_readonly("judged",
-                               [](const Answer& a) { return a.Of<bool>(&lull_answer::judged); })
+        .def_property_readonly("checked",
+                               [](const Answer& a) { return a.Of<bool>(&lull_answer::checked); })
         .def_property_readonly("spp", [](const Answer& a) { return a.Of<int>(&lull_answer::spp); })
         .def_property_readonly("next_spp",
                                [](const Answer& a) { return a.Of<int>(&lull_answer::next_spp); })
@@ -288,7 +288,8 @@ PYBIND11_MODULE(_stopping, module) {
 
     py::class_<Stopper>(
         module, "Stopper",
-        "Judges the blocks of a picture of width x height pixels, from its first samples to its\n"
+        "Decides on the blocks of a picture of width x height pixels, from its first samples to "
+        "its\n"
         "last. `model` is the name of an installed model ('entropy', the default; 'noise', "
         "'paper')\n"
         "or a file; `rule` any other rule of `lull render --stop`; `models` the folder of "

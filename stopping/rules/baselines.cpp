@@ -15,7 +15,9 @@ namespace {
 
 constexpr int cyclesSpacing = 20;  // spp between the tests of the rule `cycles`
 constexpr int luxMinimumSpp = 32;
-constexpr uint32_t cyclesTag = 0x31435943;  // "CYC1"
+constexpr uint32_t dammertzTag = 0x315a4d44;  // "DMZ1"
+constexpr uint32_t cyclesTag = 0x32435943;    // "CYC2"
+constexpr uint32_t luxTileTag = 0x3158554c;   // "LUX1"
 
 double Finite(float x) { return std::isfinite(x) ? x : 0; }
 
@@ -30,35 +32,14 @@ float DisplayValue(float x) {
     return x > 0 ? std::pow(std::min(x, 1.f), 1 / 2.2f) : 0;  // 0 for NaN as well
 }
 
-class FixedCriterion final : public Criterion {
-  public:
-    explicit FixedCriterion(int spp) : target(spp) {}
-
-    ViewNeed Need(int) const override { return ViewNeed::Nothing; }
-    Decision Observe(const BlockView& view) override {
-        CheckView(view, ViewNeed::Nothing);
-        return {.stop = view.spp >= target,
-                .judged = true,
-                .value = double(view.spp),
-                .threshold = double(target)};
-    }
-
-  private:
-    int target;
-};
-
 // Remembers which pixels are active, and makes of the errors of all of them the largest of those.
-class CyclesGauge final : public Gauge {
+class CyclesStatistic final : public Statistic {
   public:
-    explicit CyclesGauge(double threshold)
-        : threshold(threshold), minimumSpp(CyclesMinimumSpp(threshold)) {}
-
-    // Cycles tests after the sample of 0-based index k > minimum, hence the 1.
-    bool Looks(int spp) const override { return spp - 1 > minimumSpp && spp % cyclesSpacing == 0; }
+    explicit CyclesStatistic(double threshold) : threshold(threshold) {}
 
     // Tests the active pixels. That none has failed means that all errors were below
     // 5 * threshold, so that the largest decides.
-    bool Add(int, Signals signals) override {
+    std::optional<double> Add(int, Signals signals) override {
         const PixelErrors& pixels = std::get<PixelErrors>(signals);
         if (active.empty()) {
             width = pixels.width;
@@ -66,27 +47,24 @@ class CyclesGauge final : public Gauge {
         }
         if (active.size() != pixels.errors.size() || width != pixels.width)
             throw std::invalid_argument("the block has another size than before");
-        value = 0;
+        double largest = 0;
         for (size_t i = 0; i < active.size(); ++i) {
             if (!active[i]) continue;
             active[i] = !(pixels.errors[i] < threshold);
-            value = std::max(value, pixels.errors[i]);
+            largest = std::max(largest, pixels.errors[i]);
         }
         Dilate();
-        return true;
+        return largest;
     }
 
     void Save(StateWriter* writer) const override {
-        writer->Put(value);
         writer->Put(int32_t(width));
         writer->PutAll(std::span(active));
     }
     void Restore(StateReader* reader) override {
-        value = reader->Get<double>();
         width = reader->Get<int32_t>();
         active.resize(reader->Left());
         reader->GetAll(std::span(active));
-        if (std::isnan(value)) throw std::runtime_error("the saved state of cycles is damaged");
     }
 
   private:
@@ -106,10 +84,16 @@ class CyclesGauge final : public Gauge {
     }
 
     double threshold;
-    int minimumSpp;
     int width = 0;                // of the block, once it is known
     std::vector<uint8_t> active;  // 0 or 1 for each pixel; empty before the first test
 };
+
+// Returns the checks of Cycles: every 20 spp, after the sample of 0-based index k > minimum.
+Checks CyclesChecks(double threshold) {
+    const int64_t least = int64_t(CyclesMinimumSpp(threshold)) + 2;
+    return {.first = int((least + cyclesSpacing - 1) / cyclesSpacing * cyclesSpacing),
+            .every = cyclesSpacing};
+}
 
 // Reads one number of the block.
 std::function<Signals(int, const RecordedValues&)> RecordedNumber(const char* channel) {
@@ -120,7 +104,9 @@ std::function<Signals(int, const RecordedValues&)> RecordedNumber(const char* ch
 
 }  // namespace
 
-std::unique_ptr<Criterion> MakeFixed(int spp) { return std::make_unique<FixedCriterion>(spp); }
+Rule FixedRule(int spp) {
+    return CountingRule([spp](const BlockInfo&) { return spp; });
+}
 
 double DammertzError(const BlockView& view) {
     CheckView(view, ViewNeed::MeanAndHalf);
@@ -132,14 +118,14 @@ double DammertzError(const BlockView& view) {
     return 3 * sum / double(view.mean.size());
 }
 
-VotingRule DammertzRule(double threshold, bool byArea) {
-    return {.threshold = threshold,
-            .measure = [](const BlockView& view, const BlockInfo&) { return DammertzError(view); },
-            .recall = byArea ? nullptr : RecordedNumber("dammertz"),
-            .makeGauge =
-                [byArea](const BlockInfo& block) {
-                    return MakeMeasuredGauge(byArea ? std::sqrt(block.areaFraction) : 1);
-                }};
+Rule DammertzRule(double threshold, bool byArea) {
+    return {.tag = dammertzTag,
+            .threshold = threshold,
+            .measure =
+                [byArea](const BlockView& view, const BlockInfo& block) {
+                    return DammertzError(view) * (byArea ? std::sqrt(block.areaFraction) : 1);
+                },
+            .recall = byArea ? nullptr : RecordedNumber("dammertz")};
 }
 
 double CyclesPixelError(const float* mean, const float* halfMean) {
@@ -160,12 +146,12 @@ PixelErrors CyclesErrors(const BlockView& view) {
     return pixels;
 }
 
-VotingRule CyclesRule(double threshold) {
-    return {.threshold = threshold,
-            .tag = cyclesTag,
+Rule CyclesRule(double threshold) {
+    return {.tag = cyclesTag,
+            .checks = CyclesChecks(threshold),
+            .threshold = threshold,
             .measure = [](const BlockView& view, const BlockInfo&) { return CyclesErrors(view); },
-            .makeGauge =
-                [threshold](const BlockInfo&) { return std::make_unique<CyclesGauge>(threshold); }};
+            .makeStatistic = [threshold] { return std::make_unique<CyclesStatistic>(threshold); }};
 }
 
 double LuxTileError(const BlockView& view) {
@@ -177,38 +163,32 @@ double LuxTileError(const BlockView& view) {
     return largest;
 }
 
-VotingRule LuxTileRule(double threshold) {
-    return {.threshold = threshold,
+Rule LuxTileRule(double threshold) {
+    return {.tag = luxTileTag,
+            .checks = {.first = luxMinimumSpp},
+            .threshold = threshold,
             .measure = [](const BlockView& view, const BlockInfo&) { return LuxTileError(view); },
-            .recall = RecordedNumber("luxtile"),
-            .makeGauge =
-                [](const BlockInfo&) { return MakeMeasuredGauge(1, {.firstSpp = luxMinimumSpp}); }};
+            .recall = RecordedNumber("luxtile")};
 }
 
-CriterionFactory CountingFactory(std::function<int(const BlockInfo&)> stopAt) {
-    return {.make = [stopAt](const BlockInfo& block) { return MakeFixed(stopAt(block)); },
-            .stopAt = stopAt};
+Rule ReadFixed(const std::string& argument, const RuleContext&) {
+    return FixedRule(ParsePositive<int>(argument, "a number of samples per pixel, at least 1"));
 }
 
-CriterionFactory ReadFixed(const std::string& argument, const RuleContext&) {
-    const int spp = ParsePositive<int>(argument, "a number of samples per pixel, at least 1");
-    return CountingFactory([spp](const BlockInfo&) { return spp; });
-}
-
-CriterionFactory ReadDammertz(const std::string& argument, const RuleContext&) {
+Rule ReadDammertz(const std::string& argument, const RuleContext&) {
     const std::string suffix = ":area";
     const bool byArea = argument.ends_with(suffix);
-    return FactoryOf(DammertzRule(
+    return DammertzRule(
         ParseThreshold(byArea ? argument.substr(0, argument.size() - suffix.size()) : argument),
-        byArea));
+        byArea);
 }
 
-CriterionFactory ReadCycles(const std::string& argument, const RuleContext&) {
-    return FactoryOf(CyclesRule(ParseThreshold(argument)));
+Rule ReadCycles(const std::string& argument, const RuleContext&) {
+    return CyclesRule(ParseThreshold(argument));
 }
 
-CriterionFactory ReadLuxTile(const std::string& argument, const RuleContext&) {
-    return FactoryOf(LuxTileRule(ParseThreshold(argument)));
+Rule ReadLuxTile(const std::string& argument, const RuleContext&) {
+    return LuxTileRule(ParseThreshold(argument));
 }
 
 }  // namespace lull

@@ -7,23 +7,19 @@
 #pragma once
 
 #include <array>
-#include <memory>
 
-#include "stopping/rules/voting.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
-// Stops a block at `spp` samples per pixel, or the end of the pass that reaches it.
-std::unique_ptr<Criterion> MakeFixed(int spp);
-
-// Makes such criteria, each for the spp that `stopAt` says.
-CriterionFactory CountingFactory(std::function<int(const BlockInfo&)> stopAt);
+// Stops blocks at `spp` samples per pixel, or the end of the pass that reaches it.
+Rule FixedRule(int spp);
 
 // Read the arguments of rules: N; T or T:area; T; T.
-CriterionFactory ReadFixed(const std::string& argument, const RuleContext& context);
-CriterionFactory ReadDammertz(const std::string& argument, const RuleContext& context);
-CriterionFactory ReadCycles(const std::string& argument, const RuleContext& context);
-CriterionFactory ReadLuxTile(const std::string& argument, const RuleContext& context);
+Rule ReadFixed(const std::string& argument, const RuleContext& context);
+Rule ReadDammertz(const std::string& argument, const RuleContext& context);
+Rule ReadCycles(const std::string& argument, const RuleContext& context);
+Rule ReadLuxTile(const std::string& argument, const RuleContext& context);
 
 // Returns the mean over the block of d / sqrt(s), where the term is 0 if s <= 0 (Dammertz,
 // Hanika, Keller, Lensch: A Hierarchical Automatic Stopping Condition for Monte Carlo Global
@@ -34,7 +30,7 @@ double DammertzError(const BlockView& view);
 // sqrt(block area / image area), as in the paper, whose recursive splitting so compares blocks of
 // different sizes. Our blocks are not split, and with that factor the same noise would be tolerated
 // more in a larger image. (Recordings do not know how large it was.)
-VotingRule DammertzRule(double threshold, bool byArea = false);
+Rule DammertzRule(double threshold, bool byArea = false);
 
 // Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
 // the square root below 1 and the identity above. Both point to three components.
@@ -49,7 +45,7 @@ int CyclesMinimumSpp(double threshold);
 // safe, as it has 75 % relative spread). The block stops when none is active. The decision's
 // value is the largest error of the pixels tested / 5. It remembers pixels, so that recordings have
 // only where it stopped, at kCyclesThresholds.
-VotingRule CyclesRule(double threshold);
+Rule CyclesRule(double threshold);
 
 // Returns what it tests: CyclesPixelError() / 5.
 PixelErrors CyclesErrors(const BlockView& view);
@@ -68,6 +64,6 @@ double LuxTileError(const BlockView& view);
 
 // Stops a block when LuxTileError() < threshold, from 32 spp on. LuxCore tests every second pass,
 // as its halves are the odd and the even passes; ours are balanced after every pass.
-VotingRule LuxTileRule(double threshold);
+Rule LuxTileRule(double threshold);
 
 }  // namespace lull

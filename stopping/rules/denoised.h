@@ -1,7 +1,7 @@
-// Judges blocks by the error that is still visible once they are denoised.
+// Stops blocks by the error that is still visible once they are denoised.
 #pragma once
 
-#include "stopping/rules/voting.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -9,10 +9,10 @@ namespace lull {
 // from nothing but its own samples, in lightness, as a bound that is seldom exceeded.
 inline constexpr const char* denoisedRuleName = "denoised";
 
-// Reads the threshold T, which the context's caution divides. The block is looked at first at 20
+// Reads the threshold T, which the context's caution divides. The block is checked first at 20
 // spp and then wherever the spp have grown by a quarter, as denoising it takes as long as some
 // samples; it stops as soon as the bound is below T. Throws std::invalid_argument
 // for a bad threshold, and where the program does not measure this.
-CriterionFactory ReadDenoised(const std::string& argument, const RuleContext& context);
+Rule ReadDenoised(const std::string& argument, const RuleContext& context);
 
 }  // namespace lull

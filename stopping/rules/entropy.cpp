@@ -11,44 +11,29 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t entropyTag = 0x31504445;  // "EDP1"
+constexpr uint32_t entropyTag = 0x32504445;  // "EDP2"
+constexpr int checkSpacing = 40;             // spp
 
-class EntropyGauge final : public Gauge {
+class EntropyStatistic final : public Statistic {
   public:
-    EntropyGauge(const NoiseVisibility& visibility, int passSpp)
-        : visibility(visibility), passSpp(passSpp) {}
-
-    bool Looks(int spp) const override {
-        return passSpp == 0 ? looks.Looks(spp) : EntropyRuleLooks(spp, passSpp);
-    }
+    explicit EntropyStatistic(const NoiseVisibility& visibility) : visibility(visibility) {}
 
     // There is a number where there is an earlier state to compare with.
-    bool Add(int spp, Signals signals) override {
-        looks.last = spp;
+    std::optional<double> Add(int spp, Signals signals) override {
         const BlockMeasures& measures = std::get<BlockMeasures>(signals);
         const auto visible = AddVisible(spp, measures.Of(Feature::H), measures.lightness,
                                         VisibilityWith(measures.variance, visibility), &history);
-        if (visible) value = MeanVisible(*visible);
-        return visible.has_value();
+        if (!visible) return {};
+        return MeanVisible(*visible);
     }
 
-    void Save(StateWriter* writer) const override {
-        writer->Put(value);
-        history.Save(writer);
-        if (passSpp == 0) writer->Put(int32_t(looks.last));
-    }
+    void Save(StateWriter* writer) const override { history.Save(writer); }
     void Restore(StateReader* reader) override {
-        value = reader->Get<double>();
-        if (!(value >= 0) || !std::isfinite(value))
-            throw std::runtime_error("the saved state of the rule entropy is damaged");
         history.Restore(reader, size_t(kEntropySubBlocks));
-        if (passSpp == 0) looks.Restore(reader);
     }
 
   private:
     NoiseVisibility visibility;
-    int passSpp;
-    FreeLooks looks;  // where passSpp is 0
     DropHistory history;
 };
 
@@ -59,9 +44,9 @@ ModelSettings MeasuredSettings() {
 
 }  // namespace
 
-bool EntropyRuleLooks(int spp, int passSpp) {
-    const int spacing = (40 + passSpp - 1) / passSpp * passSpp;
-    return spp >= passSpp && (spp - passSpp) % spacing == 0;
+Checks EntropyChecks(int passSpp) {
+    if (passSpp == 0) return {.every = checkSpacing, .any = true};
+    return {.first = passSpp, .every = (checkSpacing + passSpp - 1) / passSpp * passSpp};
 }
 
 double MeanVisible(std::span<const double> visibleDrops) {
@@ -70,31 +55,28 @@ double MeanVisible(std::span<const double> visibleDrops) {
     return sum / double(visibleDrops.size());
 }
 
-VotingRule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp) {
-    return {
-        .threshold = threshold,
-        .votes = VoteCounter().needed,
-        .tag = entropyTag,
-        .need = ViewNeed::Mean,
-        .measure = [settings = MeasuredSettings()](
-                       const BlockView& view,
-                       const BlockInfo&) { return MeasureBlock(view, settings); },
-        .recall =
-            [settings = MeasuredSettings()](int spp, const RecordedValues& values) {
-                return RecordedMeasures(spp, values, settings);
-            },
-        .makeGauge =
-            [=](const BlockInfo&) { return std::make_unique<EntropyGauge>(visibility, passSpp); }};
+Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp) {
+    return {.tag = entropyTag,
+            .checks = EntropyChecks(passSpp),
+            .threshold = threshold,
+            .votes = 3,
+            .need = ViewNeed::Mean,
+            .measure = [settings = MeasuredSettings()](
+                           const BlockView& view,
+                           const BlockInfo&) { return MeasureBlock(view, settings); },
+            .recall =
+                [settings = MeasuredSettings()](int spp, const RecordedValues& values) {
+                    return RecordedMeasures(spp, values, settings);
+                },
+            .makeStatistic = [=] { return std::make_unique<EntropyStatistic>(visibility); }};
 }
 
-CriterionFactory ReadEntropy(const std::string& argument, const RuleContext& context) {
+Rule ReadEntropy(const std::string& argument, const RuleContext& context) {
     const double threshold = ParseThreshold(argument) / context.caution;
     const NoiseVisibility visibility = VisibilityAt(context.cap, context.visibility);
-    CriterionFactory factory = FactoryOf(EntropyRule(threshold, visibility, context.passSpp));
-    const int votes = factory.trend.votes;
-    factory.trend = TrendOfFalls(visibility);
-    factory.trend.votes = votes;
-    return factory;
+    Rule rule = EntropyRule(threshold, visibility, context.passSpp);
+    rule.trend = TrendOfFalls(visibility);
+    return rule;
 }
 
 }  // namespace lull

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,62 +17,50 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t learnedTag = 0x314e524c;  // "LRN1"
+constexpr uint32_t learnedTag = 0x324e524c;  // "LRN2"
 
-VoteSchedule MakeSchedule(const ModelSettings& settings, int passSpp) {
-    if (passSpp == 0) passSpp = settings.n;
-    return {.firstSpp = passSpp,
-            .n = settings.n,
-            .voteSpacing = settings.voteSpacing > 0 ? settings.voteSpacing : passSpp};
+// Says when a model votes.
+Checks VotesOf(const ModelSettings& settings, int passSpp) {
+    if (passSpp == 0 && settings.spacing == Spacing::Geometric)
+        return {.every = settings.n, .any = true};
+    const int first = passSpp > 0 ? passSpp : settings.n;
+    return {.first = first, .every = settings.voteSpacing > 0 ? settings.voteSpacing : first};
 }
 
-class LearnedGauge final : public Gauge {
-  public:
-    LearnedGauge(std::shared_ptr<const Model> model, int passSpp)
-        : model(std::move(model)),
-          schedule(MakeSchedule(this->model->settings, passSpp)),
-          isFree(passSpp == 0 && this->model->settings.spacing == Spacing::Geometric),
-          looksAtNoiseOnly(LooksAtNoiseOnly(this->model->settings)),
-          looks{.spacing = this->model->settings.n},
-          memory(this->model->settings) {
-        value = 1;  // noisy until there is a vote
-    }
+// Says when it checks a block, also for the steps of windows between which there is no vote.
+Checks ChecksOf(const ModelSettings& settings, int passSpp) {
+    Checks checks = VotesOf(settings, passSpp);
+    checks.every = std::gcd(checks.every, settings.n);
+    return checks;
+}
 
-    bool Looks(int spp) const override { return isFree ? looks.Looks(spp) : schedule.Records(spp); }
+class LearnedStatistic final : public Statistic {
+  public:
+    LearnedStatistic(std::shared_ptr<const Model> model, int passSpp)
+        : model(std::move(model)),
+          votes(VotesOf(this->model->settings, passSpp)),
+          isToldNoiseOnly(LooksAtNoiseOnly(this->model->settings)),
+          memory(this->model->settings) {}
 
     // There is a number if a vote is due at this spp and the window is full.
-    bool Add(int spp, Signals signals) override {
-        looks.last = spp;
+    std::optional<double> Add(int spp, Signals signals) override {
         memory.Add(std::get<BlockMeasures>(std::move(signals)));
-        if (!isFree && !schedule.Votes(spp)) return false;
+        if (!votes.AreDue(spp)) return {};
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
-        if (!window) return false;
-        value = NoisyProbability(model->network, *window);
-        if (looksAtNoiseOnly)
+        if (!window) return {};
+        if (isToldNoiseOnly)
             noise = NoiseOfInput((*window)(0, window->cols() - 1), model->settings);
-        return true;
+        return NoisyProbability(model->network, *window);
     }
     std::optional<double> Noise() const override { return noise; }
 
-    void Save(StateWriter* writer) const override {
-        writer->Put(value);
-        memory.Save(writer);
-        if (isFree) writer->Put(int32_t(looks.last));
-    }
-    void Restore(StateReader* reader) override {
-        value = reader->Get<double>();
-        if (!(value >= 0 && value <= 1))
-            throw std::runtime_error("the saved state of a learned rule is damaged");
-        memory.Restore(reader);
-        if (isFree) looks.Restore(reader);
-    }
+    void Save(StateWriter* writer) const override { memory.Save(writer); }
+    void Restore(StateReader* reader) override { memory.Restore(reader); }
 
   private:
     std::shared_ptr<const Model> model;
-    VoteSchedule schedule;
-    bool isFree;  // states come at any spp
-    bool looksAtNoiseOnly;
-    FreeLooks looks;
+    Checks votes;
+    bool isToldNoiseOnly;
     BlockMemory memory;
     std::optional<double> noise;
 };
@@ -107,11 +96,12 @@ double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
     return std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 1;
 }
 
-VotingRule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
+Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
     CheckFits(*model, passSpp);
-    return {.threshold = 0.5,
+    return {.tag = learnedTag,
+            .checks = ChecksOf(model->settings, passSpp),
+            .threshold = 0.5,
             .votes = model->settings.votes,
-            .tag = learnedTag,
             .need = NeedOf(model->settings),
             .measure = [model](const BlockView& view,
                                const BlockInfo&) { return MeasureBlock(view, model->settings); },
@@ -119,8 +109,8 @@ VotingRule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
                 [model](int spp, const RecordedValues& values) {
                     return RecordedMeasures(spp, values, model->settings);
                 },
-            .makeGauge =
-                [=](const BlockInfo&) { return std::make_unique<LearnedGauge>(model, passSpp); },
+            .makeStatistic = [=] { return std::make_unique<LearnedStatistic>(model, passSpp); },
+            .valueBefore = 1,  // noisy until there is a vote
             .spacing = model->settings.n};
 }
 
@@ -153,22 +143,22 @@ Model ReadModelFor(const std::string& path, const RuleContext& context) {
     return model;
 }
 
-CriterionFactory ReadLearned(const std::string& argument, const RuleContext& context) {
+Rule ReadLearned(const std::string& argument, const RuleContext& context) {
     const std::string path = ModelPath(argument, context.models);
     const auto model = std::make_shared<const Model>(ReadModelFor(path, context));
     // A model that does not fit is an error before anything is rendered.
-    CriterionFactory factory;
+    Rule rule;
     try {
-        factory = FactoryOf(LearnedRule(model, context.passSpp));
+        rule = LearnedRule(model, context.passSpp);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(path + ": " + error.what());
     }
     // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
-    factory.logRatios = model->logRatios;
-    for (double& ratio : factory.logRatios) ratio -= 2 * std::log(context.caution);
-    factory.checksum = model->checksum;
-    factory.trend = TrendOf(*model);
-    return factory;
+    rule.logRatios = model->logRatios;
+    for (double& ratio : rule.logRatios) ratio -= 2 * std::log(context.caution);
+    rule.checksum = model->checksum;
+    rule.trend = TrendOf(*model);
+    return rule;
 }
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Judges blocks by a network on the history of what an observer sees of them: lull's own rule.
+// Stops blocks by a network on the history of what an observer sees of them: lull's own rule.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,7 @@
 
 #include "stopping/features/window.h"
 #include "stopping/network/model_file.h"
-#include "stopping/rules/voting.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -18,13 +18,16 @@ double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 // as many noiseless votes in a row as the model asks for. Throws std::invalid_argument if the
 // network does not fit its settings or has more than one output, or if the spp of the model
 // (n, vote_spacing) are no multiples of passSpp, so that no pass would end there. With a passSpp of
-// 0 states may come at any spp: where the steps of a window are geometric, the model looks at
-// whatever comes n spp or more after its last look and votes; where they are fixed, it looks at
+// 0 states may come at any spp: where the steps of a window are geometric, the model checks
+// whatever comes n spp or more after its last check and votes; where they are fixed, it checks
 // multiples of n.
-VotingRule LearnedRule(std::shared_ptr<const Model> model, int passSpp);
+Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp);
+
+// The model where none is named.
+inline constexpr const char* defaultModelName = "entropy";
 
 // Reads the name or the file of a model.
-CriterionFactory ReadLearned(const std::string& argument, const RuleContext& context);
+Rule ReadLearned(const std::string& argument, const RuleContext& context);
 
 // Returns the file of the model that `learned:ARGUMENT` names: one that ends in .h5 or is there, or
 // NAME.h5 in the folder of installed models. Throws std::runtime_error naming those that there are.

@@ -10,7 +10,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t lightnessNoiseTag = 0x314e534c;  // "LSN1"
+constexpr uint32_t lightnessNoiseTag = 0x324e534c;  // "LSN2"
 constexpr int subBlocks = 100;
 
 }  // namespace
@@ -26,20 +26,18 @@ double VisibleNoise(const BlockView& view) {
     return PooledRms(SubBlockStatistics(noise, view.width, view.height, subBlocks).maskedNoise);
 }
 
-VotingRule LightnessNoiseRule(double threshold) {
-    return {.threshold = threshold,
-            .votes = VoteCounter().needed,
-            .tag = lightnessNoiseTag,
+Rule LightnessNoiseRule(double threshold) {
+    return {.tag = lightnessNoiseTag,
+            .threshold = threshold,
+            .votes = 3,
             .measure = [](const BlockView& view, const BlockInfo&) { return VisibleNoise(view); },
             .recall = [](int, const RecordedValues& values) -> Signals {
                 return PooledRms(values("masked_noise"));
-            },
-            .makeGauge = [](const BlockInfo&) { return MakeMeasuredGauge(); },
-            .isVisibleNoise = true};
+            }};
 }
 
-CriterionFactory ReadLightnessNoise(const std::string& argument, const RuleContext& context) {
-    return FactoryOf(LightnessNoiseRule(ParseThreshold(argument) / context.caution));
+Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context) {
+    return LightnessNoiseRule(ParseThreshold(argument) / context.caution);
 }
 
 }  // namespace lull

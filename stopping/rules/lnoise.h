@@ -1,9 +1,9 @@
-// Judges blocks by the noise that an observer can see in their lightness.
+// Stops blocks by the noise that an observer can see in their lightness.
 #pragma once
 
 #include <span>
 
-#include "stopping/rules/voting.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -19,9 +19,9 @@ double VisibleNoise(const BlockView& view);
 // Stops a block when VisibleNoise() was below `threshold`, > 0, after three passes in a row. The
 // half-buffer estimate of a block varies by about 1 % where its noise is even, but more where a few
 // pixels hold most of it: hence the votes.
-VotingRule LightnessNoiseRule(double threshold);
+Rule LightnessNoiseRule(double threshold);
 
 // Reads the threshold T, which the context's caution divides.
-CriterionFactory ReadLightnessNoise(const std::string& argument, const RuleContext& context);
+Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context);
 
 }  // namespace lull

@@ -1,6 +1,9 @@
 #include "stopping/rules/rule_table.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "stopping/rules/baselines.h"
@@ -19,112 +22,94 @@ constexpr double kDammertzErrors[] = {0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005,
 constexpr double kCyclesErrors[] = {0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005};
 constexpr double kLuxErrors[] = {0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.04, 0.02};
 
-constexpr Rule kRules[] = {
+constexpr RuleEntry kRules[] = {
     {.name = "learned",
      .argument = "[:NAME|:MODEL.h5]",
      .standard = nullptr,
      .stops = "when a network has said \"no noise\" three times in a row",
-     .need = ViewNeed::MeanAndHalf,
      .compares = RuleTrend::Probability,
-     .votes = 3,
      .takesCaution = true,
      .replay = Replay::Decides,
      .sweep = {},
-     .make = ReadLearned},
+     .read = ReadLearned},
     {.name = "entropy",
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when the visible noise, measured by how far SVD-entropy has fallen since half as "
               "many samples, was below T@ in lightness three times in a row",
-     .need = ViewNeed::Mean,
      .compares = RuleTrend::Error,
-     .votes = 3,
      .takesCaution = true,
      .replay = Replay::Decides,
      .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01, .choosesMask = true},
-     .make = ReadEntropy},
+     .read = ReadEntropy},
     {.name = "dammertz",
      .argument = "[:T[:area]]",
      .standard = "0.02",
      .stops = "when its mean error in square-root brightness is below T@",
-     .need = ViewNeed::MeanAndHalf,
      .compares = RuleTrend::Error,
-     .votes = 0,
      .takesCaution = false,
      .replay = Replay::Decides,
      .sweep = {.bench = kDammertzErrors, .largest = 1, .least = 1e-4},
-     .make = ReadDammertz},
+     .read = ReadDammertz},
     {.name = "cycles",
      .argument = ":T",
      .standard = nullptr,
      .stops = "when no pixel has an error of T or more, as in Blender's Cycles",
-     .need = ViewNeed::MeanAndHalf,
      .compares = RuleTrend::Error,
-     .votes = 0,
      .takesCaution = false,
      .replay = Replay::RanAlong,
      .sweep = {.bench = kCyclesErrors,
                .largest = kCyclesThresholds.front(),
                .least = kCyclesThresholds.back()},
-     .make = ReadCycles},
+     .read = ReadCycles},
     {.name = "luxtile",
      .argument = ":T",
      .standard = nullptr,
      .stops = "when its largest display error is below T, as in LuxCore",
-     .need = ViewNeed::MeanAndHalf,
      .compares = RuleTrend::Error,
-     .votes = 0,
      .takesCaution = false,
      .replay = Replay::Decides,
      .sweep = {.bench = kLuxErrors, .largest = 1, .least = 1e-4},
-     .make = ReadLuxTile},
+     .read = ReadLuxTile},
     {.name = "lnoise",
      .argument = "[:T]",
      .standard = "0.65",
      .stops = "when its noise in lightness (0 to 100), reduced where there is texture, was below "
               "T@ three times in a row",
-     .need = ViewNeed::MeanAndHalf,
      .compares = RuleTrend::Error,
-     .votes = 3,
      .takesCaution = true,
      .replay = Replay::Decides,
      .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01},
-     .make = ReadLightnessNoise},
+     .read = ReadLightnessNoise},
     {.name = denoisedRuleName,
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when the error that is visible once it is denoised was probably below T@ in "
               "lightness, looked at whenever samples have grown by a quarter; the default with "
               "--denoise",
-     .need = ViewNeed::Measured,
      .compares = RuleTrend::Error,
-     .votes = 1,
      .takesCaution = true,
      .replay = Replay::Unknown,
      .sweep = {},
-     .make = ReadDenoised},
+     .read = ReadDenoised},
     {.name = "thresholds",
      .argument = ":FILE[:NAME]",
      .standard = nullptr,
      .stops = "at the spp that a row of a thresholds file has for it",
-     .need = ViewNeed::Nothing,
      .compares = RuleTrend::Samples,
-     .votes = 0,
      .takesCaution = false,
      .replay = Replay::Counts,
      .sweep = {},
-     .make = ReadThresholdsRule},
+     .read = ReadThresholdsRule},
     {.name = "fixed",
      .argument = ":N",
      .standard = nullptr,
      .stops = "at N spp",
-     .need = ViewNeed::Nothing,
      .compares = RuleTrend::Samples,
-     .votes = 0,
      .takesCaution = false,
      .replay = Replay::Counts,
      .sweep = {},
-     .make = ReadFixed}};
+     .read = ReadFixed}};
 
 // Joins texts as "a, b and c".
 std::string Joined(const std::vector<std::string>& texts) {
@@ -134,7 +119,18 @@ std::string Joined(const std::vector<std::string>& texts) {
     return joined;
 }
 
-std::string FormOf(const Rule& rule) { return std::string(rule.name).append(rule.argument); }
+bool TakesCaution(const RuleEntry& rule) { return rule.takesCaution; }
+
+void CheckCaution(const RuleEntry& rule, double caution) {
+    if (!(caution > 0) || !std::isfinite(caution))
+        throw std::invalid_argument("caution must be above 0");
+    if (caution != 1 && !rule.takesCaution)
+        throw std::invalid_argument(
+            "caution divides a threshold of visible noise, and this rule has none; " +
+            RuleNames(TakesCaution) + " have one");
+}
+
+std::string FormOf(const RuleEntry& rule) { return std::string(rule.name).append(rule.argument); }
 
 // Appends the words of a text, in lines of at most `width` that begin with `indent` spaces. The
 // first of them goes on where `to` ends.
@@ -157,22 +153,44 @@ void AppendWrapped(const std::string& text, size_t indent, size_t width, std::st
 
 }  // namespace
 
-std::span<const Rule> AllRules() { return kRules; }
+std::span<const RuleEntry> RuleTable() { return kRules; }
 
-const Rule* FindRule(std::string_view text) {
+Rule ParseRule(const std::string& given, const RuleContext& context) {
+    const RuleEntry* entry = FindRule(given);
+    const bool isComplete = !entry || !entry->standard || given.find(':') != std::string::npos;
+    const std::string text = isComplete ? given : given + ":" + entry->standard;
+    try {
+        if (!entry) throw std::invalid_argument("there is no such rule; there are " + RuleForms());
+        CheckCaution(*entry, context.caution);
+        Rule rule = entry->read(ArgumentOf(given), context);
+        rule.text = text;
+        rule.trend.kind = entry->compares;
+        rule.trend.votes = std::max(1, rule.votes);
+        if (context.caution != 1) {
+            char number[32];
+            const auto end = std::to_chars(number, number + sizeof(number), context.caution).ptr;
+            rule.text.append(", caution ").append(number, end);
+        }
+        return rule;
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument("stopping rule '" + text + "': " + error.what());
+    }
+}
+
+const RuleEntry* FindRule(std::string_view text) {
     const auto rule = std::ranges::find(
-        kRules, text.substr(0, std::min(text.find(':'), text.size())), &Rule::name);
+        kRules, text.substr(0, std::min(text.find(':'), text.size())), &RuleEntry::name);
     return rule == std::end(kRules) ? nullptr : rule;
 }
 
 std::string ArgumentOf(std::string_view text) {
     const size_t colon = text.find(':');
     if (colon != std::string_view::npos) return std::string(text.substr(colon + 1));
-    const Rule* rule = FindRule(text);
+    const RuleEntry* rule = FindRule(text);
     return rule && rule->standard ? rule->standard : "";
 }
 
-std::string WhenItStops(const Rule& rule) {
+std::string WhenItStops(const RuleEntry& rule) {
     std::string text(rule.stops);
     const size_t at = text.find('@');
     if (at != std::string::npos) text.replace(at, 1, std::string(" (") + rule.standard + ")");
@@ -181,22 +199,22 @@ std::string WhenItStops(const Rule& rule) {
 
 std::string RuleForms() {
     std::vector<std::string> forms;
-    for (const Rule& rule : kRules) forms.push_back(FormOf(rule));
+    for (const RuleEntry& rule : kRules) forms.push_back(FormOf(rule));
     return Joined(forms);
 }
 
-std::string RuleNames(bool (*which)(const Rule&)) {
+std::string RuleNames(bool (*which)(const RuleEntry&)) {
     std::vector<std::string> names;
-    for (const Rule& rule : kRules)
+    for (const RuleEntry& rule : kRules)
         if (which(rule)) names.emplace_back(rule.name);
     return Joined(names);
 }
 
 std::string RuleHelp(size_t width) {
     size_t indent = 0;
-    for (const Rule& rule : kRules) indent = std::max(indent, FormOf(rule).size() + 4);
+    for (const RuleEntry& rule : kRules) indent = std::max(indent, FormOf(rule).size() + 4);
     std::string help;
-    for (const Rule& rule : kRules) {
+    for (const RuleEntry& rule : kRules) {
         const std::string form = "  " + FormOf(rule);
         help.append(form).append(indent - form.size(), ' ');
         AppendWrapped(WhenItStops(rule), indent, width, &help);

@@ -1,4 +1,4 @@
-// Lists the stopping rules: their names, what they say of themselves, how they are made and run on
+// Lists the stopping rules: their names, what they say of themselves, how they are read and run on
 // recordings. Help, benchmarks, rivals and documents have them from here.
 #pragma once
 
@@ -6,13 +6,13 @@
 #include <string>
 #include <string_view>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
 // Says what a recording knows of a rule.
 enum class Replay {
-    Decides,   // what it measures, so that it decides again (VotingRule::recall)
+    Decides,   // what it measures, so that it decides again (Rule::recall)
     Counts,    // nothing is needed: it stops where it says
     RanAlong,  // where it stopped at kCyclesThresholds
     Unknown    // nothing
@@ -28,37 +28,44 @@ struct RuleSweep {
     bool choosesMask = false;  // and once more with that of NoiseVisibility::mask
 };
 
-struct Rule {
+struct RuleEntry {
     std::string_view name;
     std::string_view argument;  // what follows the name, as help has it
     const char* standard;       // the argument where none is given; null: the rule says
     // Ends "a block stops"; '@' stands for the argument where none is given.
     std::string_view stops;
-    ViewNeed need;             // the most that it looks at
     RuleTrend::Kind compares;  // what its number is
-    int votes;                 // in a row that stop a block; 0: one number does
     bool takesCaution;         // whether its threshold is one of visible noise
     Replay replay;
     RuleSweep sweep;
-    // Returns all but the rule's text and kind. Throws as MakeCriterionFactory() does.
-    CriterionFactory (*make)(const std::string& argument, const RuleContext& context);
+    // Returns all but the rule's text, and the kind and votes of its trend. Throws as ParseRule()
+    // does.
+    Rule (*read)(const std::string& argument, const RuleContext& context);
 };
 
-std::span<const Rule> AllRules();
+std::span<const RuleEntry> RuleTable();
 
-// Returns the rule that a text NAME[:ARGUMENT] is of; null if there is no such rule.
-const Rule* FindRule(std::string_view text);
+// The rule where none is asked for.
+inline constexpr const char* defaultRule = "learned";
+
+// Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument for
+// a bad rule and std::runtime_error for a bad file; the message says what is wrong and what would
+// be right.
+Rule ParseRule(const std::string& text, const RuleContext& context = {});
+
+// Returns the entry of a text NAME[:ARGUMENT]; null if there is no such rule.
+const RuleEntry* FindRule(std::string_view text);
 
 // Returns the argument of the text of a rule, or what stands for it where none is given.
 std::string ArgumentOf(std::string_view text);
 
 // Returns when a block stops, in words.
-std::string WhenItStops(const Rule& rule);
+std::string WhenItStops(const RuleEntry& rule);
 
 // Returns "fixed:N, dammertz[:T[:area]], ... and luxtile:T".
 std::string RuleForms();
 // Returns the names of the rules that `which` chooses: "a, b and c".
-std::string RuleNames(bool (*which)(const Rule&));
+std::string RuleNames(bool (*which)(const RuleEntry&));
 
 // Returns a line or more for each rule, `width` wide at the most.
 std::string RuleHelp(size_t width);

@@ -7,7 +7,6 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/baselines.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -34,7 +33,7 @@ const ThresholdsRow& ChooseRow(const std::vector<ThresholdsRow>& rows, const std
 
 }  // namespace
 
-CriterionFactory ReadThresholdsRule(const std::string& argument, const RuleContext& context) {
+Rule ReadThresholdsRule(const std::string& argument, const RuleContext& context) {
     if (argument.empty()) throw std::invalid_argument("the name of a thresholds file is missing");
     // Take all of it for the file if there is one of that name: paths may have colons in them.
     std::string path = argument, name;
@@ -48,15 +47,15 @@ CriterionFactory ReadThresholdsRule(const std::string& argument, const RuleConte
         throw std::runtime_error(path + ": '" + Printable(row.name) + "' has thresholds for " +
                                  std::to_string(row.spp.size()) + " blocks, the image has " +
                                  std::to_string(context.blockCount));
-    CriterionFactory factory = CountingFactory([row](const BlockInfo& block) {
+    Rule rule = CountingRule([row](const BlockInfo& block) {
         if (block.index < 0 || block.index >= int(row.spp.size()))
             throw std::invalid_argument("'" + Printable(row.name) +
                                         "' has no threshold for block " +
                                         std::to_string(block.index));
         return row.spp[size_t(block.index)];
     });
-    factory.checksum = FileChecksum(path);
-    return factory;
+    rule.checksum = FileChecksum(path);
+    return rule;
 }
 
 }  // namespace lull

@@ -1,11 +1,11 @@
 // Stops blocks where a row of a thresholds file says.
 #pragma once
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
 // Reads FILE or FILE:NAME.
-CriterionFactory ReadThresholdsRule(const std::string& argument, const RuleContext& context);
+Rule ReadThresholdsRule(const std::string& argument, const RuleContext& context);
 
 }  // namespace lull

@@ -14,8 +14,8 @@ struct RuleTrend {
     };
     Kind kind = Error;
     int votes = 1;  // in a row that stop a block
-    // Of a network that looks at nothing but noise, Decision::noise: where it is undecided.
-    // Predictions follow that then, as a probability is no power of the spp. 0: not known.
+    // Of a network that is told nothing but noise, that at which it is undecided. Predictions
+    // follow that then, as a probability is no power of the spp. 0: not known.
     double undecided = 0;
     // The spp of the picture that noise is compared with: it falls as a power of 1/spp -
     // 1/reference. 0: it is compared with none.

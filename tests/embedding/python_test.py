@@ -105,7 +105,7 @@ class StopperTest(unittest.TestCase):
         self.assertEqual(stopper.active[:, :70].sum(), 0)
         self.assertTrue(stopper.active[:, 70:].all())
         one = stopper.observe_block(1, noisy[0], 12500, half=noisy[1])
-        self.assertEqual((one.stop, one.judged, one.spp, one.probability), (False, True, 12500, None))
+        self.assertEqual((one.stop, one.checked, one.spp, one.probability), (False, True, 12500, None))
         self.assertGreater(one.visible_noise, 1.5)
 
     def test_goes_on_from_saved_states(self):
@@ -149,7 +149,7 @@ class StopperTest(unittest.TestCase):
         with self.assertRaises(ValueError):
             lull.Stopper(39, HEIGHT)
 
-    def test_warns_at_once_of_what_it_cannot_judge(self):
+    def test_warns_at_once_of_what_it_cannot_check(self):
         def warned_at(ratio, **settings):
             """Returns at which picture it says so, of eight; None: never."""
             stopper, spp = lull.Stopper(WIDTH, HEIGHT, **settings), 40.0

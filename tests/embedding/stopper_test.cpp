@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "stopping/rules/lnoise.h"
+#include "stopping/rules/rule_table.h"
 #include "stopping/signals/lightness.h"
 #include "tests/embedding/stopper_of.h"
 
@@ -20,14 +21,14 @@ TEST(Stopper, AnswersAsTheRuleDoes) {
     for (const char* rule :
          {"entropy:3", "lnoise:4", "dammertz:0.05", "fixed:200", "luxtile:0.4", "cycles:0.2"}) {
         const StopperHandle stopper = MakeStopper(SettingsOf(60, 50, rule, 20));
-        const auto criterion = MakeCriterionFactory(rule).make({});
+        const auto criterion = MakeCriterion(ParseRule(rule));
         bool stopped = false;
         for (int spp = 20; spp <= 1000 && !stopped; spp += 20) {
             const BlockImage image = ImageAt(spp);
             const Decision expected = criterion->Observe(image.At(spp));
             const lull_answer answer = Show(stopper, PictureOf(image), spp);
             EXPECT_EQ(answer.stop, expected.stop) << rule << spp;
-            EXPECT_EQ(answer.judged, expected.judged);
+            EXPECT_EQ(answer.checked, expected.checked);
             EXPECT_EQ(answer.value, expected.value);
             EXPECT_EQ(answer.threshold, expected.threshold);
             EXPECT_EQ(answer.votes, expected.votes);
@@ -43,8 +44,8 @@ TEST(Stopper, AnswersAsTheDefaultModelDoes) {
     lull_settings settings = SettingsOf(60, 50, nullptr, 20);
     settings.models = LULL_MODELS_DIR;
     const StopperHandle stopper = MakeStopper(settings);
-    const CriterionFactory factory = MakeCriterionFactory("learned", {.models = LULL_MODELS_DIR});
-    const auto criterion = factory.make({});
+    const Rule factory = ParseRule("learned", {.models = LULL_MODELS_DIR});
+    const auto criterion = MakeCriterion(factory);
     lull_answer answer = {};
     for (int spp = 20; spp <= 10000 && !answer.stop; spp += 20) {
         const BlockImage image = ImageAt(spp);
@@ -54,7 +55,7 @@ TEST(Stopper, AnswersAsTheDefaultModelDoes) {
         EXPECT_EQ(answer.votes, expected.votes);
         EXPECT_EQ(answer.votes_needed, 3);
         EXPECT_EQ(answer.stop, expected.stop);
-        if (answer.judged) {
+        if (answer.checked) {
             EXPECT_EQ(answer.visible_noise, VisibleNoise(image.At(spp)));
         }
     }
@@ -77,7 +78,7 @@ TEST(Stopper, LooksAtPicturesOfAnySpp) {
             }
             answer = Show(stopper, PictureOf(ImageAt(spp)), spp);
             if (isLookedAt) last = spp;
-            EXPECT_LE(answer.judged, isLookedAt) << spp;
+            EXPECT_LE(answer.checked, isLookedAt) << spp;
             ++shown;
         }
         EXPECT_EQ(answer.stop, 1) << isModel;
@@ -93,7 +94,7 @@ TEST(Stopper, ShowsFixedModelsTheirMultiples) {
     const StopperHandle stopper = MakeStopper(settings);
     EXPECT_EQ(Show(stopper, PictureOf(ImageAt(10)), 10).next_spp, 40);
     for (int spp = 20; spp <= 320; spp += 20)
-        EXPECT_EQ(Show(stopper, PictureOf(ImageAt(spp)), spp).judged, spp == 320) << spp;
+        EXPECT_EQ(Show(stopper, PictureOf(ImageAt(spp)), spp).checked, spp == 320) << spp;
 }
 
 // The same pixels, laid out in other ways.
@@ -164,7 +165,7 @@ TEST(Stopper, TakesEightBitsForTheColoursThatTheyStandFor) {
         picture.mean = codes[k].data();
         const lull_answer answer = Show(eight, picture, 100 * (k + 1));
         EXPECT_TRUE(SameAnswer(answer, expected));
-        EXPECT_EQ(answer.judged, k);
+        EXPECT_EQ(answer.checked, k);
         EXPECT_EQ(answer.visible_noise, -1);
     }
 }
@@ -185,7 +186,7 @@ TEST(Stopper, CountsWhatIsNotFiniteAsBlack) {
     EXPECT_TRUE(std::isfinite(a.value));
 }
 
-TEST(Stopper, CutsPicturesIntoBlocksThatCanBeJudged) {
+TEST(Stopper, CutsPicturesIntoBlocksThatCanBeChecked) {
     struct Case {
         int width, height, block, columns, rows, lastWidth, lastHeight;
     };
@@ -234,7 +235,7 @@ TEST(Stopper, StopsEachBlockByItself) {
         ASSERT_EQ(lull_stopper_observe(whole.get(), &picture, spp, answers), LULL_OK);
         EXPECT_EQ(answers[0].stop, spp >= 60);
         EXPECT_EQ(answers[0].spp, std::min(spp, 60));
-        EXPECT_EQ(answers[0].judged, spp <= 60);
+        EXPECT_EQ(answers[0].checked, spp <= 60);
         EXPECT_EQ(answers[1].stop, 0);
         for (int block = 0; block < 2; ++block) {
             lull_picture part = picture;
@@ -284,7 +285,7 @@ TEST(Stopper, AnswersAnyNumberOfThreadsTheSame) {
             EXPECT_TRUE(SameAnswer(answer, answers[size_t(i)])) << i;
         }
     }
-    EXPECT_EQ(answers[0].judged, 1);
+    EXPECT_EQ(answers[0].checked, 1);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "renderer/film/film.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
@@ -73,7 +73,7 @@ std::vector<StopOutcome> StopBlocks(const Tail& tail, const std::vector<std::str
     std::vector<float> mean(3 * pixels.size()), halfMean(mean.size());
     std::vector<std::unique_ptr<Criterion>> criteria;
     for (const std::string& rule : rules)
-        criteria.push_back(MakeCriterionFactory(rule, {.passSpp = kPass}).make({}));
+        criteria.push_back(MakeCriterion(ParseRule(rule, {.passSpp = kPass})));
     std::vector<StopOutcome> outcomes(rules.size());
     size_t live = rules.size();
     for (int spp = kPass; spp <= kCap && live > 0; spp += kPass) {

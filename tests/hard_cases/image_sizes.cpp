@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/render/render.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/hard_cases/hard_case.h"
 
 namespace lull {
@@ -20,12 +21,12 @@ PathSample Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*
 // Renders and notes each pixel whose samples are not those of the block it is in, or that is in
 // none or in two.
 void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, Failures* wrong) {
-    const CriterionFactory factory = MakeCriterionFactory(rule);
+    const Rule factory = ParseRule(rule);
     RenderOptions options;
     options.schedule = {
         .blockSize = blockSize, .passLength = 20, .cap = cap, .smallestSide = factory.smallestSide};
     options.sampler = SamplerKind::Random;
-    options.makeCriterion = factory.make;
+    options.makeCriterion = CriteriaOf(factory);
     Film film({{0, 0}, size}, {.grid = GridOf(options.schedule)});
     const RenderResult result = Render(Noise, options, &film);
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "stopping/features/window.h"
-#include "stopping/rules/criterion.h"
 #include "stopping/rules/learned.h"
+#include "stopping/rules/rule_table.h"
 #include "stopping/signals/svd_entropy.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
@@ -82,9 +82,9 @@ void ObserveAll(const BlockImage& block, const std::string& name, Failures* fail
     std::vector<std::unique_ptr<Criterion>> criteria;
     for (const char* rule :
          {"dammertz:0.02", "cycles:0.01", "luxtile:0.0234375", "lnoise:0.5", "entropy:0.64"})
-        criteria.push_back(MakeCriterionFactory(rule).make({}));
+        criteria.push_back(MakeCriterion(ParseRule(rule)));
     for (const float range : {0.1f, 1.f, 1e4f})
-        criteria.push_back(MakeVoting(LearnedRule(RandomModel(range, 1), 20)));
+        criteria.push_back(MakeCriterion(LearnedRule(RandomModel(range, 1), 20)));
     for (size_t i = 0; i < criteria.size(); ++i)
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision d = criteria[i]->Observe(block.At(spp));
@@ -119,7 +119,7 @@ HardCaseResult Flicker(const HardCaseOptions&) {
                                                     {"lnoise:0.5", 60},
                                                     {"entropy:0.64", 140}};
     for (const auto& [rule, spp] : earliest) {
-        const auto criterion = MakeCriterionFactory(rule).make({});
+        const auto criterion = MakeCriterion(ParseRule(rule));
         BlockImage block(100, 100, 0.18f);
         HardCaseResult result{double(spp), 10'000, 0, std::string("spp; worst: ") + rule};
         for (int now = 20; now <= 10'000; now += 20) {
@@ -147,7 +147,7 @@ HardCaseResult PureTexture(const HardCaseOptions&) {
     std::vector<HardCaseResult> results;
     for (const int side : {40, 200})
         for (int kind = 0; kind < 4; ++kind) {
-            const auto criterion = MakeCriterionFactory("entropy:0.64").make({});
+            const auto criterion = MakeCriterion(ParseRule("entropy:0.64"));
             BlockImage block(side, side, 0);
             for (int y = 0; y < side; ++y)
                 for (int x = 0; x < side; ++x)
@@ -170,7 +170,7 @@ HardCaseResult NoiseOnTexture(const HardCaseOptions& options) {
     std::vector<HardCaseResult> results;
     for (const int side : {40, 200})
         for (int kind = 0; kind < 4; ++kind) {
-            const auto criterion = MakeCriterionFactory("entropy:0.64").make({});
+            const auto criterion = MakeCriterion(ParseRule("entropy:0.64"));
             test::Random random(unsigned(options.seed) + unsigned(kind));
             HardCaseResult result{0.4, 0, side == 200 ? 0.2 : 0.35,
                                   fmt::format("{} pixels, pattern {}", side, kind)};

@@ -147,7 +147,7 @@ std::string WritePictures(const TemporaryDirectory& directory, int count, int st
     return names;
 }
 
-TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
+TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     const InstalledTree tree;
     Do(tree, "'" LULL_CMAKE
              "' -S TREE/share/doc/lull/examples -B build -DCMAKE_PREFIX_PATH=TREE "
@@ -155,16 +155,16 @@ TEST(Install, ExampleJudgesPicturesAgainstTheInstalledLibrary) {
              "' -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON >&2 && "
              "'" LULL_CMAKE "' --build build >&2");
     const std::string pictures = WritePictures(tree, 30, 60);
-    const std::string out = Do(tree, "build/judge_pngs 60" + pictures);
+    const std::string out = Do(tree, "build/watch_pngs 60" + pictures);
     EXPECT_TRUE(out.starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n")) << out;
     EXPECT_TRUE(out.ends_with(", 0 of 1 blocks go on\n")) << out;
     EXPECT_GT(std::ranges::count(out, '\n'), 5) << out;
 
-    const Outcome bad = RunShell(tree, "build/judge_pngs 60 p01.png nowhere.png");
+    const Outcome bad = RunShell(tree, "build/watch_pngs 60 p01.png nowhere.png");
     EXPECT_EQ(bad.exitCode, 1);
     EXPECT_TRUE(Contains(bad.err, "nowhere.png")) << bad.err;
     WritePng(tree.File("small.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
-    const Outcome small = RunShell(tree, "build/judge_pngs 60 small.png");
+    const Outcome small = RunShell(tree, "build/watch_pngs 60 small.png");
     EXPECT_EQ(small.exitCode, 1);
     EXPECT_TRUE(Contains(small.err, "20x20")) << small.err;
 }
@@ -176,7 +176,7 @@ TEST(Install, PkgConfigFindsTheLibraries) {
     EXPECT_EQ(Do(tree, flags + "--modversion lull-stopping lull-denoising"),
               LULL_VERSION "\n" LULL_VERSION "\n");
     Do(tree, "eval \"'" LULL_CXX
-             "' -std=c++17 TREE/share/doc/lull/examples/judge_pngs.cpp -o judge " +
+             "' -std=c++17 TREE/share/doc/lull/examples/watch_pngs.cpp -o judge " +
                  ("$(" + flags + "--cflags --libs lull-stopping libpng)\""));
     const std::string pictures = WritePictures(tree, 2, 60);
     const std::string run = "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./judge 60" + pictures;

@@ -126,7 +126,7 @@ TEST(Evaluate, ComparesRivals) {
     EXPECT_TRUE(Contains(alone.err, "other viewpoints")) << alone.err;
 }
 
-TEST(Evaluate, JudgesRulesBySingleAnswers) {
+TEST(Evaluate, EvaluatesRulesBySingleAnswers) {
     const EvaluationDirectory directory;
     // People stop to see noise where it is 0.5; block 3 of the attic ends at 3,740 spp.
     std::string answers = "block,spp,noise_seen\n";

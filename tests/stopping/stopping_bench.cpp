@@ -59,14 +59,18 @@ void Observe(benchmark::State& state, Criterion* criterion) {
 void LearnedPass(benchmark::State& state) {
     const auto model =
         std::make_shared<const Model>(Model{RandomNetwork(100, {512, 128, 32}, 0.1f), {}, ""});
-    Observe(state, MakeVoting(LearnedRule(model, 20)).get());
+    Observe(state, MakeCriterion(LearnedRule(model, 20)).get());
 }
 BENCHMARK(LearnedPass)->Unit(benchmark::kMillisecond);
-void DammertzPass(benchmark::State& state) { Observe(state, MakeVoting(DammertzRule(1e-9)).get()); }
+void DammertzPass(benchmark::State& state) {
+    Observe(state, MakeCriterion(DammertzRule(1e-9)).get());
+}
 BENCHMARK(DammertzPass)->Unit(benchmark::kMillisecond);
-void CyclesPass(benchmark::State& state) { Observe(state, MakeVoting(CyclesRule(0.01)).get()); }
+void CyclesPass(benchmark::State& state) { Observe(state, MakeCriterion(CyclesRule(0.01)).get()); }
 BENCHMARK(CyclesPass)->Unit(benchmark::kMillisecond);
-void LuxTilePass(benchmark::State& state) { Observe(state, MakeVoting(LuxTileRule(1e-9)).get()); }
+void LuxTilePass(benchmark::State& state) {
+    Observe(state, MakeCriterion(LuxTileRule(1e-9)).get());
+}
 BENCHMARK(LuxTilePass)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <string>
 
-#include "stopping/lab/evaluation/answer_judgement.h"
+#include "stopping/lab/evaluation/answer_scores.h"
 
 namespace lull {
 
 // Prints which answers counted, a table of the rules and, if `each`, one of the blocks before.
-void PrintAnswerJudgement(std::FILE* out, const AnswerJudgement& judgement, bool each);
+void PrintAnswerScores(std::FILE* out, const AnswerScores& scores, bool each);
 
 // Returns the table of the rules as a CSV file with a head line. Fields of what is not defined are
 // empty.
-std::string AnswerJudgementCsv(const AnswerJudgement& judgement);
+std::string AnswerScoresCsv(const AnswerScores& scores);
 
 }  // namespace lull

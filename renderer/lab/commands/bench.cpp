@@ -105,8 +105,8 @@ std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& reg
         if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
     std::vector<ObservedRule> rules;
     for (const std::string& text : texts) {
-        const CriterionFactory factory = ReadRule("--rule", text, options.render, region, measures);
-        rules.push_back({text, factory.rule, factory.smallestSide, factory.make,
+        const Rule rule = ReadRule("--rule", text, options.render, region, measures);
+        rules.push_back({text, rule.text, rule.smallestSide, CriteriaOf(rule),
                          text.starts_with(denoisedRuleName)});
     }
     return rules;

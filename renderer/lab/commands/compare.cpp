@@ -91,8 +91,8 @@ struct PreparedScene {
     std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
 };
 
-ObservedRule MakeRule(const std::string& name, const CriterionFactory& factory) {
-    return {name, factory.rule, factory.smallestSide, factory.make};
+ObservedRule MakeRule(const std::string& name, const Rule& rule) {
+    return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
 }
 
 // Loads the scene and checks all that can be wrong before the work begins.
@@ -101,14 +101,13 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
     SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
 
     PreparedScene prepared;
-    const CriterionFactory automatic = ReadRule("--stop", options.rule, settings, input.region);
+    const Rule automatic = ReadRule("--stop", options.rule, settings, input.region);
     prepared.rules.push_back(MakeRule("automatic", automatic));
     std::string humanChecksum = "none";
     if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = settings;
         plain.caution = 1;
-        const CriterionFactory human =
-            ReadRule("--human", "thresholds:" + options.human, plain, input.region);
+        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, input.region);
         prepared.rules.push_back(MakeRule("human", human));
         humanChecksum = human.checksum;
     }
@@ -131,7 +130,7 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
     prepared.scene = CompileScene(settings, &input);
     prepared.warnings = input.warnings.Counts();
     prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
-    prepared.provenance.criterion = automatic.rule;
+    prepared.provenance.criterion = automatic.text;
     prepared.provenance.checksum = automatic.checksum;
     prepared.identity = IdentityOf(prepared.provenance, SceneHash(input.description));
     prepared.identity["human"] = humanChecksum;
@@ -211,7 +210,7 @@ void AddImages(const CompareOptions& options, const std::vector<ObservedRule>& r
         std::swap(comparison.images.back(), *(comparison.images.end() - 2));
     Measure(&comparison);
     if (options.snapshots)
-        report->estimates = JudgeEstimates(comparison.images.front(), comparison.images.back());
+        report->estimates = CompareEstimates(comparison.images.front(), comparison.images.back());
 }
 
 ExitCode SayInterrupted(const RenderSettings& settings) {

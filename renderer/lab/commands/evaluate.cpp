@@ -11,7 +11,7 @@
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/answers_table.h"
 #include "renderer/lab/commands/evaluation_table.h"
-#include "stopping/lab/evaluation/judged_rules.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -23,7 +23,7 @@ struct Options {
     std::string human, answers, csv;
     bool rivals = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
-    JudgeOptions judge;
+    ScoreOptions judge;
     double caution = 1;
 };
 
@@ -46,7 +46,7 @@ Columns:
           that go on by the laws that their own noise and entropies follow. Predicted thresholds
           are taken as they are, and clipped to the ends in a row of their own.
   ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
-          not, against the judgement of people, in %
+          not, against the scores of people, in %
   error   mean distance from the human threshold, in spp, and in % of 10,000 spp
   early   % of the blocks that stop below 80 % of the human threshold
   late    % of the blocks that stop above 125 % of it
@@ -97,7 +97,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddCautionOption(app, &o->caution);
     app.add_flag("--rivals", o->rivals,
                  "Judge the rules that have one setting:\n" +
-                     RuleNames([](const Rule& rule) { return rule.sweep.largest > 0; }));
+                     RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
     AddChoiceOption<ChooseBy>(
         app, "--choose-by", &o->chooseBy,
         {{"error", ChooseBy::AbsoluteError}, {"critical", ChooseBy::CriticalError}},
@@ -107,7 +107,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("NAME");
-    app.add_option("--grid", o->judge.grid, "Spp between the judgements of the critical error")
+    app.add_option("--grid", o->judge.grid, "Spp between the allScores of the critical error")
         ->check(CLI::Range(1, kJudgedCap))
         ->type_name("N")
         ->capture_default_str();
@@ -120,24 +120,25 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
 }
 
-std::vector<JudgedRule> JudgeFiles(const Options& options) {
+std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     const std::vector<ThresholdsRow> people = ReadHumanThresholds(options.human, options.without);
-    std::vector<JudgedRule> rules;
+    std::vector<EvaluatedRule> rules;
     for (const std::string& path : options.predicted)
         rules.push_back(
-            JudgeThresholds(path, options.human, people, options.judge.grid, PrintTalk));
+            EvaluateThresholds(path, options.human, people, options.judge.grid, PrintTalk));
     return rules;
 }
 
-std::vector<JudgedRule> JudgeRecordings(const Options& options) {
+std::vector<EvaluatedRule> EvaluateRecordings(const Options& options) {
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
-    return JudgeOnBlocks(ReadJudgedBlocks(viewpoints, options.human, options.without, PrintTalk),
-                         {.rivals = options.rivals,
-                          .chooseBy = options.chooseBy,
-                          .rules = options.rules,
-                          .context = {.models = ModelFolder(), .caution = options.caution},
-                          .predicted = options.predicted,
-                          .grid = options.judge.grid});
+    return EvaluateOnBlocks(
+        ReadLabelledBlocks(viewpoints, options.human, options.without, PrintTalk),
+        {.rivals = options.rivals,
+         .chooseBy = options.chooseBy,
+         .rules = options.rules,
+         .context = {.models = ModelFolder(), .caution = options.caution},
+         .predicted = options.predicted,
+         .grid = options.judge.grid});
 }
 
 // Reads the recordings of the one viewpoint that answers are to.
@@ -168,10 +169,10 @@ void RunByAnswers(const Options& options) {
     const std::vector<SingleAnswer> answers = ReadSingleAnswers(options.answers);
     const ViewpointRecording viewpoint = ReadViewpoint(options);
     CheckBlocks(answers, viewpoint.blockCount, options.answers);
-    const AnswerJudgement judgement = JudgeByAnswers(
+    const AnswerScores scores = EvaluateByAnswers(
         viewpoint, answers, options.rules, {.models = ModelFolder(), .caution = options.caution});
-    PrintAnswerJudgement(stdout, judgement, !options.brief);
-    if (!options.csv.empty()) WriteFileAtomically(options.csv, AnswerJudgementCsv(judgement));
+    PrintAnswerScores(stdout, scores, !options.brief);
+    if (!options.csv.empty()) WriteFileAtomically(options.csv, AnswerScoresCsv(scores));
 }
 
 ExitCode RunEvaluate(const Options& options) {
@@ -180,8 +181,8 @@ ExitCode RunEvaluate(const Options& options) {
         RunByAnswers(options);
         return kDone;
     }
-    const std::vector<JudgedRule> rules =
-        options.datasets.empty() ? JudgeFiles(options) : JudgeRecordings(options);
+    const std::vector<EvaluatedRule> rules =
+        options.datasets.empty() ? EvaluateFiles(options) : EvaluateRecordings(options);
     PrintEvaluation(stdout, rules, options.judge, !options.brief);
     if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
     return kDone;

@@ -16,16 +16,16 @@ namespace {
 // Holds the row of a table.
 struct Row {
     std::string rule, viewpoint, setting;
-    Judgement judgement;
+    Scores scores;
 };
 
 // Makes the rows of a rule: one for each viewpoint, and one for all of them.
-std::vector<Row> MakeRows(const JudgedRule& rule, const JudgeOptions& options) {
+std::vector<Row> MakeRows(const EvaluatedRule& rule, const ScoreOptions& options) {
     std::vector<Row> rows;
     for (const ViewpointOutcome& viewpoint : rule.viewpoints)
         rows.push_back({LabelOf(rule), viewpoint.name, viewpoint.setting,
-                        Judge(std::span(&viewpoint, 1), options)});
-    rows.push_back({LabelOf(rule), "all", rule.setting, Judge(rule.viewpoints, options)});
+                        Score(std::span(&viewpoint, 1), options)});
+    rows.push_back({LabelOf(rule), "all", rule.setting, Score(rule.viewpoints, options)});
     return rows;
 }
 
@@ -35,7 +35,7 @@ std::string PercentText(std::optional<double> share, int digits) {
 
 // Prints a table whose first column is the rule or the viewpoint.
 void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first,
-               const std::vector<Row>& rows, const JudgeOptions& options) {
+               const std::vector<Row>& rows, const ScoreOptions& options) {
     size_t width = label.size(), settingWidth = std::string("setting").size();
     for (const Row& row : rows) {
         width = std::max(width, (row.*first).size());
@@ -48,7 +48,7 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
     fmt::print(out, "  {:>6}  {:>5}  {:>5}  {:>5}  {:>5}  {:>5}\n", "error", "err%", "early",
                "late", "acc", "auc");
     for (const Row& row : rows) {
-        const Judgement& j = row.judgement;
+        const Scores& j = row.scores;
         fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", row.*first, width, row.setting,
                    settingWidth, j.viewpoints, j.blocks, j.open);
         for (const double error : j.criticalErrors) fmt::print(out, "  {:>6.2f}", 100 * error);
@@ -60,10 +60,10 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
 
 }  // namespace
 
-void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
-                     const JudgeOptions& options, bool each) {
+void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
+                     const ScoreOptions& options, bool each) {
     std::vector<Row> overall;
-    for (const JudgedRule& rule : rules) {
+    for (const EvaluatedRule& rule : rules) {
         const std::vector<Row> rows = MakeRows(rule, options);
         overall.push_back(rows.back());
         if (!each) continue;
@@ -75,14 +75,14 @@ void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
     PrintRows(out, "rule", &Row::rule, overall, options);
 }
 
-std::string EvaluationCsv(const std::vector<JudgedRule>& rules, const JudgeOptions& options) {
+std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOptions& options) {
     std::string csv = "rule,viewpoint,setting,viewpoints,blocks,open";
     const auto out = std::back_inserter(csv);
     for (const double margin : options.margins) fmt::format_to(out, ",critical_error_{:g}", margin);
     csv += ",absolute_error_spp,early,late,accuracy,auc\n";
-    for (const JudgedRule& rule : rules)
+    for (const EvaluatedRule& rule : rules)
         for (const Row& row : MakeRows(rule, options)) {
-            const Judgement& j = row.judgement;
+            const Scores& j = row.scores;
             fmt::format_to(out, "{},{},{},{},{},{}", CsvField(row.rule), CsvField(row.viewpoint),
                            CsvField(row.setting), j.viewpoints, j.blocks, j.open);
             for (const double error : j.criticalErrors) fmt::format_to(out, ",{:.6f}", error);

@@ -11,11 +11,11 @@ namespace lull {
 
 // Prints a table of the rules over all viewpoints and, if `each`, one of each rule before, with a
 // row a viewpoint.
-void PrintEvaluation(std::FILE* out, const std::vector<JudgedRule>& rules,
-                     const JudgeOptions& options, bool each);
+void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
+                     const ScoreOptions& options, bool each);
 
 // Returns all rows as a CSV file with a head line: one for each rule and viewpoint, and for each
 // rule one with the viewpoint "all". Fields of what is not defined are empty.
-std::string EvaluationCsv(const std::vector<JudgedRule>& rules, const JudgeOptions& options);
+std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOptions& options);
 
 }  // namespace lull

@@ -19,7 +19,7 @@ namespace {
 void Tell(const Collected& collected) {
     for (const RefusedAnswers& refused : collected.refused)
         Say("lull: {}: {}; left out\n", refused.file, refused.reason);
-    for (const JudgedObserver& observer : collected.observers)
+    for (const CheckedObserver& observer : collected.observers)
         if (!observer.leftOut.empty())
             Say("lull: {}: {} {}; left out\n", observer.answers.file, observer.answers.observer,
                 observer.leftOut);

@@ -96,7 +96,7 @@ ExitCode RunSearch(const TrainOptions& options) {
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
     const std::vector<Trial> trials = MakeTrials(
-        plan, options.search, axes, ReadJudgedBlocks(viewpoints, plan.human, plan.without, note),
+        plan, options.search, axes, ReadLabelledBlocks(viewpoints, plan.human, plan.without, note),
         SetPlanOptions, note);
 
     const std::string data = SearchDataText(plan, trials.front());

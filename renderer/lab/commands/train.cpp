@@ -50,8 +50,8 @@ ExitCode RunTrain(const TrainOptions& options) {
     const Talk talk{.isJson = options.jsonProgress};
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
-    const std::vector<JudgedBlock> blocks = KeepRecordedForAll(
-        ReadJudgedBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
+    const std::vector<LabelledBlock> blocks = KeepRecordedForAll(
+        ReadLabelledBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
     CheckSpacing(plan.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
@@ -67,7 +67,7 @@ ExitCode RunTrain(const TrainOptions& options) {
             talk.Note("interrupted; --resume goes on from " + checkpoint.Path());
         return kInterrupted;
     }
-    const JudgeOptions judge{.grid = plan.settings.n};
+    const ScoreOptions judge{.grid = plan.settings.n};
     if (!options.output.empty()) {
         WriteModel(options.output, result->network, plan.settings,
                    MakeRecord(plan, splits.back(), *result, judge), result->logRatios);

@@ -265,9 +265,9 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
-    app.add_option("--csv", o->csv, "Write the judgement to a CSV file")->type_name("F.csv");
+    app.add_option("--csv", o->csv, "Write the scores to a CSV file")->type_name("F.csv");
     AddNumber(app, "--threads", &o->threads, 0, 4096, "Threads; 0: one for each core");
-    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the judgement");
+    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the scores");
     app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
     app.footer(kFooter);
 }

@@ -43,7 +43,7 @@ std::vector<std::string> BenchRules(int passLength, int cap) {
     std::vector<std::string> rules;
     for (const int spp : FixedLadder(passLength, cap))
         rules.push_back(fmt::format("fixed:{}", spp));
-    for (const Rule& rule : AllRules())
+    for (const RuleEntry& rule : RuleTable())
         for (const double setting : rule.sweep.bench)
             rules.push_back(fmt::format("{}:{}", rule.name, setting));
     return rules;

@@ -54,7 +54,7 @@ void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Fil
     options.seed = render.options.seed;
     options.threads = render.options.threads;
     options.makeCriterion = [&](const BlockInfo& info) {
-        return MakeFixed(spp[size_t(info.index)]);
+        return MakeCriterion(FixedRule(spp[size_t(info.index)]));
     };
     state.criteria.resize(spp.size());
     for (size_t i = 0; i < spp.size(); ++i) {
@@ -204,8 +204,8 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
     std::vector<int> again(blocks.size(), 0);
     for (size_t i = 0; i < blocks.size(); ++i) {
         const BlockResult& whole = render.result.blocks[i];
-        const int judge = blocks[i].votes ? int(i) : blocks[i].leader;
-        const RuleStop stop = judge < 0 ? RuleStop() : render.histories[size_t(judge)].stops[index];
+        const int voter = blocks[i].votes ? int(i) : blocks[i].leader;
+        const RuleStop stop = voter < 0 ? RuleStop() : render.histories[size_t(voter)].stops[index];
         BlockCost cost{.spp = stop.spp > 0 ? stop.spp : cap};
         if (blocks[i].votes && stop.spp > 0) {
             cost.seconds = stop.seconds;
@@ -248,7 +248,7 @@ ComparedImage TakeWholeImage(const ObservedRender& render) {
     return image;
 }
 
-EstimateError JudgeEstimates(const ComparedImage& image, const ComparedImage& atCap) {
+EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& atCap) {
     EstimateError error;
     double estimated = 0, measured = 0;
     for (size_t i = 0; i < image.costs.size(); ++i) {

@@ -103,6 +103,6 @@ struct EstimateError {
     int blocks = 0;
     double total = 0, worst = 0;
 };
-EstimateError JudgeEstimates(const ComparedImage& image, const ComparedImage& atCap);
+EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& atCap);
 
 }  // namespace lull

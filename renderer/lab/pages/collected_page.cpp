@@ -47,7 +47,7 @@ Json ViewpointJson(const CollectedViewpoint& viewpoint, const Json& study) {
     return json;
 }
 
-Json ObserverJson(const JudgedObserver& o) {
+Json ObserverJson(const CheckedObserver& o) {
     return {{"file", o.answers.file},
             {"observer", o.answers.observer},
             {"viewpoint", o.answers.viewpoint},
@@ -71,7 +71,7 @@ std::string MakeCollectedPage(const Collected& collected, const Json& study) {
         {"viewpoints", Json::array()}, {"observers", Json::array()}, {"refused", Json::array()}};
     for (const CollectedViewpoint& viewpoint : collected.viewpoints)
         json["viewpoints"].push_back(ViewpointJson(viewpoint, study));
-    for (const JudgedObserver& observer : collected.observers)
+    for (const CheckedObserver& observer : collected.observers)
         json["observers"].push_back(ObserverJson(observer));
     for (const RefusedAnswers& refused : collected.refused)
         json["refused"].push_back({{"file", refused.file}, {"reason", refused.reason}});

@@ -177,8 +177,9 @@ class Leader {
             const bool mustEnd = schedule.HasClock() && schedule.Unlocked().MustEnd(i);
             message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
                                       mustEnd ? schedule.Unlocked().PassEnd(i) : 0});
-            message.needs.push_back(block.stopped ? ViewNeed::Nothing
-                                                  : executor.judge.NeedAt(i, NextSpp(block.spp)));
+            message.needs.push_back(block.stopped
+                                        ? ViewNeed::Nothing
+                                        : executor.criteria.NeedAt(i, NextSpp(block.spp)));
         }
         channel.PostToAll(Pack(message));
         for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
@@ -335,7 +336,8 @@ class Leader {
         if (IsLearning(options)) return;  // by Start, where there are tiles for others
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
-        const ViewNeed need = answer.stop ? ViewNeed::Nothing : executor.judge.NeedAt(block, next);
+        const ViewNeed need =
+            answer.stop ? ViewNeed::Nothing : executor.criteria.NeedAt(block, next);
         channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 

@@ -34,7 +34,7 @@ enum class RankWord : uint8_t {
 struct StartMessage {
     std::vector<int> deal;  // of the tiles, see TileShare
     std::vector<BlockStart> blocks;
-    std::vector<ViewNeed> needs;  // what the judge will look at after each block's next pass
+    std::vector<ViewNeed> needs;  // what criterion and clock will see after each block's next pass
 };
 
 // Says how a block goes on.

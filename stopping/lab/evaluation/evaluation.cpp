@@ -31,7 +31,7 @@ struct Verdicts {
     }
 };
 
-void AddMeans(const ViewpointOutcome& viewpoint, const JudgeOptions& options, Judgement* sums) {
+void AddMeans(const ViewpointOutcome& viewpoint, const ScoreOptions& options, Scores* sums) {
     double error = 0, early = 0, late = 0;
     for (const BlockOutcome& block : viewpoint.blocks) {
         const double stop = block.outcome.stop, human = block.human;
@@ -50,7 +50,7 @@ void AddMeans(const ViewpointOutcome& viewpoint, const JudgeOptions& options, Ju
 
 }  // namespace
 
-std::string LabelOf(const JudgedRule& rule) {
+std::string LabelOf(const EvaluatedRule& rule) {
     if (rule.openStops == OpenStops::None) return rule.name;
     return rule.name + (rule.openStops == OpenStops::Ends ? ", at least" : ", extended");
 }
@@ -77,8 +77,8 @@ double CriticalError(std::span<const BlockOutcome> blocks, double margin, int gr
     return count > 0 ? double(wrong) / double(count) : 0;
 }
 
-Judgement Judge(std::span<const ViewpointOutcome> viewpoints, const JudgeOptions& options) {
-    Judgement result;
+Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& options) {
+    Scores result;
     result.criticalErrors.assign(options.margins.size(), 0);
     Verdicts verdicts;
     for (const ViewpointOutcome& viewpoint : viewpoints) {

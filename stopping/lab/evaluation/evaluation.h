@@ -48,7 +48,7 @@ enum class OpenStops {
 };
 
 // Holds the outcomes of a rule, or of the thresholds in a file.
-struct JudgedRule {
+struct EvaluatedRule {
     std::string name;
     std::string setting = {};  // the one for all viewpoints, if there is one
     std::vector<ViewpointOutcome> viewpoints = {};
@@ -56,7 +56,7 @@ struct JudgedRule {
 };
 
 // Returns the name for tables: "NAME, at least" and "NAME, extended" where blocks are open.
-std::string LabelOf(const JudgedRule& rule);
+std::string LabelOf(const EvaluatedRule& rule);
 
 // Returns the critical error of one viewpoint (paper, Table 3), in [0, 1]: over its blocks and the
 // spp x = 20, 20 + grid, ... up to kJudgedCap, the share of x at which the stop S is wrong. With
@@ -65,13 +65,13 @@ std::string LabelOf(const JudgedRule& rule);
 // x <= lo and x <= S, x >= hi and x >= S, or lo < x < hi. 0 for no blocks.
 double CriticalError(std::span<const BlockOutcome> blocks, double margin, int grid);
 
-struct JudgeOptions {
+struct ScoreOptions {
     int grid = 40;                             // spp, > 0
     std::vector<double> margins = {2, 6, 10};  // % of the cap
 };
 
 // Holds the measures of some viewpoints. Shares are in [0, 1].
-struct Judgement {
+struct Scores {
     int viewpoints = 0, blocks = 0, open = 0;
     // Means over the viewpoints of the means over their blocks:
     std::vector<double> criticalErrors = {};  // for each margin
@@ -82,6 +82,6 @@ struct Judgement {
     // balances them.
     std::optional<double> auc, accuracy;
 };
-Judgement Judge(std::span<const ViewpointOutcome> viewpoints, const JudgeOptions& options);
+Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& options);
 
 }  // namespace lull

@@ -14,7 +14,7 @@ namespace {
 // Names a rule that has one threshold, and says whether the mask of its visible noise is chosen
 // beside it.
 struct RivalRule {
-    const Rule* rule;
+    const RuleEntry* rule;
     bool choosesMask = false;
 
     std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
@@ -22,7 +22,7 @@ struct RivalRule {
 
 std::vector<RivalRule> RivalRules() {
     std::vector<RivalRule> rivals;
-    for (const Rule& rule : AllRules()) {
+    for (const RuleEntry& rule : RuleTable()) {
         if (rule.sweep.largest == 0) continue;
         rivals.push_back({&rule});
         if (rule.sweep.choosesMask) rivals.push_back({&rule, true});
@@ -72,14 +72,14 @@ using Run = std::function<RuleOutcome(size_t index, const Setting& setting, bool
 
 double Cost(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
     const bool critical = chooseBy == ChooseBy::CriticalError;
-    const Judgement judgement =
-        Judge(std::span(&viewpoint, 1),
+    const Scores scores =
+        Score(std::span(&viewpoint, 1),
               {.grid = grid, .margins = critical ? std::vector<double>{2} : std::vector<double>()});
-    return critical ? judgement.criticalErrors[0] : judgement.absoluteError;
+    return critical ? scores.criticalErrors[0] : scores.absoluteError;
 }
 
 // Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
-std::vector<std::vector<double>> Costs(std::span<const JudgedBlock> blocks,
+std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
                                        std::span<const Setting> settings, const Run& run,
                                        ChooseBy chooseBy, int grid) {
@@ -108,9 +108,9 @@ Setting Best(const std::vector<std::vector<double>>& costs, std::span<const Sett
     return settings[size_t(std::ranges::min_element(sums) - sums.begin())];
 }
 
-Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
-                 std::span<const size_t> begins, std::span<const Setting> settings, const Run& run,
-                 ChooseBy chooseBy, int grid) {
+Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> blocks,
+                    std::span<const size_t> begins, std::span<const Setting> settings,
+                    const Run& run, ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
     Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Best(costs, settings, -1).text};
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
@@ -125,19 +125,18 @@ Rival JudgeRival(const std::string& name, std::span<const JudgedBlock> blocks,
 }
 
 // Runs a rule over recordings, each of which it reads once for each mask.
-Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rival) {
+Run MakeRun(std::span<const LabelledBlock> blocks, const RivalRule& rival) {
     if (rival.rule->replay == Replay::RanAlong)
         return [=](size_t index, const Setting& setting, bool brief) {
             return SimulateCycles(blocks[index], setting.threshold, brief);
         };
     std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
     for (const double mask : MasksOf(rival)) {
-        const CriterionFactory factory =
-            MakeCriterionFactory(std::string(rival.rule->name) + ":1",
-                                 {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}});
+        const auto rule = std::make_shared<const Rule>(
+            ParseRule(std::string(rival.rule->name) + ":1",
+                      {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}}));
         std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
-        for (const JudgedBlock& block : blocks)
-            ofBlocks.push_back(MakeErrorSeries(block, *factory.voting));
+        for (const LabelledBlock& block : blocks) ofBlocks.push_back(MakeErrorSeries(block, rule));
     }
     return [=](size_t index, const Setting& setting, bool brief) {
         return SimulateErrorRule(blocks[index], series[setting.mask][index], setting.threshold,
@@ -147,7 +146,8 @@ Run MakeRun(std::span<const JudgedBlock> blocks, const RivalRule& rival) {
 
 }  // namespace
 
-std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid) {
+std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
+                                  int grid) {
     std::vector<size_t> begins;
     for (size_t i = 0; i < blocks.size(); ++i)
         if (i == 0 || blocks[i].viewpoint != blocks[i - 1].viewpoint) begins.push_back(i);
@@ -157,8 +157,8 @@ std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy cho
 
     std::vector<Rival> rivals;
     for (const RivalRule& rule : RivalRules())
-        rivals.push_back(JudgeRival(rule.Name(), blocks, begins, SettingsOf(rule),
-                                    MakeRun(blocks, rule), chooseBy, grid));
+        rivals.push_back(EvaluateRival(rule.Name(), blocks, begins, SettingsOf(rule),
+                                       MakeRun(blocks, rule), chooseBy, grid));
     return rivals;
 }
 

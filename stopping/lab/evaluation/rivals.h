@@ -28,6 +28,7 @@ struct Rival {
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
 // samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Throws
 // std::invalid_argument if there are fewer than two viewpoints.
-std::vector<Rival> JudgeRivals(std::span<const JudgedBlock> blocks, ChooseBy chooseBy, int grid);
+std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
+                                  int grid);
 
 }  // namespace lull

@@ -23,12 +23,12 @@ RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
 }
 
 // Returns whether a verdict is due: at every second pass, so that they are evenly spaced.
-bool HasVerdict(const JudgedBlock& block, int spp) {
+bool HasVerdict(const LabelledBlock& block, int spp) {
     return (spp - block.passSpp) % (2 * block.passSpp) == 0;
 }
 
 // Adds the verdicts of a rule of which only the stop is known: noisy before it.
-void AddVerdictsOfStop(const JudgedBlock& block, RuleOutcome* outcome) {
+void AddVerdictsOfStop(const LabelledBlock& block, RuleOutcome* outcome) {
     for (const int spp : block.recording->spp)
         if (HasVerdict(block, spp))
             outcome->verdicts.push_back({.spp = spp,
@@ -37,7 +37,7 @@ void AddVerdictsOfStop(const JudgedBlock& block, RuleOutcome* outcome) {
 }
 
 // Adds the verdicts of a rule from its numbers, one for each record.
-void AddVerdicts(const JudgedBlock& block, std::span<const double> numbers, double threshold,
+void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, double threshold,
                  RuleOutcome* outcome) {
     const std::vector<int>& spp = block.recording->spp;
     for (size_t i = 0; i < spp.size(); ++i)
@@ -47,7 +47,7 @@ void AddVerdicts(const JudgedBlock& block, std::span<const double> numbers, doub
 }
 
 // Checks that every second pass is enough for what a rule compares beyond 400 spp.
-void CheckSpacing(const VotingRule& rule, const JudgedBlock& block) {
+void CheckSpacing(const Rule& rule, const LabelledBlock& block) {
     if (rule.spacing % (2 * block.passSpp) != 0)
         throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +
                                     " spp apart, but recordings have one every " +
@@ -55,15 +55,16 @@ void CheckSpacing(const VotingRule& rule, const JudgedBlock& block) {
 }
 
 // Lets the rule decide after every recorded pass, whether it has stopped the block or not.
-std::vector<Decision> Replayed(const JudgedBlock& block, const VotingRule& rule) {
-    CheckSpacing(rule, block);
+std::vector<Decision> Replayed(const LabelledBlock& block,
+                               const std::shared_ptr<const Rule>& rule) {
+    CheckSpacing(*rule, block);
     const BlockRecording& recording = *block.recording;
-    Decider decider(rule, {.index = block.block});
+    RuleCriterion criterion(rule, {.index = block.block});
     std::vector<Decision> decisions;
     for (int i = 0; i < recording.Count(); ++i) {
         const int spp = recording.spp[size_t(i)];
-        decisions.push_back(decider.Decide(
-            spp, decider.Looks(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
+        decisions.push_back(criterion.Decide(
+            spp, criterion.IsDue(spp) ? rule->recall(spp, ValuesOf(recording, i)) : Signals()));
     }
     return decisions;
 }
@@ -71,8 +72,8 @@ std::vector<Decision> Replayed(const JudgedBlock& block, const VotingRule& rule)
 std::vector<double> NumbersOf(std::span<const Decision> decisions) {
     std::vector<double> numbers;
     for (const Decision& decision : decisions)
-        numbers.push_back(decision.judged ? decision.value
-                                          : std::numeric_limits<double>::infinity());
+        numbers.push_back(decision.checked ? decision.value
+                                           : std::numeric_limits<double>::infinity());
     return numbers;
 }
 
@@ -81,7 +82,7 @@ int PassReaching(int spp, int passSpp) { return (spp + passSpp - 1) / passSpp * 
 
 Simulator ThresholdsSimulator(const std::string& path) {
     const auto rows = std::make_shared<const std::vector<ThresholdsRow>>(ReadThresholds(path));
-    return [=](const JudgedBlock& block) {
+    return [=](const LabelledBlock& block) {
         const auto row = std::ranges::find(*rows, block.viewpoint, &ThresholdsRow::name);
         if (row == rows->end())
             throw std::runtime_error(path + ": has no row '" + block.viewpoint + "'");
@@ -94,22 +95,22 @@ Simulator ThresholdsSimulator(const std::string& path) {
 
 }  // namespace
 
-ErrorSeries MakeErrorSeries(const JudgedBlock& block, const VotingRule& rule) {
-    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule.votes)};
+ErrorSeries MakeErrorSeries(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule) {
+    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule->votes)};
 }
 
 int FirstBelow(const ErrorSeries& series, double threshold) {
-    VoteCounter votes{.needed = series.needed};
+    int votes = 0;
     for (size_t i = 0; i < series.errors.size(); ++i) {
-        if (std::isinf(series.errors[i])) continue;  // no look, no vote
-        votes.Cast(series.errors[i], threshold);
-        if (votes.Stops()) return int(i);
+        if (std::isinf(series.errors[i])) continue;  // no check, no vote
+        votes = series.errors[i] < threshold ? votes + 1 : 0;
+        if (votes >= series.needed) return int(i);
     }
     return -1;
 }
 
-RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& series, double threshold,
-                              bool brief) {
+RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& series,
+                              double threshold, bool brief) {
     const BlockRecording& recording = *block.recording;
     const int first = FirstBelow(series, threshold);
     RuleOutcome outcome = MakeOutcome(recording, first < 0 ? 0 : recording.spp[size_t(first)]);
@@ -117,7 +118,7 @@ RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& serie
     return outcome;
 }
 
-RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brief) {
+RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief) {
     const auto found = std::ranges::find(kCyclesThresholds, threshold);
     if (found == kCyclesThresholds.end()) {
         std::string message = "cycles is recorded only at the thresholds";
@@ -134,17 +135,17 @@ RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brie
     return outcome;
 }
 
-RuleOutcome SimulateVoting(const JudgedBlock& block, const VotingRule& rule) {
+RuleOutcome SimulateRule(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule) {
     const std::vector<Decision> decisions = Replayed(block, rule);
     const auto last = std::ranges::find(decisions, true, &Decision::stop);
     RuleOutcome outcome = MakeOutcome(
         *block.recording,
         last == decisions.end() ? 0 : block.recording->spp[size_t(last - decisions.begin())]);
-    AddVerdicts(block, NumbersOf(decisions), rule.threshold, &outcome);
+    AddVerdicts(block, NumbersOf(decisions), rule->threshold, &outcome);
     return outcome;
 }
 
-RuleOutcome SimulateStop(const JudgedBlock& block, int spp) {
+RuleOutcome SimulateStop(const LabelledBlock& block, int spp) {
     RuleOutcome outcome = MakeOutcome(*block.recording, std::max(1, spp));
     AddVerdictsOfStop(block, &outcome);
     return outcome;
@@ -154,33 +155,32 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     // Each viewpoint has a row of its own.
     if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
         return ThresholdsSimulator(ArgumentOf(text));
-    if (const Rule* rule = FindRule(text); rule && rule->replay == Replay::Unknown)
+    if (const RuleEntry* entry = FindRule(text); entry && entry->replay == Replay::Unknown)
         throw std::invalid_argument("stopping rule '" + text +
                                     "': recordings hold no denoised pictures, nor what these are "
                                     "made of; thresholds that a render has written can be judged");
-    const CriterionFactory factory = MakeCriterionFactory(text, context);
+    const auto rule = std::make_shared<const Rule>(ParseRule(text, context));
     const Replay replay = FindRule(text)->replay;
     if (replay == Replay::Counts)
-        return [factory](const JudgedBlock& block) {
-            return SimulateStop(
-                block, PassReaching(factory.stopAt({.index = block.block}), block.passSpp));
+        return [rule](const LabelledBlock& block) {
+            return SimulateStop(block,
+                                PassReaching(rule->stopAt({.index = block.block}), block.passSpp));
         };
     if (replay == Replay::RanAlong)
-        return [factory](const JudgedBlock& block) {
-            return SimulateCycles(block, factory.voting->threshold);
-        };
-    if (!factory.voting->recall)
-        throw std::invalid_argument("stopping rule '" + factory.rule + "' cannot be simulated");
-    return [factory](const JudgedBlock& block) {
+        return
+            [rule](const LabelledBlock& block) { return SimulateCycles(block, rule->threshold); };
+    if (!rule->recall)
+        throw std::invalid_argument("stopping rule '" + rule->text + "' cannot be simulated");
+    return [rule](const LabelledBlock& block) {
         try {
-            return SimulateVoting(block, *factory.voting);
+            return SimulateRule(block, rule);
         } catch (const std::invalid_argument& error) {
-            throw std::runtime_error("stopping rule '" + factory.rule + "': " + error.what());
+            throw std::runtime_error("stopping rule '" + rule->text + "': " + error.what());
         }
     };
 }
 
-std::vector<ViewpointOutcome> Simulate(std::span<const JudgedBlock> blocks, const Simulator& rule,
+std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, const Simulator& rule,
                                        const std::string& setting) {
     std::vector<RuleOutcome> outcomes(blocks.size());
     ForEachIndex(int(blocks.size()), [&](int i) { outcomes[size_t(i)] = rule(blocks[size_t(i)]); });

@@ -7,13 +7,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/lab/recordings/training_samples.h"
-#include "stopping/rules/voting.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -22,7 +23,7 @@ struct ErrorSeries {
     std::vector<double> errors = {};  // of each record; infinite where there is none
     int needed = 1;                   // errors below the threshold in a row that stop the block
 };
-ErrorSeries MakeErrorSeries(const JudgedBlock& block, const VotingRule& rule);
+ErrorSeries MakeErrorSeries(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule);
 
 // Returns the record at which a threshold stops the block; -1: none.
 int FirstBelow(const ErrorSeries& series, double threshold);
@@ -30,26 +31,26 @@ int FirstBelow(const ErrorSeries& series, double threshold);
 // Each returns what a rule would have done to a block. Recordings that are empty throw
 // std::invalid_argument, and so does a threshold of cycles that is none of kCyclesThresholds, and a
 // model that does not fit the passes or asks for what is not recorded. Without verdicts if `brief`.
-RuleOutcome SimulateErrorRule(const JudgedBlock& block, const ErrorSeries& series, double threshold,
-                              bool brief = false);
-RuleOutcome SimulateCycles(const JudgedBlock& block, double threshold, bool brief = false);
+RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& series,
+                              double threshold, bool brief = false);
+RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief = false);
 // Decides as in a render, on signals that were recorded, with a rule that has them (recall) and was
 // made for the block's passes.
-RuleOutcome SimulateVoting(const JudgedBlock& block, const VotingRule& rule);
+RuleOutcome SimulateRule(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule);
 // Stops at `spp`, wherever the recording ends.
-RuleOutcome SimulateStop(const JudgedBlock& block, int spp);
+RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 
 // Says what a rule does to a block; can be called from several threads.
-using Simulator = std::function<RuleOutcome(const JudgedBlock& block)>;
+using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 
-// Reads a rule as MakeCriterionFactory() does, with the files it names and for the passes of the
+// Reads a rule as ParseRule() does, with the files it names and for the passes of the
 // recordings; but `thresholds:FILE` takes the rows that have the viewpoints' names. Throws
 // std::invalid_argument and std::runtime_error as that does, and for a rule that cannot be run on
 // recordings; the simulator throws std::runtime_error for a block that a file does not have.
 Simulator MakeSimulator(const std::string& rule, const RuleContext& context = {});
 
 // Runs a rule over blocks, on all cores; those of one viewpoint follow each other.
-std::vector<ViewpointOutcome> Simulate(std::span<const JudgedBlock> blocks, const Simulator& rule,
+std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, const Simulator& rule,
                                        const std::string& setting);
 
 }  // namespace lull

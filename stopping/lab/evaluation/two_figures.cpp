@@ -6,7 +6,7 @@ namespace lull {
 
 namespace {
 
-bool HasOpen(const JudgedRule& rule) {
+bool HasOpen(const EvaluatedRule& rule) {
     for (const ViewpointOutcome& viewpoint : rule.viewpoints)
         for (const BlockOutcome& block : viewpoint.blocks)
             if (block.outcome.open) return true;
@@ -14,7 +14,7 @@ bool HasOpen(const JudgedRule& rule) {
 }
 
 // Marks the stops that lie beyond the ends of recordings. Outcomes are in the order of the blocks.
-void MarkOpen(std::span<const JudgedBlock> blocks, JudgedRule* rule) {
+void MarkOpen(std::span<const LabelledBlock> blocks, EvaluatedRule* rule) {
     size_t next = 0;
     for (ViewpointOutcome& viewpoint : rule->viewpoints)
         for (BlockOutcome& block : viewpoint.blocks) {
@@ -25,15 +25,16 @@ void MarkOpen(std::span<const JudgedBlock> blocks, JudgedRule* rule) {
 
 }  // namespace
 
-void AddTwoFigures(std::span<const JudgedBlock> blocks, JudgedRule recorded,
-                   const std::function<JudgedRule()>& extend, std::vector<JudgedRule>* rules) {
+void AddTwoFigures(std::span<const LabelledBlock> blocks, EvaluatedRule recorded,
+                   const std::function<EvaluatedRule()>& extend,
+                   std::vector<EvaluatedRule>* rules) {
     if (!HasOpen(recorded)) {
         rules->push_back(std::move(recorded));
         return;
     }
     recorded.openStops = OpenStops::Ends;
     rules->push_back(std::move(recorded));
-    JudgedRule extended = extend();
+    EvaluatedRule extended = extend();
     MarkOpen(blocks, &extended);
     extended.openStops = OpenStops::Extended;
     rules->push_back(std::move(extended));

@@ -14,7 +14,7 @@ namespace lull {
 // of them it is added twice, so that no figure looks final: stopped at their ends, and then what
 // `extend` returns, which is what it did to the same blocks with extended recordings. `extend` can
 // be empty if no recording ends below kJudgedCap.
-void AddTwoFigures(std::span<const JudgedBlock> blocks, JudgedRule recorded,
-                   const std::function<JudgedRule()>& extend, std::vector<JudgedRule>* rules);
+void AddTwoFigures(std::span<const LabelledBlock> blocks, EvaluatedRule recorded,
+                   const std::function<EvaluatedRule()>& extend, std::vector<EvaluatedRule>* rules);
 
 }  // namespace lull

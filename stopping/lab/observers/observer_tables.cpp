@@ -37,7 +37,7 @@ std::string ObserversCsv(const Collected& collected) {
     std::string csv =
         "file,viewpoint,observer,counts,reason,procedure,checks,failed,repeats,repeat_octaves,"
         "shift_octaves,seconds,gamma,distance_cm,doubts\n";
-    for (const JudgedObserver& o : collected.observers)
+    for (const CheckedObserver& o : collected.observers)
         csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{:.0f},{},{},{}\n",
                            CsvField(o.answers.file), CsvField(o.answers.viewpoint),
                            CsvField(o.answers.observer), o.leftOut.empty() ? "yes" : "no",
@@ -51,7 +51,7 @@ std::string ObserversCsv(const Collected& collected) {
 
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint) {
     std::string rows;
-    for (const JudgedObserver& o : collected.observers) {
+    for (const CheckedObserver& o : collected.observers) {
         if (!o.leftOut.empty() || o.answers.viewpoint != viewpoint) continue;
         for (const BlockAnswer& answer : o.answers.answers)
             for (const NoiseAnswer& single : answer.single)

@@ -119,7 +119,7 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
 }
 
 // Says of answers that count what is odd about them.
-std::string DoubtsOf(const JudgedObserver& judged, double secondsEach) {
+std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
     const auto add = [&](const std::string& doubt) {
         doubts += (doubts.empty() ? "" : "; ") + doubt;
@@ -133,8 +133,8 @@ std::string DoubtsOf(const JudgedObserver& judged, double secondsEach) {
     return doubts;
 }
 
-JudgedObserver JudgeObserver(ObserverAnswers answers, const CollectOptions& options) {
-    JudgedObserver judged;
+CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& options) {
+    CheckedObserver judged;
     double squares = 0;
     for (const BlockAnswer& answer : answers.answers) {
         if (answer.kind == AnswerKind::Catch) {
@@ -195,7 +195,7 @@ void AddOwnConfidence(const ObserverAnswers& answers, CollectedViewpoint* viewpo
 }
 
 // Makes the viewpoint of observers whose answers count, and notes how far each is from all.
-CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) {
+CollectedViewpoint MakeCollected(const std::vector<CheckedObserver*>& observers) {
     const ObserverAnswers& first = observers.front()->answers;
     CollectedViewpoint viewpoint{.name = first.viewpoint,
                                  .study = first.study,
@@ -207,13 +207,13 @@ CollectedViewpoint MakeCollected(const std::vector<JudgedObserver*>& observers) 
     std::vector<std::vector<double>> logs(first.thresholds.size());
     for (size_t i = 0; i < logs.size(); ++i) {
         std::vector<double> spp;
-        for (const JudgedObserver* o : observers) {
+        for (const CheckedObserver* o : observers) {
             spp.push_back(o->answers.thresholds[i]);
             logs[i].push_back(std::log2(spp.back()));
         }
         viewpoint.blocks.push_back(MakeConsensus(spp, viewpoint.levels));
     }
-    for (const JudgedObserver* o : observers)
+    for (const CheckedObserver* o : observers)
         for (const BlockAnswer& answer : o->answers.answers)
             if (answer.kind != AnswerKind::Catch)
                 viewpoint.blocks[size_t(answer.block)].answers += answer.answers;
@@ -241,9 +241,9 @@ Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOp
         return std::pair(one.viewpoint, one.observer);
     });
     for (ObserverAnswers& one : answers)
-        collected.observers.push_back(JudgeObserver(std::move(one), options));
-    std::map<std::string, std::vector<JudgedObserver*>> counting;
-    for (JudgedObserver& one : collected.observers)
+        collected.observers.push_back(CheckObserver(std::move(one), options));
+    std::map<std::string, std::vector<CheckedObserver*>> counting;
+    for (CheckedObserver& one : collected.observers)
         if (one.leftOut.empty()) counting[one.answers.viewpoint].push_back(&one);
     for (const auto& [name, observers] : counting)
         collected.viewpoints.push_back(MakeCollected(observers));

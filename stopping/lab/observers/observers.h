@@ -19,7 +19,7 @@ struct RefusedAnswers {
 };
 
 // Says what is known of an observer's care. Octaves are of spp: 1 is a factor of two.
-struct JudgedObserver {
+struct CheckedObserver {
     ObserverAnswers answers;
     std::string leftOut;  // why; empty: the answers count
     std::string doubts;   // what a reader should know of answers that count; may be empty
@@ -52,7 +52,7 @@ struct CollectedViewpoint {
 
 struct Collected {
     std::vector<CollectedViewpoint> viewpoints;  // in the order of their names
-    std::vector<JudgedObserver> observers;       // in the order of viewpoint, observer
+    std::vector<CheckedObserver> observers;      // in the order of viewpoint, observer
     std::vector<RefusedAnswers> refused;
 };
 

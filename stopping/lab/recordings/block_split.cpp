@@ -7,24 +7,24 @@
 
 namespace lull {
 
-BlockSplit LeaveOut(std::span<const JudgedBlock> blocks, std::span<const std::string> names) {
+BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::string> names) {
     BlockSplit split;
     for (const std::string& name : names) {
-        if (std::ranges::find(blocks, name, &JudgedBlock::viewpoint) == blocks.end())
+        if (std::ranges::find(blocks, name, &LabelledBlock::viewpoint) == blocks.end())
             throw std::invalid_argument("there is no viewpoint '" + Printable(name) +
                                         "' to leave out");
         split.name.append(split.name.empty() ? "" : ", ").append(name);
     }
-    for (const JudgedBlock& block : blocks) {
+    for (const LabelledBlock& block : blocks) {
         const bool isOut = std::ranges::find(names, block.viewpoint) != names.end();
         (isOut ? split.test : split.training).push_back(block);
     }
     return split;
 }
 
-std::vector<BlockSplit> LeaveEachOut(std::span<const JudgedBlock> blocks) {
+std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks) {
     std::vector<BlockSplit> splits;
-    for (const JudgedBlock& block : blocks)
+    for (const LabelledBlock& block : blocks)
         if (std::ranges::find(splits, block.viewpoint, &BlockSplit::name) == splits.end())
             splits.push_back(LeaveOut(blocks, {&block.viewpoint, 1}));
     if (splits.size() < 2)
@@ -33,8 +33,8 @@ std::vector<BlockSplit> LeaveEachOut(std::span<const JudgedBlock> blocks) {
 }
 
 void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split) {
-    std::vector<JudgedBlock> kept;
-    for (const JudgedBlock& block : split->training) {
+    std::vector<LabelledBlock> kept;
+    for (const LabelledBlock& block : split->training) {
         const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
         if (row == rows.end())
             throw std::invalid_argument("has no row '" + Printable(block.viewpoint) + "'");

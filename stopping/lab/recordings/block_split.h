@@ -12,15 +12,15 @@ namespace lull {
 // Holds blocks to train on and others to judge by, which the training never sees.
 struct BlockSplit {
     std::string name = {};  // says what is left out
-    std::vector<JudgedBlock> training = {}, test = {};
+    std::vector<LabelledBlock> training = {}, test = {};
 };
 
 // Leaves out the viewpoints of these names. Throws std::invalid_argument for a name without blocks.
-BlockSplit LeaveOut(std::span<const JudgedBlock> blocks, std::span<const std::string> names);
+BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::string> names);
 
 // Returns a split for each viewpoint, which leaves it out. Throws std::invalid_argument if there
 // are fewer than two.
-std::vector<BlockSplit> LeaveEachOut(std::span<const JudgedBlock> blocks);
+std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks);
 
 // Moves those blocks from the training to the test that are not listed for their viewpoint: a row
 // holds the viewpoint's name and the numbers of its blocks to train on (the paper's split has 12 of

@@ -121,15 +121,15 @@ BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int
     return extended;
 }
 
-ExtendedBlocks ExtendBlocks(std::span<const JudgedBlock> blocks) {
+ExtendedBlocks ExtendBlocks(std::span<const LabelledBlock> blocks) {
     ExtendedBlocks result{.recordings = {}, .blocks = {blocks.begin(), blocks.end()}};
-    std::vector<JudgedBlock*> open;
-    for (JudgedBlock& block : result.blocks)
+    std::vector<LabelledBlock*> open;
+    for (LabelledBlock& block : result.blocks)
         if (block.recording->spp.empty() || block.recording->spp.back() < kJudgedCap)
             open.push_back(&block);
     result.recordings.resize(open.size());
     ForEachIndex(int(open.size()), [&](int i) {
-        JudgedBlock& block = *open[size_t(i)];
+        LabelledBlock& block = *open[size_t(i)];
         auto& recording = result.recordings[size_t(i)];
         recording = std::make_unique<const BlockRecording>(
             ExtendRecording(*block.recording, block.passSpp, kJudgedCap));

@@ -25,9 +25,9 @@ BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int
 // Holds blocks whose recordings go on to kJudgedCap. It can be moved, but not copied.
 struct ExtendedBlocks {
     std::vector<std::unique_ptr<const BlockRecording>> recordings;  // those that were extended
-    std::vector<JudgedBlock> blocks;  // all, in their order; those that went on are as they were
+    std::vector<LabelledBlock> blocks;  // all, in their order; those that went on are as they were
 };
 // Throws as ExtendRecording() does.
-ExtendedBlocks ExtendBlocks(std::span<const JudgedBlock> blocks);
+ExtendedBlocks ExtendBlocks(std::span<const LabelledBlock> blocks);
 
 }  // namespace lull

@@ -96,7 +96,7 @@ Recorder::~Recorder() = default;
 void Recorder::StartCycles() {
     cycles.clear();
     for (const double threshold : kCyclesThresholds)
-        cycles.push_back(MakeVoting(CyclesRule(threshold)));
+        cycles.push_back(MakeCriterion(CyclesRule(threshold)));
 }
 
 Decision Recorder::Observe(const BlockView& view) {

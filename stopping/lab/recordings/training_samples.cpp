@@ -17,10 +17,10 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     return RecordedMeasures(recording.spp[size_t(i)], ValuesOf(recording, i), settings);
 }
 
-std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
-                                      const ModelSettings& settings) {
-    std::vector<JudgedBlock> kept;
-    for (const JudgedBlock& block : blocks)
+std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
+                                        const ModelSettings& settings) {
+    std::vector<LabelledBlock> kept;
+    for (const LabelledBlock& block : blocks)
         if (std::ranges::find(settings.features, Feature::Attributes26) ==
                 settings.features.end() ||
             !block.recording->absent[ChannelIndex("attributes26")])
@@ -28,10 +28,10 @@ std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
     return kept;
 }
 
-std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
-                                   std::span<const ThresholdsRow> human,
-                                   std::vector<std::string>* unknown) {
-    std::vector<JudgedBlock> blocks;
+std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
+                                     std::span<const ThresholdsRow> human,
+                                     std::vector<std::string>* unknown) {
+    std::vector<LabelledBlock> blocks;
     std::set<std::string> names;
     for (const ViewpointRecording& viewpoint : viewpoints) {
         const std::string& name = viewpoint.name;
@@ -58,11 +58,11 @@ std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoint
     return blocks;
 }
 
-TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSettings& settings) {
+TrainingSamples MakeSamples(std::span<const LabelledBlock> blocks, const ModelSettings& settings) {
     CheckSettings(settings);
     TrainingSamples samples{.settings = settings, .windowSize = settings.k * InputCount(settings)};
     std::map<std::string, int> viewpoints;
-    for (const JudgedBlock& block : blocks) {
+    for (const LabelledBlock& block : blocks) {
         const int viewpoint =
             viewpoints.try_emplace(block.viewpoint, int(viewpoints.size())).first->second;
         const BlockRecording& recording = *block.recording;

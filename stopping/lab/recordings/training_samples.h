@@ -19,7 +19,7 @@ RecordedValues ValuesOf(const BlockRecording& recording, int i);
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
 
 // Names a block that was recorded and that people judged.
-struct JudgedBlock {
+struct LabelledBlock {
     std::string viewpoint;
     int block = 0;                              // row-major number
     int human = 0;                              // spp from which on people saw no noise
@@ -31,14 +31,14 @@ struct JudgedBlock {
 // the order of viewpoints and blocks; the names of those without go to `unknown`, which can be
 // null. Throws std::invalid_argument for a viewpoint that comes twice, a row without the block or
 // blocks with different lengths of passes.
-std::vector<JudgedBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
-                                   std::span<const ThresholdsRow> human,
-                                   std::vector<std::string>* unknown);
+std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
+                                     std::span<const ThresholdsRow> human,
+                                     std::vector<std::string>* unknown);
 
 // Returns the blocks that were recorded with all that the settings ask for: older recordings have
 // no attributes.
-std::vector<JudgedBlock> KeepRecorded(std::span<const JudgedBlock> blocks,
-                                      const ModelSettings& settings);
+std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
+                                        const ModelSettings& settings);
 
 // Holds windows, one after the other.
 struct TrainingSamples {
@@ -53,6 +53,6 @@ struct TrainingSamples {
 
 // Makes a sample of each window that ends at a multiple of n spp after the first pass and is in
 // the recordings as a whole. Throws std::invalid_argument if a block is not recorded every n spp.
-TrainingSamples MakeSamples(std::span<const JudgedBlock> blocks, const ModelSettings& settings);
+TrainingSamples MakeSamples(std::span<const LabelledBlock> blocks, const ModelSettings& settings);
 
 }  // namespace lull

@@ -46,15 +46,15 @@ std::string Text(double value, int digits) {
 }
 
 // Returns how many windows a recording gives.
-double WindowCount(const JudgedBlock& block, const ModelSettings& settings) {
+double WindowCount(const LabelledBlock& block, const ModelSettings& settings) {
     const int end = block.recording->Count() > 0 ? block.recording->spp.back() : 0;
     const int steps = end < block.passSpp ? 0 : (end - block.passSpp) / settings.n + 1;
     return std::max(0, steps - settings.k + 1);
 }
 
-double WindowCount(std::span<const JudgedBlock> blocks, const ModelSettings& settings) {
+double WindowCount(std::span<const LabelledBlock> blocks, const ModelSettings& settings) {
     double count = 0;
-    for (const JudgedBlock& block : blocks) count += WindowCount(block, settings);
+    for (const LabelledBlock& block : blocks) count += WindowCount(block, settings);
     return count;
 }
 

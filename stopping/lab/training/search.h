@@ -39,7 +39,7 @@ struct SearchResult {
     double testAuc = 0, testAccuracy = 0;
     double trainingAuc = 0, trainingAccuracy = 0;
     double criticalError = 0;    // at a margin of 2 %, of the blocks left out
-    double early = 0, late = 0;  // shares of them, see Judgement
+    double early = 0, late = 0;  // shares of them, see Scores
     double seconds = 0;          // that it took
 };
 

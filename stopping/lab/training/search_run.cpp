@@ -66,8 +66,8 @@ std::optional<SearchResult> Try(const Trial& trial, TrainingCheckpoint* checkpoi
     }
     KeepAnswers(&training);
     KeepAnswers(&test);
-    const JudgeOptions judge{.grid = settings.n, .margins = {2}};
-    const Judgement onTraining = Judge(training, judge), onTest = Judge(test, judge);
+    const ScoreOptions judge{.grid = settings.n, .margins = {2}};
+    const Scores onTraining = Score(training, judge), onTest = Score(test, judge);
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     return SearchResult{.values = trial.values,
                         .testAuc = onTest.auc.value_or(unknown),
@@ -99,7 +99,7 @@ void CheckGrid(const TrainingPlan& plan, const std::string& grid, std::span<cons
 
 std::vector<Trial> MakeTrials(const TrainingPlan& plan, const std::string& grid,
                               std::span<const SearchAxis> axes,
-                              const std::vector<JudgedBlock>& judged, const OptionSetter& set,
+                              const std::vector<LabelledBlock>& judged, const OptionSetter& set,
                               const WarningSink& warn) {
     std::vector<Trial> trials(CombinationCount(axes));
     const auto each = [&](auto&& work) {
@@ -117,7 +117,7 @@ std::vector<Trial> MakeTrials(const TrainingPlan& plan, const std::string& grid,
         trial.plan = PlanAt(plan, axes, trial.values, set);
         settings.push_back(trial.plan.settings);
     });
-    const std::vector<JudgedBlock> blocks = KeepRecordedForAll(judged, settings, warn);
+    const std::vector<LabelledBlock> blocks = KeepRecordedForAll(judged, settings, warn);
     each([&](Trial& trial) {
         CheckSpacing(trial.plan.settings, blocks.front().passSpp);
         MeasuresOf(*blocks.front().recording, 0, trial.plan.settings);

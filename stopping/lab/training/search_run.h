@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/lab/recordings/judged_blocks.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/lab/training/search.h"
 #include "stopping/lab/training/training_run.h"
 
@@ -35,7 +35,7 @@ struct Trial {
 // name of the combination.
 std::vector<Trial> MakeTrials(const TrainingPlan& plan, const std::string& grid,
                               std::span<const SearchAxis> axes,
-                              const std::vector<JudgedBlock>& judged, const OptionSetter& set,
+                              const std::vector<LabelledBlock>& judged, const OptionSetter& set,
                               const WarningSink& warn);
 
 // Checks each value by itself, so that an error can name its line. Throws std::runtime_error.

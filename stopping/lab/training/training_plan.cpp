@@ -22,9 +22,9 @@ std::string ListText(const std::vector<T>& list) {
     return text.empty() ? "none" : text;
 }
 
-std::string BlocksText(std::span<const JudgedBlock> blocks) {
+std::string BlocksText(std::span<const LabelledBlock> blocks) {
     std::map<std::string, std::string> viewpoints;
-    for (const JudgedBlock& block : blocks)
+    for (const LabelledBlock& block : blocks)
         viewpoints[block.viewpoint] += fmt::format(" {}", block.block);
     std::string text;
     for (const auto& [name, numbers] : viewpoints)
@@ -35,7 +35,7 @@ std::string BlocksText(std::span<const JudgedBlock> blocks) {
 }  // namespace
 
 std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan,
-                                   std::span<const JudgedBlock> blocks) try {
+                                   std::span<const LabelledBlock> blocks) try {
     std::vector<BlockSplit> splits;
     if (plan.crossValidate) splits = LeaveEachOut(blocks);
     for (BlockSplit& split : splits) split.name = "without " + split.name;

@@ -29,7 +29,7 @@ struct TrainingPlan {
 
 // Returns a split for each network, in the order in which they are trained; that of the last one
 // has no name. Throws std::runtime_error.
-std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan, std::span<const JudgedBlock> blocks);
+std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan, std::span<const LabelledBlock> blocks);
 
 // Throws std::runtime_error if n or the spacing of votes is no multiple of the recordings' pass.
 void CheckSpacing(const ModelSettings& settings, int passSpp);

@@ -15,9 +15,9 @@ namespace lull {
 
 namespace {
 
-std::string JudgementText(const std::vector<ViewpointOutcome>& viewpoints,
-                          const JudgeOptions& options) {
-    const Judgement j = Judge(viewpoints, options);
+std::string ScoresText(const std::vector<ViewpointOutcome>& viewpoints,
+                       const ScoreOptions& options) {
+    const Scores j = Score(viewpoints, options);
     return fmt::format("critical error at {:g} %: {:.2f} %, mean error {:.0f} spp, AUC {:.4f}",
                        options.margins.at(0), 100 * j.criticalErrors.at(0), j.absoluteError,
                        j.auc.value_or(0.5));
@@ -26,11 +26,11 @@ std::string JudgementText(const std::vector<ViewpointOutcome>& viewpoints,
 // Holds what networks did to blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
-    std::vector<JudgedBlock> blocks = {};
+    std::vector<LabelledBlock> blocks = {};
     std::vector<ViewpointOutcome> recorded = {}, extended = {};
 
     void Add(const Network& network, const ModelSettings& settings,
-             std::span<const JudgedBlock> judged) {
+             std::span<const LabelledBlock> judged) {
         blocks.insert(blocks.end(), judged.begin(), judged.end());
         AddOutcomes(network, settings, judged, &recorded);
         AddOutcomes(network, settings, ExtendBlocks(judged).blocks, &extended);
@@ -62,10 +62,10 @@ std::optional<Network> TrainNetwork(const ModelSettings& settings, const Trainin
 }
 
 void AddOutcomes(const Network& network, const ModelSettings& settings,
-                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
+                 std::span<const LabelledBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
     const auto model = std::make_shared<const Model>(Model{network, settings, ""});
-    const auto simulator = [&](const JudgedBlock& block) {
-        return SimulateVoting(block, LearnedRule(model, block.passSpp));
+    const auto simulator = [&](const LabelledBlock& block) {
+        return SimulateRule(block, std::make_shared<const Rule>(LearnedRule(model, block.passSpp)));
     };
     for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
         viewpoints->push_back(std::move(viewpoint));
@@ -102,7 +102,7 @@ std::optional<TrainingResult> TrainAll(
     for (NetworkOutcomes& o : outcomes)
         AddTwoFigures(
             o.blocks, {.name = o.name, .viewpoints = std::move(o.recorded)},
-            [&] { return JudgedRule{.name = o.name, .viewpoints = std::move(o.extended)}; },
+            [&] { return EvaluatedRule{.name = o.name, .viewpoints = std::move(o.extended)}; },
             &result.rules);
     return result;
 }
@@ -118,10 +118,10 @@ std::string CertaintyText(const TrainingResult& result) {
 
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
-                                              const JudgeOptions& judge) {
+                                              const ScoreOptions& judge) {
     std::map<std::string, std::string> record = MakeRecord(plan, split);
-    for (const JudgedRule& rule : result.rules)
-        record["judged on " + LabelOf(rule)] = JudgementText(rule.viewpoints, judge);
+    for (const EvaluatedRule& rule : result.rules)
+        record["judged on " + LabelOf(rule)] = ScoresText(rule.viewpoints, judge);
     if (const std::string certainty = CertaintyText(result); !certainty.empty())
         record["certainty"] = certainty;
     return record;

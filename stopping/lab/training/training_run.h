@@ -31,7 +31,7 @@ std::optional<Network> TrainNetwork(const ModelSettings& settings, const Trainin
 
 // Adds what a network does to blocks.
 void AddOutcomes(const Network& network, const ModelSettings& settings,
-                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints);
+                 std::span<const LabelledBlock> blocks, std::vector<ViewpointOutcome>* viewpoints);
 
 // Holds what came of a plan.
 struct TrainingResult {
@@ -39,7 +39,7 @@ struct TrainingResult {
     // What networks did: "each viewpoint left out" and, of the last one, "blocks left out" or, if
     // there are none, "blocks trained on"; each twice where recordings end too early for it, see
     // AddTwoFigures().
-    std::vector<JudgedRule> rules = {};
+    std::vector<EvaluatedRule> rules = {};
     // Of the networks without each viewpoint, see LogRatioQuantiles(); else empty.
     std::vector<double> logRatios = {};
 };
@@ -56,6 +56,6 @@ std::string CertaintyText(const TrainingResult& result);
 // Says what the last network was trained on, with which options, and how it was judged.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
-                                              const JudgeOptions& judge);
+                                              const ScoreOptions& judge);
 
 }  // namespace lull

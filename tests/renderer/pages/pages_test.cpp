@@ -76,7 +76,8 @@ TEST(MakeRenderPage, HasCurvesAndDecisions) {
     result.blocks.resize(1);
     result.blocks[0].block = {
         .pixels = {{4, 4}, {8, 8}}, .spp = 20, .stopped = true, .stoppedByVote = true};
-    result.blocks[0].decisions = {{20, {.stop = true, .judged = true, .value = 1, .threshold = 2}}};
+    result.blocks[0].decisions = {
+        {20, {.stop = true, .checked = true, .value = 1, .threshold = 2}}};
     std::vector<BlockHistory> histories(1);
     histories[0].curves = {{20}, {0.5f}, {1.5f}};
     Provenance provenance;

@@ -26,7 +26,7 @@ class SummingCriterion final : public Criterion {
     ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
     Decision Observe(const BlockView& view) override {
         for (size_t i = 0; i < view.mean.size(); ++i) sum += view.mean[i] - view.halfMean[i];
-        return {.stop = --passes == 0, .judged = true, .value = sum, .threshold = 0};
+        return {.stop = --passes == 0, .checked = true, .value = sum, .threshold = 0};
     }
     std::vector<std::byte> Save() const override {
         StateWriter writer;

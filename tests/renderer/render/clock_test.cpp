@@ -37,7 +37,7 @@ struct Clocked {
         if (samples > 0)
             options.secondsLeft = [this, samples] { return double(samples - taken) / 1e6; };
         options.makeCriterion = [](const BlockInfo&) {
-            return MakeVoting(LightnessNoiseRule(0.07));
+            return MakeCriterion(LightnessNoiseRule(0.07));
         };
         if (change) change(&options);
         const auto source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
@@ -177,7 +177,9 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
     options.sampler = SamplerKind::Random;
     options.threads = 2;
-    options.makeCriterion = [](const BlockInfo&) { return MakeVoting(LightnessNoiseRule(0.07)); };
+    options.makeCriterion = [](const BlockInfo&) {
+        return MakeCriterion(LightnessNoiseRule(0.07));
+    };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
     const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {

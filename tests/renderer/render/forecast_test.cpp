@@ -16,7 +16,7 @@ StopTrend Follow(const RuleTrend& rule, int end, const std::function<double(int 
                  double threshold = kThreshold) {
     StopTrend trend(rule);
     for (int spp = 20; spp <= end; spp += 20)
-        trend.Add(spp, {.judged = true, .value = value(spp), .threshold = threshold});
+        trend.Add(spp, {.checked = true, .value = value(spp), .threshold = threshold});
     return trend;
 }
 
@@ -53,9 +53,9 @@ TEST(PredictStops, FollowsWhatSamplesHaveBecome) {
         return kThreshold * std::sqrt(variance * (1. / spp - 1 / (variance * 10000)) * 6000);
     };
     for (int spp = 20; spp < 300; spp += 20)
-        trend.Add(spp, {.judged = true, .value = value(spp, 1), .threshold = kThreshold});
+        trend.Add(spp, {.checked = true, .value = value(spp, 1), .threshold = kThreshold});
     for (int spp = 300; spp <= 700; spp += 20)
-        trend.Add(spp, {.judged = true, .value = value(spp, 0.25), .threshold = kThreshold}, 0.25);
+        trend.Add(spp, {.checked = true, .value = value(spp, 0.25), .threshold = kThreshold}, 0.25);
     EXPECT_NEAR(PredictOne(trend), 1 / (1 / 2500. + 1 / 1500.), 40);
 }
 
@@ -138,12 +138,11 @@ TEST(PredictStops, FollowsTheNoiseThatANetworkLooksAt) {
     StopTrend trend({.kind = RuleTrend::Probability, .votes = 1, .undecided = 0.7});
     EXPECT_EQ(trend.IsOfOdds(), false);
     for (int spp = 20; spp <= 400; spp += 20)
-        trend.Add(
-            spp,
-            {.judged = true, .value = 1, .threshold = 0.5, .noise = 0.7 * std::sqrt(2500.0 / spp)});
+        trend.Add(spp, {.checked = true, .value = 1, .threshold = 0.5}, 1,
+                  0.7 * std::sqrt(2500.0 / spp));
     EXPECT_NEAR(PredictOne(trend), 2500, 20);
     // One from a checkpoint has no noise.
-    trend.Add(420, {.judged = true, .value = 1, .threshold = 0.5});
+    trend.Add(420, {.checked = true, .value = 1, .threshold = 0.5});
     EXPECT_EQ(trend.LastSpp(), 400);
 }
 
@@ -152,7 +151,7 @@ TEST(PredictStops, CountsTheVotesThatAreMissing) {
     const auto value = [](int spp) { return kThreshold * std::sqrt(2000.0 / spp); };
     EXPECT_NEAR(PredictOne(Follow(rule, 1000, value)), 2040, 20);
     StopTrend trend = Follow(rule, 2000, value);
-    trend.Add(2020, {.judged = true, .value = 0.7, .threshold = kThreshold, .votes = 2});
+    trend.Add(2020, {.checked = true, .value = 0.7, .threshold = kThreshold, .votes = 2});
     EXPECT_EQ(trend.VotesLeft(), 0);
 }
 

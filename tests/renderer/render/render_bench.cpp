@@ -17,6 +17,7 @@
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/render/render.h"
 #include "renderer/scene/compile.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/renderer/bench_scenes.h"
 
 namespace lull {
@@ -77,11 +78,11 @@ void BenchStart(benchmark::State& state, const std::string& file) {
 // Renders `region` of the scene again and again.
 void RenderRegion(benchmark::State& state, const Scene& scene, Estimator estimator,
                   const PixelRect& region, const ScheduleOptions& schedule) {
-    const CriterionFactory factory = MakeCriterionFactory("dammertz:1e-9");
+    const Rule rule = ParseRule("dammertz:1e-9");
     RenderOptions options;
     options.schedule = schedule;
     options.sampler = SamplerKind::Random;
-    options.makeCriterion = factory.make;
+    options.makeCriterion = CriteriaOf(factory);
     int64_t samples = 0;
     double wall = 0, busy = 0;
     const double cpuBefore = ProcessSeconds();

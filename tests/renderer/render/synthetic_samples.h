@@ -54,7 +54,7 @@ class ScriptedCriterion : public Criterion {
     ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
     Decision Observe(const BlockView& view) override {
         Decision decision;
-        decision.judged = true;
+        decision.checked = true;
         decision.value = view.spp;
         decision.threshold = stopAt;
         decision.stop = view.spp >= stopAt;

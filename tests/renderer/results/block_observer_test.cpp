@@ -38,7 +38,7 @@ struct FadingBlock {
 
 std::vector<std::unique_ptr<Criterion>> FixedRules(std::initializer_list<int> spp) {
     std::vector<std::unique_ptr<Criterion>> rules;
-    for (const int n : spp) rules.push_back(n > 0 ? MakeFixed(n) : nullptr);
+    for (const int n : spp) rules.push_back(n > 0 ? MakeCriterion(FixedRule(n)) : nullptr);
     return rules;
 }
 
@@ -81,21 +81,21 @@ TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
     FadingBlock block;
     BlockHistory history;
     std::vector<std::unique_ptr<Criterion>> rules;
-    rules.push_back(MakeVoting(DammertzRule(0.05)));
-    rules.push_back(MakeFixed(2000));
+    rules.push_back(MakeCriterion(DammertzRule(0.05)));
+    rules.push_back(MakeCriterion(FixedRule(2000)));
     BlockObserver observer(std::move(rules), {.goesOn = true}, &history);
-    const std::unique_ptr<Criterion> alone = MakeVoting(DammertzRule(0.05));
+    const std::unique_ptr<Criterion> alone = MakeCriterion(DammertzRule(0.05));
     bool stopped = false;
     for (int spp = 20; spp <= 2000; spp += 20) {
         const BlockView view = block.At(spp);
         const Decision seen = observer.Observe(view);
         if (stopped) {
-            EXPECT_FALSE(seen.judged);
+            EXPECT_FALSE(seen.checked);
             continue;
         }
         const Decision expected = alone->Observe(view);
         EXPECT_EQ(seen.value, expected.value);
-        EXPECT_EQ(seen.judged, expected.judged);
+        EXPECT_EQ(seen.checked, expected.checked);
         stopped = expected.stop;
         if (stopped) {
             EXPECT_EQ(history.stops[0].spp, spp);
@@ -125,7 +125,7 @@ TEST(BlockObserver, GoesOnAfterAnInterruption) {
     const ObserverOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
     const auto rules = [] {
         auto made = FixedRules({40, 0});
-        made.push_back(MakeVoting(CyclesRule(0.05)));
+        made.push_back(MakeCriterion(CyclesRule(0.05)));
         return made;
     };
     BlockHistory whole, parts;

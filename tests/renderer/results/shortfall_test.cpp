@@ -47,13 +47,11 @@ TEST(Shortfall, KnowsWhereSimpleRulesStop) {
         result.blocks[0].decisions = {{100, decision}};
         return FindShortfall(WithRule(rule), result).at(0).neededSpp;
     };
-    EXPECT_EQ(neededSpp("fixed:500", {.judged = true, .value = 100, .threshold = 500}), 500);
-    EXPECT_EQ(neededSpp("lnoise:0.25",
-                        {.judged = true, .value = 1, .threshold = 0.25, .visibleNoise = 1.0}),
-              1600);
-    EXPECT_EQ(neededSpp("fixed:99999", {.judged = true, .value = 100, .threshold = 99999}), 10000);
+    EXPECT_EQ(neededSpp("fixed:500", {.checked = true, .value = 100, .threshold = 500}), 500);
+    EXPECT_EQ(neededSpp("lnoise:0.25", {.checked = true, .value = 1, .threshold = 0.25}), 1600);
+    EXPECT_EQ(neededSpp("fixed:99999", {.checked = true, .value = 100, .threshold = 99999}), 10000);
     // 0.65, the default of lnoise, where nothing else is known.
-    EXPECT_EQ(neededSpp("learned", {.judged = true, .value = 0.9, .threshold = 0.5}), 240);
+    EXPECT_EQ(neededSpp("learned", {.checked = true, .value = 0.9, .threshold = 0.5}), 240);
 }
 
 // A block whose error falls with the root of the samples, to the cap of 1,000, beside one that has
@@ -68,7 +66,7 @@ RenderResult CappedResult(double errorAtCap) {
             const double error = errorAtCap * std::sqrt(1000.0 / spp) * (i == 1 ? 0.5 : 1);
             if (spp <= result.blocks[size_t(i)].block.spp)
                 result.blocks[size_t(i)].decisions.push_back(
-                    {spp, {.judged = true, .value = error, .threshold = 0.5}});
+                    {spp, {.checked = true, .value = error, .threshold = 0.5}});
         }
     return result;
 }

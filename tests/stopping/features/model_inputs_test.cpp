@@ -148,7 +148,7 @@ TEST(Learned, ReadsTheHalfMeanForNoise) {
     network.dense[0].kernel(0, 2) = 10;
     network.dense[0].bias[0] = 20;
     const auto model = std::make_shared<const Model>(Model{network, settings, ""});
-    const auto criterion = MakeVoting(LearnedRule(model, 20));
+    const auto criterion = MakeCriterion(LearnedRule(model, 20));
     EXPECT_EQ(criterion->Need(20), ViewNeed::MeanAndHalf);
     int stop = 0;
     for (int spp = 20; spp <= 10000 && stop == 0; spp += 20) {
@@ -166,7 +166,7 @@ TEST(Learned, NeverStopsOnNonsense) {
         Model{RandomNetwork(InputCount(settings), {4}, 10), settings, ""});
     const float infinity = std::numeric_limits<float>::infinity();
     for (float value : {0.f, 1e30f, -1.f, infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto criterion = MakeVoting(LearnedRule(model, 20));
+        const auto criterion = MakeCriterion(LearnedRule(model, 20));
         const BlockImage block(41, 57, value);
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision decision = criterion->Observe(block.At(spp));

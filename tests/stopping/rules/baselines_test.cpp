@@ -36,7 +36,7 @@ TEST(HalfBuffers, DifferByTheStandardErrorOfTheMean) {
 }
 
 TEST(Fixed, StopsAtTheEndOfThePassThatReachesIt) {
-    const auto criterion = MakeFixed(50);
+    const auto criterion = MakeCriterion(FixedRule(50));
     EXPECT_EQ(criterion->Need(40), ViewNeed::Nothing);
     const BlockView view = {.width = 8, .height = 8};
     for (int spp : {20, 40, 60}) {
@@ -57,12 +57,12 @@ TEST(Dammertz, AveragesTheRelativeErrors) {
     std::copy(half, half + 3, image.HalfMean(0, 0));
     EXPECT_NEAR(DammertzError(image.At(20)), 0.05, 1e-7);
 
-    EXPECT_FALSE(MakeVoting(DammertzRule(0.0499))->Observe(image.At(20)).stop);
-    EXPECT_TRUE(MakeVoting(DammertzRule(0.0501))->Observe(image.At(20)).stop);
+    EXPECT_FALSE(MakeCriterion(DammertzRule(0.0499))->Observe(image.At(20)).stop);
+    EXPECT_TRUE(MakeCriterion(DammertzRule(0.0501))->Observe(image.At(20)).stop);
     EXPECT_NEAR(
-        MakeVoting(DammertzRule(1, true), {.areaFraction = 0.0625})->Observe(image.At(20)).value,
+        MakeCriterion(DammertzRule(1, true), {.areaFraction = 0.0625})->Observe(image.At(20)).value,
         0.0125, 1e-7);
-    EXPECT_EQ(MakeVoting(DammertzRule(1))->Need(20), ViewNeed::MeanAndHalf);
+    EXPECT_EQ(MakeCriterion(DammertzRule(1))->Need(20), ViewNeed::MeanAndHalf);
 }
 
 TEST(Cycles, HasTheKnownMinima) {
@@ -73,11 +73,11 @@ TEST(Cycles, HasTheKnownMinima) {
     EXPECT_GT(CyclesMinimumSpp(1e-300), 1000000);
 
     // The first test comes after sample index 64, so with more than 65 samples.
-    const auto criterion = MakeVoting(CyclesRule(0.01));
+    const auto criterion = MakeCriterion(CyclesRule(0.01));
     for (int spp : {20, 40, 60, 65, 70, 90}) EXPECT_EQ(criterion->Need(spp), ViewNeed::Nothing);
     for (int spp : {80, 100, 1000}) EXPECT_EQ(criterion->Need(spp), ViewNeed::MeanAndHalf);
-    EXPECT_EQ(MakeVoting(CyclesRule(0.001))->Need(140), ViewNeed::MeanAndHalf);
-    EXPECT_EQ(MakeVoting(CyclesRule(0.001))->Need(120), ViewNeed::Nothing);
+    EXPECT_EQ(MakeCriterion(CyclesRule(0.001))->Need(140), ViewNeed::MeanAndHalf);
+    EXPECT_EQ(MakeCriterion(CyclesRule(0.001))->Need(120), ViewNeed::Nothing);
 }
 
 TEST(Cycles, DividesByTheRootOrTheSum) {
@@ -96,13 +96,13 @@ void MakeNoisy(BlockImage* image, int x, int y, bool noisy) {
 
 TEST(Cycles, StopsWhenNoPixelIsActive) {
     BlockImage image(7, 5, 0.25f / 3);
-    const auto criterion = MakeVoting(CyclesRule(0.001));
+    const auto criterion = MakeCriterion(CyclesRule(0.001));
     Decision decision = criterion->Observe(image.At(20));
-    EXPECT_FALSE(decision.judged || decision.stop);
+    EXPECT_FALSE(decision.checked || decision.stop);
 
     MakeNoisy(&image, 3, 2, true);
     decision = criterion->Observe(image.At(140));
-    EXPECT_TRUE(decision.judged);
+    EXPECT_TRUE(decision.checked);
     EXPECT_FALSE(decision.stop);
     EXPECT_NEAR(decision.value, 0.02 / 0.5001 / 5, 1e-6);
     // Far from an active pixel, new noise is no longer seen; among its neighbours it is.
@@ -115,7 +115,7 @@ TEST(Cycles, ActivatesTheNeighboursAgain) {
     for (int y = 0; y < 5; ++y)
         for (int x = 0; x < 7; ++x) {
             BlockImage image(7, 5, 0.25f / 3);
-            const auto criterion = MakeVoting(CyclesRule(0.001));
+            const auto criterion = MakeCriterion(CyclesRule(0.001));
             MakeNoisy(&image, 3, 2, true);
             criterion->Observe(image.At(140));
             MakeNoisy(&image, 3, 2, false);
@@ -133,9 +133,9 @@ TEST(LuxTile, TakesTheLargestDisplayDifference) {
     const double expected = std::pow(0.5, 1 / 2.2) - std::pow(0.45, 1 / 2.2);
     EXPECT_NEAR(LuxTileError(image.At(40)), expected, 1e-6);
 
-    const auto criterion = MakeVoting(LuxTileRule(6 / 256.0));
+    const auto criterion = MakeCriterion(LuxTileRule(6 / 256.0));
     EXPECT_EQ(criterion->Need(20), ViewNeed::Nothing);
-    EXPECT_FALSE(criterion->Observe(image.At(20)).judged);
+    EXPECT_FALSE(criterion->Observe(image.At(20)).checked);
     EXPECT_FALSE(criterion->Observe(image.At(40)).stop);
     image.HalfMean(2, 1)[1] = 0.48f;
     EXPECT_TRUE(criterion->Observe(image.At(60)).stop);
@@ -154,10 +154,10 @@ TEST(Baselines, LeaveNoNan) {
             BlockImage image(4, 4, mean);
             image.halfMean.assign(image.mean.size(), half);
             for (const auto& criterion :
-                 {MakeVoting(DammertzRule(0.01)), MakeVoting(CyclesRule(0.1)),
-                  MakeVoting(LuxTileRule(0.1))}) {
+                 {MakeCriterion(DammertzRule(0.01)), MakeCriterion(CyclesRule(0.1)),
+                  MakeCriterion(LuxTileRule(0.1))}) {
                 const Decision decision = criterion->Observe(image.At(40));
-                EXPECT_TRUE(decision.judged);
+                EXPECT_TRUE(decision.checked);
                 EXPECT_TRUE(std::isfinite(decision.value)) << mean << ", " << half;
             }
         }
@@ -167,12 +167,12 @@ TEST(Baselines, RefuseViewsWithoutPixels) {
     const BlockImage image(4, 4, 1);
     BlockView view = image.At(80);
     view.halfMean = {};
-    for (const auto& criterion : {MakeVoting(DammertzRule(0.01)), MakeVoting(CyclesRule(0.1)),
-                                  MakeVoting(LuxTileRule(0.1))})
+    for (const auto& criterion : {MakeCriterion(DammertzRule(0.01)), MakeCriterion(CyclesRule(0.1)),
+                                  MakeCriterion(LuxTileRule(0.1))})
         EXPECT_THROW(criterion->Observe(view), std::invalid_argument);
-    EXPECT_THROW(MakeFixed(20)->Observe({}), std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(FixedRule(20))->Observe({}), std::invalid_argument);
 
-    const auto cycles = MakeVoting(CyclesRule(0.1));
+    const auto cycles = MakeCriterion(CyclesRule(0.1));
     cycles->Observe(image.At(80));
     const BlockImage other(8, 2, 1);
     EXPECT_THROW(cycles->Observe(other.At(100)), std::invalid_argument);

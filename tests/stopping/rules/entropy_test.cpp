@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stopping/rules/rule_table.h"
 #include "stopping/rules/small_blocks.h"
 #include "tests/stopping/signals/block_images.h"
 
@@ -27,8 +28,8 @@ std::vector<Decision> Decide(Criterion* rule, int begin, int end) {
     return decisions;
 }
 
-TEST(EntropyRule, StopsAfterThreeLooksInARow) {
-    const auto rule = MakeVoting(EntropyRule(1.5, {}, 20));
+TEST(EntropyRule, StopsAfterThreeChecksInARow) {
+    const auto rule = MakeCriterion(EntropyRule(1.5, {}, 20));
     const std::vector<Decision> decisions = Decide(rule.get(), 0, 4000);
     const int stop = 20 * int(decisions.size());
     ASSERT_TRUE(decisions.back().stop);
@@ -38,7 +39,7 @@ TEST(EntropyRule, StopsAfterThreeLooksInARow) {
     EXPECT_EQ(decisions.back().votes, 3);
     EXPECT_EQ(decisions.back().threshold, 1.5);
     for (size_t i = 0; i < decisions.size(); ++i) {
-        EXPECT_EQ(decisions[i].judged, i >= 2 && i % 2 == 0) << i;
+        EXPECT_EQ(decisions[i].checked, i >= 2 && i % 2 == 0) << i;
         EXPECT_TRUE(i < 2 || decisions[i].value > 0);
         if (i + 1 < decisions.size()) {
             EXPECT_FALSE(decisions[i].stop);
@@ -52,7 +53,7 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
     const NoiseVisibility visibility{.reference = 1 << 30};
     const auto spp = [&](double threshold) {
         return 20.0 *
-               double(Decide(MakeVoting(EntropyRule(threshold, visibility, 20)).get(), 0, 9000)
+               double(Decide(MakeCriterion(EntropyRule(threshold, visibility, 20)).get(), 0, 9000)
                           .size());
     };
     const double once = spp(0.8), half = spp(0.4);
@@ -62,7 +63,7 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
 // Blocks with as little noise at a quarter of the spp stop at about a quarter, if the rule knows.
 TEST(EntropyRule, HeedsTheVarianceOfSamples) {
     const auto stop = [](double variance, double told) {
-        const auto rule = MakeVoting(EntropyRule(0.4, {}, 20));
+        const auto rule = MakeCriterion(EntropyRule(0.4, {}, 20));
         for (int spp = 20; spp <= 10000; spp += 20) {
             BlockImage block = NoisyBlock(100, 100, 0.5, int(spp / variance), unsigned(spp));
             BlockView view = block.At(spp);
@@ -71,28 +72,29 @@ TEST(EntropyRule, HeedsTheVarianceOfSamples) {
         }
         return 10020;
     };
-    const int judged = stop(1, 1);
-    EXPECT_GT(judged, 4000);
-    EXPECT_LT(judged, 10000);
-    EXPECT_NEAR(4. * stop(0.25, 0.25) / judged, 1, 0.06);
-    EXPECT_GT(4. * stop(0.25, 1) / judged, 1.25);
+    const int plain = stop(1, 1);
+    EXPECT_GT(plain, 4000);
+    EXPECT_LT(plain, 10000);
+    EXPECT_NEAR(4. * stop(0.25, 0.25) / plain, 1, 0.06);
+    EXPECT_GT(4. * stop(0.25, 1) / plain, 1.25);
 }
 
-TEST(EntropyRule, LooksWhereRecordingsHavePasses) {
-    for (const int spp : {20, 60, 100, 420, 9980}) EXPECT_TRUE(EntropyRuleLooks(spp, 20)) << spp;
-    for (const int spp : {40, 80, 400, 10000}) EXPECT_FALSE(EntropyRuleLooks(spp, 20)) << spp;
-    EXPECT_TRUE(EntropyRuleLooks(1, 1));
-    EXPECT_FALSE(EntropyRuleLooks(2, 1));
-    EXPECT_TRUE(EntropyRuleLooks(41, 1));
-    EXPECT_TRUE(EntropyRuleLooks(200, 100));
+TEST(EntropyRule, ChecksWhereRecordingsHavePasses) {
+    const Checks checks = EntropyChecks(20);
+    for (const int spp : {20, 60, 100, 420, 9980}) EXPECT_TRUE(checks.AreDue(spp)) << spp;
+    for (const int spp : {40, 80, 400, 10000}) EXPECT_FALSE(checks.AreDue(spp)) << spp;
+    EXPECT_TRUE(EntropyChecks(1).AreDue(1));
+    EXPECT_FALSE(EntropyChecks(1).AreDue(2));
+    EXPECT_TRUE(EntropyChecks(1).AreDue(41));
+    EXPECT_TRUE(EntropyChecks(100).AreDue(200));
 }
 
 TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
     const std::vector<Decision> expected =
-        Decide(MakeVoting(EntropyRule(1.5, {}, 20)).get(), 0, 4000);
+        Decide(MakeCriterion(EntropyRule(1.5, {}, 20)).get(), 0, 4000);
     for (const int split : {20, 60, 120, 200}) {
-        const auto before = MakeVoting(EntropyRule(1.5, {}, 20)),
-                   after = MakeVoting(EntropyRule(1.5, {}, 20));
+        const auto before = MakeCriterion(EntropyRule(1.5, {}, 20)),
+                   after = MakeCriterion(EntropyRule(1.5, {}, 20));
         Decide(before.get(), 0, split);
         after->Restore(before->Save());
         EXPECT_EQ(after->Save(), before->Save());
@@ -104,34 +106,34 @@ TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
 }
 
 TEST(EntropyRule, RefusesOtherState) {
-    const auto rule = MakeVoting(EntropyRule(1.5, {}, 20));
+    const auto rule = MakeCriterion(EntropyRule(1.5, {}, 20));
     Decide(rule.get(), 0, 300);
     const std::vector<std::byte> state = rule->Save();
     for (size_t size = 0; size < state.size(); size += 97)
-        EXPECT_THROW(MakeVoting(EntropyRule(1.5, {}, 20))->Restore(std::span(state).first(size)),
+        EXPECT_THROW(MakeCriterion(EntropyRule(1.5, {}, 20))->Restore(std::span(state).first(size)),
                      std::runtime_error);
     std::vector<std::byte> longer = state;
     longer.push_back({});
-    EXPECT_THROW(MakeVoting(EntropyRule(1.5, {}, 20))->Restore(longer), std::runtime_error);
-    EXPECT_THROW(MakeCriterionFactory("lnoise:1").make({})->Restore(state), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(EntropyRule(1.5, {}, 20))->Restore(longer), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(ParseRule("lnoise:1"))->Restore(state), std::runtime_error);
 }
 
 TEST(EntropyRule, IsARule) {
-    const CriterionFactory factory = MakeCriterionFactory("entropy:0.5");
-    EXPECT_EQ(factory.rule, "entropy:0.5");
+    const Rule factory = ParseRule("entropy:0.5");
+    EXPECT_EQ(factory.text, "entropy:0.5");
     EXPECT_EQ(factory.smallestSide, smallestVotingSide);
-    const auto rule = factory.make({});
+    const auto rule = MakeCriterion(factory);
     EXPECT_EQ(rule->Need(20), ViewNeed::Mean);
     EXPECT_EQ(rule->Need(40), ViewNeed::Nothing);
-    EXPECT_TRUE(MakeCriterionFactory("entropy").rule.starts_with("entropy:0."));
-    EXPECT_THROW(MakeCriterionFactory("entropy:0"), std::invalid_argument);
-    EXPECT_THROW(MakeCriterionFactory("entropy:"), std::invalid_argument);
+    EXPECT_TRUE(ParseRule("entropy").text.starts_with("entropy:0."));
+    EXPECT_THROW(ParseRule("entropy:0"), std::invalid_argument);
+    EXPECT_THROW(ParseRule("entropy:"), std::invalid_argument);
     EXPECT_THROW(rule->Observe(BlockImage(9, 40, 0.5f).At(20)), std::invalid_argument);
 }
 
 TEST(EntropyRule, ComparesWithThePictureAtALargerCap) {
     const auto valueAt = [](int cap) {
-        const auto rule = MakeCriterionFactory("entropy:0.01", {.cap = cap}).make({});
+        const auto rule = MakeCriterion(ParseRule("entropy:0.01", {.cap = cap}));
         return Decide(rule.get(), 0, 5020).back().value;
     };
     const double standard = valueAt(0);
@@ -144,7 +146,7 @@ TEST(EntropyRule, SurvivesAnyBlock) {
     const float infinity = std::numeric_limits<float>::infinity();
     for (const float value :
          {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto rule = MakeVoting(EntropyRule(0.6, {}, 20));
+        const auto rule = MakeCriterion(EntropyRule(0.6, {}, 20));
         const BlockImage block(41, 57, value);
         int stop = 0;
         for (int spp = 20; spp <= 200 && stop == 0; spp += 20) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "stopping/network/model_file.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
@@ -42,15 +43,15 @@ std::vector<Decision> RunPasses(Criterion* criterion, int first, int end, int pa
 
 TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
     const auto model = MakeModel(ConstantNetwork(100, 0.1f), {.voteSpacing = 40});
-    const auto criterion = MakeVoting(LearnedRule(model, 20));
+    const auto criterion = MakeCriterion(LearnedRule(model, 20));
     EXPECT_EQ(criterion->Need(20), ViewNeed::Mean);
     EXPECT_EQ(criterion->Need(40), ViewNeed::Nothing);
     const std::vector<Decision> decisions = RunPasses(criterion.get(), 20, 10000);
     ASSERT_EQ(decisions.size(), 19u);  // passes
     for (size_t i = 0; i < decisions.size(); ++i) {
         const int spp = 20 * int(i + 1);
-        const bool judged = spp == 300 || spp == 340 || spp == 380;
-        EXPECT_EQ(decisions[i].judged, judged) << spp;
+        const bool checked = spp == 300 || spp == 340 || spp == 380;
+        EXPECT_EQ(decisions[i].checked, checked) << spp;
         EXPECT_EQ(decisions[i].votes, spp < 300 ? 0 : (spp - 260) / 40) << spp;
         EXPECT_NEAR(decisions[i].value, spp < 300 ? 1 : 0.1, 1e-6);
         EXPECT_EQ(decisions[i].threshold, 0.5);
@@ -59,12 +60,29 @@ TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
 
 TEST(Learned, StopsFirstAt340SppWithAVoteEachPass) {
     const auto model = MakeModel(ConstantNetwork(100, 0.1f), {});
-    EXPECT_EQ(RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 10000).size(), 17u);
+    EXPECT_EQ(RunPasses(MakeCriterion(LearnedRule(model, 20)).get(), 20, 10000).size(), 17u);
+}
+
+TEST(Learned, ChecksWhatVotesLookBackTo) {
+    const auto checked = [](int n, int voteSpacing, int passSpp = 20) {
+        const auto model =
+            MakeModel(ConstantNetwork(100, 0.1f), {.n = n, .voteSpacing = voteSpacing});
+        const Checks checks = LearnedRule(model, passSpp).checks;
+        std::vector<int> spp;
+        for (int i = 1; i <= 120; ++i)
+            if (checks.AreDue(i)) spp.push_back(i);
+        return spp;
+    };
+    EXPECT_EQ(checked(40, 0), (std::vector<int>{20, 40, 60, 80, 100, 120}));
+    EXPECT_EQ(checked(40, 40), (std::vector<int>{20, 60, 100}));
+    EXPECT_EQ(checked(40, 80), (std::vector<int>{20, 60, 100}));
+    EXPECT_EQ(checked(60, 40), (std::vector<int>{20, 40, 60, 80, 100, 120}));
+    EXPECT_EQ(checked(40, 0, 0), (std::vector<int>{40, 80, 120}));  // pictures at any spp
 }
 
 TEST(Learned, NeverStopsOnNoise) {
     const auto model = MakeModel(ConstantNetwork(25, 0.9f), {.m = 25});
-    const auto decisions = RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 1000);
+    const auto decisions = RunPasses(MakeCriterion(LearnedRule(model, 20)).get(), 20, 1000);
     EXPECT_EQ(decisions.size(), 50u);
     EXPECT_EQ(decisions.back().votes, 0);
 }
@@ -73,14 +91,14 @@ TEST(Learned, VotesOnTheWindowOfItsFeatures) {
     const ModelSettings settings = {.k = 3, .n = 40, .m = 25, .votes = 1000};
     const Network network = RandomNetwork(25, {8, 4}, 2);
     const auto decisions =
-        RunPasses(MakeVoting(LearnedRule(MakeModel(network, settings), 20)).get(), 20, 200);
+        RunPasses(MakeCriterion(LearnedRule(MakeModel(network, settings), 20)).get(), 20, 200);
     FeatureHistory history(settings);
     for (int spp = 20; spp <= 200; spp += 20) {
         const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
         history.Add(spp, InputVector(MeasureBlock(block.At(spp), settings), settings));
         const Decision& decision = decisions[size_t(spp / 20 - 1)];
-        ASSERT_EQ(decision.judged, spp >= 100);
-        if (decision.judged) {
+        ASSERT_EQ(decision.checked, spp >= 100);
+        if (decision.checked) {
             EXPECT_EQ(decision.value, NoisyProbability(network, *history.WindowAt(spp)));
         }
     }
@@ -91,17 +109,17 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
         const ModelSettings settings = {.k = 4, .m = 25, .votes = 1000, .voteSpacing = voteSpacing};
         const auto model = MakeModel(RandomNetwork(25, {8, 4}, 3), settings);
         const std::vector<Decision> expected =
-            RunPasses(MakeVoting(LearnedRule(model, 20)).get(), 20, 600);
+            RunPasses(MakeCriterion(LearnedRule(model, 20)).get(), 20, 600);
         for (int split : {20, 100, 140, 260, 420}) {
-            const auto before = MakeVoting(LearnedRule(model, 20)),
-                       after = MakeVoting(LearnedRule(model, 20));
+            const auto before = MakeCriterion(LearnedRule(model, 20)),
+                       after = MakeCriterion(LearnedRule(model, 20));
             RunPasses(before.get(), 20, split);
             after->Restore(before->Save());
             EXPECT_EQ(after->Save(), before->Save());
             const std::vector<Decision> rest = RunPasses(after.get(), split + 20, 600);
             for (size_t i = 0; i < rest.size(); ++i) {
                 const Decision& e = expected[size_t(split / 20) + i];
-                EXPECT_EQ(rest[i].judged, e.judged);
+                EXPECT_EQ(rest[i].checked, e.checked);
                 EXPECT_EQ(rest[i].value, e.value);
                 EXPECT_EQ(rest[i].votes, e.votes);
             }
@@ -123,13 +141,13 @@ ModelSettings DropSettings(int k) {
 TEST(Learned, GoesOnWithFallsOfEntropies) {
     const ModelSettings settings = DropSettings(3);
     const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
-    const auto whole = MakeVoting(LearnedRule(model, 20));
+    const auto whole = MakeCriterion(LearnedRule(model, 20));
     EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
     const std::vector<Decision> expected = RunPasses(whole.get(), 20, 1000);
     EXPECT_TRUE(expected.back().value != 1);
     for (const int split : {20, 140, 500}) {
-        const auto before = MakeVoting(LearnedRule(model, 20)),
-                   after = MakeVoting(LearnedRule(model, 20));
+        const auto before = MakeCriterion(LearnedRule(model, 20)),
+                   after = MakeCriterion(LearnedRule(model, 20));
         RunPasses(before.get(), 20, split);
         after->Restore(before->Save());
         EXPECT_EQ(after->Save(), before->Save());
@@ -175,12 +193,15 @@ TEST(Learned, SaysWhatNoiseItWasTold) {
     settings.caution = 1.3;
     const Model model{LastStepNetwork(2, std::log(2 + 0.1)), settings, ""};
     const double limit = UndecidedNoise(model);
-    const auto criterion = MakeVoting(LearnedRule(std::make_shared<const Model>(model), 20));
+    const auto criterion = MakeCriterion(LearnedRule(std::make_shared<const Model>(model), 20));
     int noisy = 0, clean = 0;
-    for (const Decision& decision : RunPasses(criterion.get(), 20, 4000)) {
-        ASSERT_EQ(decision.noise.has_value(), decision.judged);
-        if (!decision.judged) continue;
-        EXPECT_EQ(*decision.noise >= limit, decision.value >= 0.5) << *decision.noise;
+    for (int spp = 20; spp <= 4000; spp += 20) {
+        const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
+        const Decision decision = criterion->Observe(block.At(spp));
+        if (!decision.checked) continue;
+        const auto noise = criterion->NoiseTold();
+        ASSERT_TRUE(noise);
+        EXPECT_EQ(*noise >= limit, decision.value >= 0.5) << *noise;
         ++(decision.value >= 0.5 ? noisy : clean);
     }
     EXPECT_GT(noisy, 5);
@@ -192,13 +213,13 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
     const ScratchFile file(".h5");
     ModelSettings settings = DropSettings(2);
     WriteModel(file.path, LastStepNetwork(2, std::log(0.7 + 0.1)), settings);
-    const RuleTrend noise = MakeCriterionFactory("learned:" + file.path).trend;
+    const RuleTrend noise = ParseRule("learned:" + file.path).trend;
     EXPECT_NEAR(noise.undecided, 0.7, 1e-3);
     EXPECT_EQ(noise.reference, settings.visibility.reference);
     EXPECT_TRUE(noise.saturates);
     settings.features = {Feature::VisibleDrop, Feature::LogSpp};
     WriteModel(file.path, LastStepNetwork(4, 0), settings);
-    const RuleTrend odds = MakeCriterionFactory("learned:" + file.path).trend;
+    const RuleTrend odds = ParseRule("learned:" + file.path).trend;
     EXPECT_EQ(odds.undecided, 0);
     EXPECT_EQ(odds.reference, 0);
     EXPECT_FALSE(odds.saturates);
@@ -206,17 +227,17 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
 
 TEST(Learned, RefusesOtherState) {
     const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
-    const auto criterion = MakeVoting(LearnedRule(model, 20));
+    const auto criterion = MakeCriterion(LearnedRule(model, 20));
     RunPasses(criterion.get(), 20, 100);
     const std::vector<std::byte> state = criterion->Save();
     for (size_t size = 0; size < state.size(); size += 7)
-        EXPECT_THROW(MakeVoting(LearnedRule(model, 20))->Restore(std::span(state).first(size)),
+        EXPECT_THROW(MakeCriterion(LearnedRule(model, 20))->Restore(std::span(state).first(size)),
                      std::runtime_error);
     std::vector<std::byte> longer = state;
     longer.push_back({});
-    EXPECT_THROW(MakeVoting(LearnedRule(model, 20))->Restore(longer), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(LearnedRule(model, 20))->Restore(longer), std::runtime_error);
     const auto other = MakeModel(RandomNetwork(100, {8, 4}, 1), {});
-    EXPECT_THROW(MakeVoting(LearnedRule(other, 20))->Restore(state), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(LearnedRule(other, 20))->Restore(state), std::runtime_error);
 }
 
 TEST(Learned, SurvivesAnyBlock) {
@@ -224,7 +245,7 @@ TEST(Learned, SurvivesAnyBlock) {
     const float infinity = std::numeric_limits<float>::infinity();
     for (float value :
          {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto criterion = MakeVoting(LearnedRule(model, 20));
+        const auto criterion = MakeCriterion(LearnedRule(model, 20));
         const BlockImage block(41, 57, value);
         for (int spp = 20; spp <= 200; spp += 20) {
             const Decision decision = criterion->Observe(block.At(spp));
@@ -243,20 +264,22 @@ TEST(Learned, TakesNonsenseForNoise) {
 
 TEST(Learned, RefusesModelsThatDoNotFit) {
     const Network good = RandomNetwork(25, {4}, 1);
-    EXPECT_NO_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 20)));
-    EXPECT_NO_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 10)));
-    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 100}), 20)), std::invalid_argument);
-    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25}), 16)), std::invalid_argument);
-    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(good, {.m = 25, .voteSpacing = 30}), 20)),
+    EXPECT_NO_THROW(MakeCriterion(LearnedRule(MakeModel(good, {.m = 25}), 20)));
+    EXPECT_NO_THROW(MakeCriterion(LearnedRule(MakeModel(good, {.m = 25}), 10)));
+    EXPECT_THROW(MakeCriterion(LearnedRule(MakeModel(good, {.m = 100}), 20)),
+                 std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(LearnedRule(MakeModel(good, {.m = 25}), 16)), std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(LearnedRule(MakeModel(good, {.m = 25, .voteSpacing = 30}), 20)),
                  std::invalid_argument);
     Network outputs = good;
     outputs.dense.clear();
-    EXPECT_THROW(MakeVoting(LearnedRule(MakeModel(outputs, {.m = 25}), 20)), std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(LearnedRule(MakeModel(outputs, {.m = 25}), 20)),
+                 std::invalid_argument);
 }
 
 TEST(Learned, WantsTheSppToIncrease) {
     const auto model = MakeModel(RandomNetwork(25, {4}, 1), {.m = 25});
-    const auto criterion = MakeVoting(LearnedRule(model, 20));
+    const auto criterion = MakeCriterion(LearnedRule(model, 20));
     const BlockImage block(40, 40, 0.5f);
     criterion->Observe(block.At(40));
     EXPECT_THROW(criterion->Observe(block.At(40)), std::invalid_argument);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stopping/rules/rule_table.h"
 #include "stopping/rules/small_blocks.h"
 #include "tests/stopping/signals/block_images.h"
 
@@ -54,13 +55,13 @@ TEST(LNoise, FallsWithTheRootOfTheSamples) {
 }
 
 TEST(LNoise, StopsAfterThreeVotesInARow) {
-    const auto criterion = MakeVoting(LightnessNoiseRule(0.5));
+    const auto criterion = MakeCriterion(LightnessNoiseRule(0.5));
     EXPECT_EQ(criterion->Need(20), ViewNeed::MeanAndHalf);
     const double noise[] = {0.9, 0.4, 0.4, 0.6, 0.4, 0.4, 0.4};
     const int votes[] = {0, 1, 2, 0, 1, 2, 3};
     for (int i = 0; i < 7; ++i) {
         const Decision decision = criterion->Observe(EvenNoise(noise[i]).At(20 * (i + 1)));
-        EXPECT_TRUE(decision.judged);
+        EXPECT_TRUE(decision.checked);
         EXPECT_NEAR(decision.value, noise[i], 1e-4);
         EXPECT_EQ(decision.threshold, 0.5);
         EXPECT_EQ(decision.votes, votes[i]);
@@ -69,8 +70,8 @@ TEST(LNoise, StopsAfterThreeVotesInARow) {
 }
 
 TEST(LNoise, GoesOnCountingAfterARestart) {
-    const auto first = MakeVoting(LightnessNoiseRule(0.5)),
-               second = MakeVoting(LightnessNoiseRule(0.5));
+    const auto first = MakeCriterion(LightnessNoiseRule(0.5)),
+               second = MakeCriterion(LightnessNoiseRule(0.5));
     for (int i = 1; i <= 2; ++i) first->Observe(EvenNoise(0.4).At(20 * i));
     second->Restore(first->Save());
     EXPECT_EQ(second->Save(), first->Save());
@@ -80,22 +81,22 @@ TEST(LNoise, GoesOnCountingAfterARestart) {
     std::vector<std::byte> state = first->Save();
     state.back() = std::byte(0xff);  // a negative count
     EXPECT_THROW(second->Restore(state), std::runtime_error);
-    EXPECT_THROW(MakeCriterionFactory("cycles:0.1").make({})->Restore(first->Save()),
+    EXPECT_THROW(MakeCriterion(ParseRule("cycles:0.1"))->Restore(first->Save()),
                  std::runtime_error);
 }
 
 TEST(LNoise, IsARule) {
-    const CriterionFactory factory = MakeCriterionFactory("lnoise:0.5");
-    EXPECT_EQ(factory.rule, "lnoise:0.5");
+    const Rule rule = ParseRule("lnoise:0.5");
+    EXPECT_EQ(factory.text, "lnoise:0.5");
     EXPECT_EQ(factory.smallestSide, smallestVotingSide);
-    EXPECT_EQ(factory.make({})->Observe(EvenNoise(0.4).At(20)).threshold, 0.5);
+    EXPECT_EQ(MakeCriterion(factory)->Observe(EvenNoise(0.4).At(20)).threshold, 0.5);
 }
 
-TEST(LNoise, RefusesWhatItCannotJudge) {
+TEST(LNoise, RefusesWhatItCannotMeasure) {
     BlockImage image = EvenNoise(0.4);
     BlockView view = image.At(20);
     view.halfMean = {};
-    EXPECT_THROW(MakeVoting(LightnessNoiseRule(1))->Observe(view), std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(LightnessNoiseRule(1))->Observe(view), std::invalid_argument);
     EXPECT_THROW(VisibleNoise(EvenNoise(0.4, 9, 40).At(20)), std::invalid_argument);
 
     image.mean.assign(image.mean.size(), std::numeric_limits<float>::quiet_NaN());

@@ -8,8 +8,6 @@
 #include <regex>
 #include <stdexcept>
 
-#include "stopping/rules/voting.h"
-
 namespace lull {
 namespace {
 
@@ -18,40 +16,36 @@ const RuleContext kInstalled = {
     .measures = {{"denoised", [](const BlockView&, const BlockInfo&) { return Signals{}; }}}};
 
 // Returns the text of a rule with an argument that it takes; empty for one that reads a file.
-std::string Example(const Rule& rule) {
+std::string Example(const RuleEntry& rule) {
     if (rule.name == "thresholds") return "";
     const std::string name(rule.name);
     return rule.standard || rule.argument.starts_with('[') ? name : name + ":1";
 }
 
 TEST(RuleTable, IsWhatRulesDo) {
-    for (const Rule& rule : AllRules()) {
+    for (const RuleEntry& rule : RuleTable()) {
         const std::string text = Example(rule);
         if (text.empty()) continue;
-        const CriterionFactory factory = MakeCriterionFactory(text, kInstalled);
-        EXPECT_EQ(factory.trend.kind, rule.compares) << text;
-        EXPECT_EQ(factory.trend.votes, std::max(1, rule.votes)) << text;
-        const auto criterion = factory.make({});
-        for (const int spp : {20, 60, 100, 400, 10000})
-            EXPECT_LE(criterion->Need(spp), rule.need) << text;
+        const Rule read = ParseRule(text, kInstalled);
+        EXPECT_EQ(read.trend.kind, rule.compares) << text;
+        EXPECT_EQ(read.trend.votes, std::max(1, read.votes)) << text;
         RuleContext careful = kInstalled;
         careful.caution = 2;
         bool refused = false;
         try {
-            MakeCriterionFactory(text, careful);
+            ParseRule(text, careful);
         } catch (const std::invalid_argument&) {
             refused = true;
         }
         EXPECT_EQ(refused, !rule.takesCaution) << text;
-        EXPECT_EQ(rule.replay == Replay::Counts, !factory.voting) << text;
-        EXPECT_EQ(rule.replay == Replay::Decides, factory.voting && factory.voting->recall) << text;
+        EXPECT_EQ(rule.replay == Replay::Counts, bool(read.stopAt)) << text;
+        EXPECT_EQ(rule.replay == Replay::Decides, bool(read.recall)) << text;
         for (const double setting : rule.sweep.bench)
-            EXPECT_NO_THROW(
-                MakeCriterionFactory(std::string(rule.name) + ":" + std::to_string(setting)))
+            EXPECT_NO_THROW(ParseRule(std::string(rule.name) + ":" + std::to_string(setting)))
                 << rule.name;
         EXPECT_TRUE(std::ranges::is_sorted(rule.sweep.bench, std::greater<>())) << rule.name;
         EXPECT_GE(rule.sweep.largest, rule.sweep.least);
-        EXPECT_EQ(rule.votes == 3, rule.stops.find("three times in a row") != rule.stops.npos);
+        EXPECT_EQ(read.votes == 3, rule.stops.find("three times in a row") != rule.stops.npos);
     }
 }
 
@@ -67,14 +61,14 @@ TEST(RuleTable, ReadsTextsOfRules) {
     EXPECT_EQ(ArgumentOf("luxtile"), "");
     EXPECT_EQ(WhenItStops(*FindRule("dammertz")),
               "when its mean error in square-root brightness is below T (0.02)");
-    EXPECT_EQ(RuleNames([](const Rule& rule) { return rule.compares == RuleTrend::Samples; }),
+    EXPECT_EQ(RuleNames([](const RuleEntry& rule) { return rule.compares == RuleTrend::Samples; }),
               "thresholds and fixed");
 }
 
 TEST(RuleTable, HelpFitsItsWidth) {
     for (const size_t width : {80u, 100u}) {
         const std::string help = RuleHelp(width);
-        for (const Rule& rule : AllRules())
+        for (const RuleEntry& rule : RuleTable())
             EXPECT_NE(
                 ("\n" + help)
                     .find("\n  " + std::string(rule.name) + std::string(rule.argument) + "  "),
@@ -86,7 +80,7 @@ TEST(RuleTable, HelpFitsItsWidth) {
 }
 
 // Returns the lines of the documents that begin as the table of rules does for this one.
-std::vector<std::string> DocumentedLines(const Rule& rule) {
+std::vector<std::string> DocumentedLines(const RuleEntry& rule) {
     std::vector<std::filesystem::path> documents = {LULL_SOURCE_DIR "/README.md"};
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(LULL_SOURCE_DIR "/stopping"))
@@ -103,7 +97,7 @@ std::vector<std::string> DocumentedLines(const Rule& rule) {
 }
 
 TEST(RuleTable, IsThatOfTheDocuments) {
-    for (const Rule& rule : AllRules()) {
+    for (const RuleEntry& rule : RuleTable()) {
         const std::vector<std::string> lines = DocumentedLines(rule);
         ASSERT_EQ(lines.size(), 1u) << rule.name;
         // Documents may add to it, and name references.

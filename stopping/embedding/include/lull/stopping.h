@@ -22,7 +22,7 @@
  * Nothing throws, prints or ends the program.
  *
  * Threads. All functions can be called from any thread at any time, but a stopper must not be used
- * while or after it is destroyed. Different blocks can be judged concurrently; calls for the same
+ * while or after it is destroyed. Different blocks can be checked concurrently; calls for the same
  * block wait for each other. lull_stopper_observe() shares its work between the threads that oneTBB
  * has for the caller. Reading a model uses the HDF5 library, which allows one thread at a time: a
  * program that uses HDF5 itself must not do so meanwhile.
@@ -102,9 +102,9 @@ typedef struct lull_rect {
 /* Describes the state of a block. No number is NaN. */
 typedef struct lull_answer {
     int stop;         /* 1: needs no more samples; stays so */
-    int judged;       /* 1: the call looked at the picture; 0: the numbers are older */
+    int checked;      /* 1: the call checked the block; 0: the numbers are older */
     int spp;          /* of the picture that was shown last, or of the one that stopped it */
-    int next_spp;     /* the least spp that will be looked at next; 0: none */
+    int next_spp;     /* the least spp that will be checked next; 0: none */
     int votes;        /* for stopping, in a row, */
     int votes_needed; /* and how many stop the block; 1 for rules that do not vote */
     /* Once it has stopped: between which spp people would cease to see noise in 80 of 100 cases,
@@ -115,10 +115,10 @@ typedef struct lull_answer {
     double probability;   /* that people would see noise (models), 1 before there is an estimate;
                              -1: the rule has none */
     double visible_noise; /* RMS of the noise in lightness (0 to 100), less on texture, at the last
-                             look with a half; -1: not known */
+                             check with a half; -1: not known */
 } lull_answer;
 
-/* Judges the blocks of one picture, from its first samples to its last. */
+/* Decides on the blocks of one picture, from its first samples to its last. */
 typedef struct lull_stopper lull_stopper;
 
 /* Makes a stopper. LULL_BAD_ARGUMENT, LULL_BAD_FILE. */

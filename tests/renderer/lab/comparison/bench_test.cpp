@@ -4,7 +4,7 @@
 
 #include "renderer/base/error.h"
 #include "stopping/rules/baselines.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
@@ -21,17 +21,16 @@ TEST(FixedLadder, GoesFromTheFirstPassToTheCap) {
 }
 
 TEST(BenchRules, CanAllBeRead) {
-    for (const std::string& rule : BenchRules(20, 10000))
-        EXPECT_NO_THROW(MakeCriterionFactory(rule)) << rule;
+    for (const std::string& rule : BenchRules(20, 10000)) EXPECT_NO_THROW(ParseRule(rule)) << rule;
 }
 
 TEST(MeasurePoints, GivesAPointForEachRule) {
     const PixelRect region{{0, 0}, {80, 80}};
     const std::vector<ObservedRule> rules = {
-        {"a", "fixed:20", 0, [](const BlockInfo&) { return MakeFixed(20); }},
-        {"b", "fixed:80", 0, [](const BlockInfo&) { return MakeFixed(80); }},
+        {"a", "fixed:20", 0, [](const BlockInfo&) { return MakeCriterion(FixedRule(20)); }},
+        {"b", "fixed:80", 0, [](const BlockInfo&) { return MakeCriterion(FixedRule(80)); }},
         {"c", "dammertz:0.01:area", 0,
-         [](const BlockInfo&) { return MakeVoting(DammertzRule(100)); }}};
+         [](const BlockInfo&) { return MakeCriterion(DammertzRule(100)); }}};
     RenderOptions options;
     options.schedule.blockSize = 40;
     options.schedule.cap = 160;

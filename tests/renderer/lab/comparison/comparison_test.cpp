@@ -22,8 +22,10 @@ ScheduleOptions Schedule() {
 }
 
 std::vector<ObservedRule> Rules() {
-    const auto dammertz = [](const BlockInfo&) { return MakeVoting(DammertzRule(0.5)); };
-    const auto bySpp = [](const BlockInfo& info) { return MakeFixed(20 + 20 * (info.index % 5)); };
+    const auto dammertz = [](const BlockInfo&) { return MakeCriterion(DammertzRule(0.5)); };
+    const auto bySpp = [](const BlockInfo& info) {
+        return MakeCriterion(FixedRule(20 + 20 * (info.index % 5)));
+    };
     return {{"automatic", "dammertz:0.5", smallestVotingSide, dammertz},
             {"human", "thresholds:h.csv", 0, bySpp}};
 }
@@ -173,9 +175,9 @@ TEST(SumCosts, AddsUpTheBlocks) {
     EXPECT_EQ(cost.ruleSeconds, 1);
 }
 
-TEST(JudgeEstimates, ComparesWithWhatWasMeasured) {
+TEST(CompareEstimates, ComparesWithWhatWasMeasured) {
     const Comparison comparison = TwoImages();
-    const EstimateError error = JudgeEstimates(comparison.images[0], comparison.images[1]);
+    const EstimateError error = CompareEstimates(comparison.images[0], comparison.images[1]);
     EXPECT_EQ(error.blocks, 2);
     EXPECT_DOUBLE_EQ(error.total, 30. / 36 - 1);  // 2 s * 5 and 10 s * 2
     EXPECT_DOUBLE_EQ(error.worst, 20. / 25 - 1);

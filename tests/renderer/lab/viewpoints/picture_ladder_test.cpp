@@ -70,9 +70,9 @@ TEST(PictureLadder, KeepsWhatADisplayShowsAtItsLevels) {
 TEST(PictureLadder, GoesOnFromASavedStateWithItsCompanion) {
     Brightening block;
     std::vector<DisplayPixels> whole, first, second;
-    PictureLadder uninterrupted({20, 60, 100}, MakeFixed(1000), &whole);
-    PictureLadder before({20, 60, 100}, MakeFixed(1000), &first);
-    PictureLadder after({20, 60, 100}, MakeFixed(1000), &second);
+    PictureLadder uninterrupted({20, 60, 100}, MakeCriterion(FixedRule(1000)), &whole);
+    PictureLadder before({20, 60, 100}, MakeCriterion(FixedRule(1000)), &first);
+    PictureLadder after({20, 60, 100}, MakeCriterion(FixedRule(1000)), &second);
     for (const int spp : {20, 40, 60}) {
         uninterrupted.Observe(block.At(spp));
         before.Observe(block.At(spp));

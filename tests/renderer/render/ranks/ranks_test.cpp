@@ -182,7 +182,7 @@ TEST(Ranks, CanBeMoreThanTiles) {
 // What criteria are shown is the same numbers.
 TEST(Ranks, ShowCriteriaTheSame) {
     const auto change = [](RenderOptions* o, int) {
-        o->makeCriterion = [](const BlockInfo&) { return MakeVoting(LightnessNoiseRule(12)); };
+        o->makeCriterion = [](const BlockInfo&) { return MakeCriterion(LightnessNoiseRule(12)); };
     };
     const Shared one = RenderShared(0, change), three = RenderShared(3, change);
     for (size_t i = 0; i < one.result.blocks.size(); ++i) {

@@ -65,52 +65,52 @@ TEST(CriticalError, IsThePublishedOne) {
             for (size_t i = 0; i < row.spp.size(); ++i)
                 viewpoints.back().blocks.push_back({people->spp[i], {.stop = row.spp[i]}});
         }
-        const Judgement judgement = Judge(viewpoints, {.grid = grid});
-        EXPECT_EQ(judgement.viewpoints, 38);
-        EXPECT_EQ(judgement.blocks, 608);
+        const Scores scores = Score(viewpoints, {.grid = grid});
+        EXPECT_EQ(scores.viewpoints, 38);
+        EXPECT_EQ(scores.blocks, 608);
         for (size_t i = 0; i < 3; ++i)
-            EXPECT_NEAR(100 * judgement.criticalErrors[i], percent[i], 0.005) << file;
+            EXPECT_NEAR(100 * scores.criticalErrors[i], percent[i], 0.005) << file;
     }
 }
 
-TEST(Judgement, AveragesOverViewpoints) {
+TEST(Scores, AveragesOverViewpoints) {
     // The first has blocks 500 early and 100 late, the second one that is right.
     const std::vector<ViewpointOutcome> viewpoints = {
         {.name = "a", .blocks = {{2000, {.stop = 1500}}, {300, {.stop = 400, .open = true}}}},
         {.name = "b", .blocks = {{1000, {.stop = 800}}}},
         {.name = "nothing"}};
-    const Judgement judgement = Judge(viewpoints, {.grid = 20, .margins = {0}});
-    EXPECT_EQ(judgement.viewpoints, 2);
-    EXPECT_EQ(judgement.blocks, 3);
-    EXPECT_EQ(judgement.open, 1);
-    EXPECT_DOUBLE_EQ(judgement.absoluteError, (300 + 200) / 2.0);
-    EXPECT_DOUBLE_EQ(judgement.early, 0.25);  // 800 is not below 80 % of 1000
-    EXPECT_DOUBLE_EQ(judgement.late, 0.25);
-    ASSERT_EQ(judgement.criticalErrors.size(), 1u);
+    const Scores scores = Score(viewpoints, {.grid = 20, .margins = {0}});
+    EXPECT_EQ(scores.viewpoints, 2);
+    EXPECT_EQ(scores.blocks, 3);
+    EXPECT_EQ(scores.open, 1);
+    EXPECT_DOUBLE_EQ(scores.absoluteError, (300 + 200) / 2.0);
+    EXPECT_DOUBLE_EQ(scores.early, 0.25);  // 800 is not below 80 % of 1000
+    EXPECT_DOUBLE_EQ(scores.late, 0.25);
+    ASSERT_EQ(scores.criticalErrors.size(), 1u);
     // Wrong are 1520 to 1980, 320 to 380, and 820 to 980.
-    EXPECT_DOUBLE_EQ(judgement.criticalErrors[0], ((24 + 4) / 1000.0 + 9 / 500.0) / 2);
-    EXPECT_FALSE(judgement.auc || judgement.accuracy);
+    EXPECT_DOUBLE_EQ(scores.criticalErrors[0], ((24 + 4) / 1000.0 + 9 / 500.0) / 2);
+    EXPECT_FALSE(scores.auc || scores.accuracy);
 
-    const Judgement none = Judge({}, {});
+    const Scores none = Score({}, {});
     EXPECT_EQ(none.viewpoints, 0);
     EXPECT_EQ(none.absoluteError, 0);
     EXPECT_EQ(none.criticalErrors, (std::vector<double>{0, 0, 0}));
 }
 
-TEST(Judgement, BalancesTheClasses) {
+TEST(Scores, BalancesTheClasses) {
     // People see noise below 100 spp. Of the two spp below, one is called noisy; of the three from
     // there on, one. Three and a half of the six pairs of scores are in the right order.
     const std::vector<Verdict> verdicts = {
         {20, 0.9, true}, {60, 0.4, false}, {100, 0.4, false}, {140, 0.7, true}, {180, 0.6, false}};
     const ViewpointOutcome viewpoint{
         .name = "a", .blocks = {{.human = 100, .outcome = {.stop = 60, .verdicts = verdicts}}}};
-    const Judgement judgement = Judge({&viewpoint, 1}, {});
-    ASSERT_TRUE(judgement.accuracy && judgement.auc);
-    EXPECT_DOUBLE_EQ(*judgement.accuracy, (1 / 2.0 + 2 / 3.0) / 2);
-    EXPECT_DOUBLE_EQ(*judgement.auc, 3.5 / 6);
+    const Scores scores = Score({&viewpoint, 1}, {});
+    ASSERT_TRUE(scores.accuracy && scores.auc);
+    EXPECT_DOUBLE_EQ(*scores.accuracy, (1 / 2.0 + 2 / 3.0) / 2);
+    EXPECT_DOUBLE_EQ(*scores.auc, 3.5 / 6);
 }
 
-TEST(Judgement, TakesAStopForADecision) {
+TEST(Scores, TakesAStopForADecision) {
     const RuleOutcome outcome = OutcomeOfStop(60, 40);
     EXPECT_EQ(outcome.stop, 60);
     EXPECT_FALSE(outcome.open);
@@ -122,8 +122,8 @@ TEST(Judgement, TakesAStopForADecision) {
     EXPECT_EQ(outcome.verdicts.back().spp, 9980);
 
     const ViewpointOutcome right{.name = "a", .blocks = {{60, outcome}}};
-    EXPECT_EQ(Judge({&right, 1}, {}).accuracy, 1);
-    EXPECT_EQ(Judge({&right, 1}, {}).auc, 1);
+    EXPECT_EQ(Score({&right, 1}, {}).accuracy, 1);
+    EXPECT_EQ(Score({&right, 1}, {}).auc, 1);
 }
 
 }  // namespace

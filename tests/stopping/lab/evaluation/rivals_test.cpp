@@ -15,7 +15,7 @@ namespace {
 // by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
 struct Blocks {
     std::vector<BlockRecording> recordings;
-    std::vector<JudgedBlock> judged;
+    std::vector<LabelledBlock> judged;
 
     Blocks() {
         for (int i = 0; i < 9; ++i) {
@@ -47,19 +47,19 @@ const Rival& Find(const std::vector<Rival>& rivals, const std::string& rule) {
 TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
-        const std::vector<Rival> rivals = JudgeRivals(blocks.judged, chooseBy, 40);
+        const std::vector<Rival> rivals = EvaluateRivals(blocks.checked, chooseBy, 40);
         ASSERT_EQ(rivals.size(), 6u);
         const Rival& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
         EXPECT_NEAR(std::stod(noise.bestOfAll), 0.51, 0.02);
         ASSERT_EQ(noise.viewpoints.size(), 3u);
-        const Judgement best = Judge(noise.viewpoints, {.grid = 40, .margins = {2}});
+        const Scores best = Score(noise.viewpoints, {.grid = 40, .margins = {2}});
         EXPECT_EQ(best.blocks, 9);
         EXPECT_LT(best.absoluteError, 200);
         EXPECT_LT(best.criticalErrors[0], 0.01);
         EXPECT_GT(*best.auc, 0.99);
         for (const char* rule : {"dammertz", "cycles", "luxtile"})
-            EXPECT_GT(Judge(Find(rivals, rule).viewpoints, {}).absoluteError, 500) << rule;
+            EXPECT_GT(Score(Find(rivals, rule).viewpoints, {}).absoluteError, 500) << rule;
         for (const ViewpointOutcome& viewpoint : noise.viewpoints)
             EXPECT_NEAR(std::stod(viewpoint.setting), 0.51, 0.03);
     }
@@ -69,9 +69,9 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
     // The people of one viewpoint are of another mind. That changes the choice for the others, and
     // not for theirs.
     Blocks blocks;
-    const auto before = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
-    for (size_t i = 6; i < 9; ++i) blocks.judged[i].human = 200;
-    const auto after = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    const auto before = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
+    for (size_t i = 6; i < 9; ++i) blocks.checked[i].human = 200;
+    const auto after = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
     for (const char* rule : {"dammertz", "luxtile", "lnoise"}) {
         const Rival &x = Find(before, rule), &y = Find(after, rule);
         EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
@@ -83,10 +83,11 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
 TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     const Blocks blocks;
     // Both settings of cycles are wrong by half; the coarser comes first.
-    const Rival cycles = Find(JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40), "cycles");
+    const Rival cycles =
+        Find(EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40), "cycles");
     EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
-    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.judged[1].human / 2);
+    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.checked[1].human / 2);
 }
 
 TEST(Rivals, ChooseTheMaskAsWell) {
@@ -108,9 +109,9 @@ TEST(Rivals, ChooseTheMaskAsWell) {
         };
         int human = 20;
         while (seen(human) >= 1) human += 20;
-        blocks.judged[i].human = human;
+        blocks.checked[i].human = human;
     }
-    const auto rivals = JudgeRivals(blocks.judged, ChooseBy::AbsoluteError, 40);
+    const auto rivals = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
     const Rival& masked = Find(rivals, "entropy, mask");
     EXPECT_TRUE(masked.bestOfAll.ends_with(", 12")) << masked.bestOfAll;
     for (const ViewpointOutcome& viewpoint : masked.viewpoints) {
@@ -118,7 +119,7 @@ TEST(Rivals, ChooseTheMaskAsWell) {
         EXPECT_NEAR(std::stod(viewpoint.setting), 1, 0.05);
     }
     const auto error = [&](const char* rule) {
-        return Judge(Find(rivals, rule).viewpoints, {}).absoluteError;
+        return Score(Find(rivals, rule).viewpoints, {}).absoluteError;
     };
     EXPECT_LT(error("entropy, mask"), 150);
     EXPECT_GT(error("entropy"), 3 * error("entropy, mask"));
@@ -126,9 +127,9 @@ TEST(Rivals, ChooseTheMaskAsWell) {
 
 TEST(Rivals, NeedTwoViewpoints) {
     const Blocks blocks;
-    EXPECT_THROW(JudgeRivals(std::span(blocks.judged).first(3), ChooseBy::AbsoluteError, 40),
+    EXPECT_THROW(EvaluateRivals(std::span(blocks.checked).first(3), ChooseBy::AbsoluteError, 40),
                  std::invalid_argument);
-    EXPECT_THROW(JudgeRivals({}, ChooseBy::AbsoluteError, 40), std::invalid_argument);
+    EXPECT_THROW(EvaluateRivals({}, ChooseBy::AbsoluteError, 40), std::invalid_argument);
 }
 
 }  // namespace

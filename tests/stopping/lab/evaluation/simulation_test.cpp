@@ -8,6 +8,7 @@
 
 #include "stopping/network/model_file.h"
 #include "stopping/rules/lnoise.h"
+#include "stopping/rules/rule_table.h"
 #include "tests/stopping/lab/recordings/channel_recordings.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
@@ -16,7 +17,7 @@
 namespace lull {
 namespace {
 
-JudgedBlock MakeBlock(const BlockRecording& recording, int human = 500) {
+LabelledBlock MakeBlock(const BlockRecording& recording, int human = 500) {
     return {.viewpoint = "kitchen",
             .block = 1,
             .human = human,
@@ -49,7 +50,7 @@ TEST(Simulation, StopsWhereTheCriterionDoes) {
           std::string("cycles:0.04"), std::string("lnoise:1"), std::string("lnoise:0.9"),
           std::string("fixed:150"), "thresholds:" + thresholds.path, "learned:" + model.path}) {
         const auto criterion =
-            MakeCriterionFactory(rule, {.sceneName = "kitchen"}).make({.index = 1});
+            MakeCriterion(ParseRule(rule, {.sceneName = "kitchen"}), {.index = 1});
         int expected = 0;
         for (int spp = 20; spp <= 400 && expected == 0; spp += 20)
             if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
@@ -85,7 +86,7 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
     }
     for (const std::string& rule : {std::string("entropy:0.9"), "learned:" + model.path})
         for (const double caution : {1.0, 1.1}) {
-            const auto criterion = MakeCriterionFactory(rule, {.caution = caution}).make({});
+            const auto criterion = MakeCriterion(ParseRule(rule, {.caution = caution}));
             int expected = 0;
             for (int spp = 20; spp <= 2400 && expected == 0; spp += 20)
                 if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
@@ -101,7 +102,7 @@ TEST(Simulation, VotesOnRecordedPasses) {
     BlockRecording recording = EmptyRecording(600);
     SetChannel(&recording, "masked_noise",
                [](int spp) { return spp < 380 || spp == 420 ? 0.6 : 0.4; });
-    const JudgedBlock block = MakeBlock(recording, 460);
+    const LabelledBlock block = MakeBlock(recording, 460);
     const ErrorSeries series = MakeErrorSeries(block, LightnessNoiseRule(0.5));
     EXPECT_EQ(series.needed, 3);
     EXPECT_EQ(FirstBelow(series, 0.7), 2);
@@ -123,7 +124,7 @@ TEST(Simulation, VotesOnRecordedPasses) {
 TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
     BlockRecording recording = EmptyRecording(700);
     SetChannel(&recording, "dammertz", [](int) { return 0.1; });
-    const JudgedBlock block = MakeBlock(recording);
+    const LabelledBlock block = MakeBlock(recording);
     const ErrorSeries series = MakeErrorSeries(block, DammertzRule(0.05));
     for (const RuleOutcome& outcome :
          {SimulateVoting(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
@@ -157,7 +158,7 @@ TEST(Simulation, LooksWhenTheRuleDoes) {
 TEST(Simulation, TakesTheRecordedStopsOfCycles) {
     BlockRecording recording = EmptyRecording(500);
     recording.cyclesStops[4] = 340;  // at 0.06
-    const JudgedBlock block = MakeBlock(recording);
+    const LabelledBlock block = MakeBlock(recording);
     const RuleOutcome outcome = MakeSimulator("cycles:0.06")(block);
     EXPECT_EQ(outcome.stop, 340);
     for (const Verdict& v : outcome.verdicts) {
@@ -175,7 +176,7 @@ TEST(Simulation, TakesTheRecordedStopsOfCycles) {
 
 TEST(Simulation, RefusesWhatCannotBeSimulated) {
     const BlockRecording recording = EmptyRecording(500), empty;
-    const JudgedBlock block = MakeBlock(recording);
+    const LabelledBlock block = MakeBlock(recording);
     for (const char* rule :
          {"", "oracle:1", "luxtile", "dammertz:0.1:area", "fixed:x", "cycles:-1", "thresholds:"})
         EXPECT_THROW(MakeSimulator(rule), std::invalid_argument) << rule;
@@ -193,7 +194,7 @@ TEST(Simulation, RefusesWhatCannotBeSimulated) {
     const ScratchFile file(".csv", "crown;100;150;\nkitchen;100;\n");
     const Simulator thresholds = MakeSimulator("thresholds:" + file.path);
     EXPECT_THROW(thresholds(block), std::runtime_error);  // the row has no block 1
-    JudgedBlock other = block;
+    LabelledBlock other = block;
     other.viewpoint = "dragon";
     EXPECT_THROW(thresholds(other), std::runtime_error);
 
@@ -205,7 +206,7 @@ TEST(Simulation, RefusesWhatCannotBeSimulated) {
 
 TEST(Simulation, GroupsBlocksByViewpoint) {
     const BlockRecording recording = EmptyRecording(500);
-    std::vector<JudgedBlock> blocks(3, MakeBlock(recording));
+    std::vector<LabelledBlock> blocks(3, MakeBlock(recording));
     blocks[0].viewpoint = "crown";
     blocks[2].human = 700;
     const auto viewpoints = Simulate(blocks, MakeSimulator("fixed:90"), "90");

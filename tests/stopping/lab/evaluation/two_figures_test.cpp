@@ -8,8 +8,8 @@
 namespace lull::two_figures_test {
 namespace {
 
-JudgedRule Stopping(std::vector<RuleOutcome> outcomes) {
-    JudgedRule rule{.name = "rule", .viewpoints = {{.name = "attic"}}};
+EvaluatedRule Stopping(std::vector<RuleOutcome> outcomes) {
+    EvaluatedRule rule{.name = "rule", .viewpoints = {{.name = "attic"}}};
     for (RuleOutcome& outcome : outcomes)
         rule.viewpoints[0].blocks.push_back({.human = 300, .outcome = std::move(outcome)});
     return rule;
@@ -17,25 +17,25 @@ JudgedRule Stopping(std::vector<RuleOutcome> outcomes) {
 
 TEST(TwoFigures, AreGivenWhereARecordingEndsTooEarly) {
     const BlockRecording part = EmptyRecording(500), whole = EmptyRecording(kJudgedCap);
-    const std::vector<JudgedBlock> blocks = {{.viewpoint = "attic",
-                                              .block = 0,
-                                              .human = 300,
-                                              .cap = 500,
-                                              .passSpp = 20,
-                                              .recording = &part},
-                                             {.viewpoint = "attic",
-                                              .block = 1,
-                                              .human = 300,
-                                              .cap = 500,
-                                              .passSpp = 20,
-                                              .recording = &part},
-                                             {.viewpoint = "attic",
-                                              .block = 2,
-                                              .human = 300,
-                                              .cap = 10000,
-                                              .passSpp = 20,
-                                              .recording = &whole}};
-    std::vector<JudgedRule> rules;
+    const std::vector<LabelledBlock> blocks = {{.viewpoint = "attic",
+                                                .block = 0,
+                                                .human = 300,
+                                                .cap = 500,
+                                                .passSpp = 20,
+                                                .recording = &part},
+                                               {.viewpoint = "attic",
+                                                .block = 1,
+                                                .human = 300,
+                                                .cap = 500,
+                                                .passSpp = 20,
+                                                .recording = &part},
+                                               {.viewpoint = "attic",
+                                                .block = 2,
+                                                .human = 300,
+                                                .cap = 10000,
+                                                .passSpp = 20,
+                                                .recording = &whole}};
+    std::vector<EvaluatedRule> rules;
     AddTwoFigures(
         blocks, Stopping({{.stop = 500, .open = true}, {.stop = 400}, {.stop = 9000}}),
         [] {
@@ -45,7 +45,7 @@ TEST(TwoFigures, AreGivenWhereARecordingEndsTooEarly) {
     ASSERT_EQ(rules.size(), 2u);
     EXPECT_EQ(LabelOf(rules[0]), "rule, at least");
     EXPECT_EQ(LabelOf(rules[1]), "rule, extended");
-    for (const JudgedRule& rule : rules) EXPECT_EQ(Judge(rule.viewpoints, {}).open, 1);
+    for (const EvaluatedRule& rule : rules) EXPECT_EQ(Score(rule.viewpoints, {}).open, 1);
     EXPECT_EQ(rules[0].viewpoints[0].blocks[0].outcome.stop, 500);
     EXPECT_EQ(rules[1].viewpoints[0].blocks[0].outcome.stop, 800);
     EXPECT_TRUE(rules[1].viewpoints[0].blocks[0].outcome.open);
@@ -53,13 +53,13 @@ TEST(TwoFigures, AreGivenWhereARecordingEndsTooEarly) {
 
 TEST(TwoFigures, AreOneWhereAllBlocksStop) {
     const BlockRecording part = EmptyRecording(500);
-    const std::vector<JudgedBlock> blocks = {{.viewpoint = "attic",
-                                              .block = 0,
-                                              .human = 300,
-                                              .cap = 500,
-                                              .passSpp = 20,
-                                              .recording = &part}};
-    std::vector<JudgedRule> rules;
+    const std::vector<LabelledBlock> blocks = {{.viewpoint = "attic",
+                                                .block = 0,
+                                                .human = 300,
+                                                .cap = 500,
+                                                .passSpp = 20,
+                                                .recording = &part}};
+    std::vector<EvaluatedRule> rules;
     AddTwoFigures(blocks, Stopping({{.stop = 500}}), {}, &rules);
     ASSERT_EQ(rules.size(), 1u);
     EXPECT_EQ(LabelOf(rules[0]), "rule");

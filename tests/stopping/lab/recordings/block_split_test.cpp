@@ -7,8 +7,8 @@
 namespace lull {
 namespace {
 
-std::vector<JudgedBlock> Blocks() {
-    std::vector<JudgedBlock> blocks;
+std::vector<LabelledBlock> Blocks() {
+    std::vector<LabelledBlock> blocks;
     for (const char* name : {"a", "b", "c"})
         for (int i = 0; i < 4; ++i) blocks.push_back({.viewpoint = name, .block = i});
     return blocks;
@@ -31,8 +31,8 @@ TEST(BlockSplit, LeavesEachViewpointOutInTurn) {
     ASSERT_EQ(splits.size(), 3u);
     for (const BlockSplit& split : splits) {
         EXPECT_EQ(split.training.size(), 8u);
-        for (const JudgedBlock& block : split.test) EXPECT_EQ(block.viewpoint, split.name);
-        for (const JudgedBlock& block : split.training) EXPECT_NE(block.viewpoint, split.name);
+        for (const LabelledBlock& block : split.test) EXPECT_EQ(block.viewpoint, split.name);
+        for (const LabelledBlock& block : split.training) EXPECT_NE(block.viewpoint, split.name);
     }
     EXPECT_THROW(LeaveEachOut(std::vector{Blocks()[0]}), std::invalid_argument);
 }

@@ -25,7 +25,7 @@ BlockRecording CutAt(const BlockRecording& recording, int end) {
     return cut;
 }
 
-JudgedBlock BlockOf(const BlockRecording& recording) {
+LabelledBlock BlockOf(const BlockRecording& recording) {
     return {.viewpoint = "room",
             .block = 0,
             .human = 1000,
@@ -77,7 +77,7 @@ TEST(Extension, TakesShortRecordings) {
 
 TEST(Extension, LeavesWholeRecordingsAsTheyAre) {
     const BlockRecording whole = EmptyRecording(kJudgedCap), part = EmptyRecording(500);
-    const std::vector<JudgedBlock> blocks = {BlockOf(part), BlockOf(whole)};
+    const std::vector<LabelledBlock> blocks = {BlockOf(part), BlockOf(whole)};
     const ExtendedBlocks extended = ExtendBlocks(blocks);
     ASSERT_EQ(extended.blocks.size(), 2u);
     EXPECT_EQ(extended.recordings.size(), 1u);

@@ -86,7 +86,7 @@ TEST(Recorder, EndsAtItsLimit) {
 TEST(Recorder, NotesWhereCyclesStops) {
     const BlockRecording recording = RecordNoise(60, 1200, 0.2);
     for (size_t i = 0; i < kCyclesThresholds.size(); ++i) {
-        const auto criterion = MakeVoting(CyclesRule(kCyclesThresholds[i]));
+        const auto criterion = MakeCriterion(CyclesRule(kCyclesThresholds[i]));
         int stop = 0;
         for (int pass = 1; pass <= 60 && stop == 0; ++pass)
             if (criterion->Observe(NoisyBlock(80, 60, 0.2, 20 * pass, unsigned(pass)).At(20 * pass))

@@ -14,7 +14,7 @@ TEST(JoinHuman, FindsRowsByTheirExactNames) {
     const std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 3, 400),
                                                         MakeViewpoint("b", 2, 400)};
     std::vector<std::string> unknown;
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("b"), MakeHumanRow("a-view0")}, &unknown);
     EXPECT_EQ(unknown, std::vector<std::string>{"a"});
     ASSERT_EQ(blocks.size(), 2u);
@@ -41,11 +41,11 @@ TEST(JoinHuman, RefusesWhatDoesNotFit) {
 TEST(KeepRecorded, LeavesOutBlocksWithoutAttributes) {
     std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 3, 400)};
     viewpoints[0].blocks[1].absent.set(ChannelIndex("attributes26"));
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a")}, nullptr);
     EXPECT_EQ(KeepRecorded(blocks, {}).size(), 3u);
     const ModelSettings settings = {.features = ParseFeatures("noise,attributes26")};
-    const std::vector<JudgedBlock> kept = KeepRecorded(blocks, settings);
+    const std::vector<LabelledBlock> kept = KeepRecorded(blocks, settings);
     ASSERT_EQ(kept.size(), 2u);
     EXPECT_EQ(kept[1].block, 2);
     EXPECT_EQ(InputVector(MeasuresOf(*kept[0].recording, 0, settings), settings).size(), 126u);
@@ -54,7 +54,7 @@ TEST(KeepRecorded, LeavesOutBlocksWithoutAttributes) {
 
 TEST(MakeSamples, EndWindowsOnTheGrid) {
     const std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 2, 1000)};
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a")}, nullptr);
     const TrainingSamples samples = MakeSamples(blocks, {});
     // 300, 340, ..., 980 spp of two blocks with the human thresholds 400 and 484.
@@ -79,7 +79,7 @@ TEST(MakeSamples, EndWindowsOnTheGrid) {
 
 TEST(MakeSamples, RefusesWhatIsNotRecorded) {
     const std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 1, 1000)};
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a")}, nullptr);
     for (int m : {4, 25, 400}) {
         EXPECT_EQ(MakeSamples(blocks, {.m = m}).windowSize, 8 * m);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/lab/recordings/judged_blocks.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/lab/training/training_plan.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/scratch_file.h"
@@ -33,8 +33,8 @@ struct LearningData {
             .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     }
 
-    std::vector<JudgedBlock> Blocks() const {
-        return ReadJudgedBlocks(viewpoints, human.path, {}, [](const std::string&) {});
+    std::vector<LabelledBlock> Blocks() const {
+        return ReadLabelledBlocks(viewpoints, human.path, {}, [](const std::string&) {});
     }
     // Returns a plan that is trained at once.
     TrainingPlan Plan() const {

@@ -83,7 +83,7 @@ TEST(NetworkGradient, AgreesWithFiniteDifferences) {
     CheckGradient({.inputs = 5, .steps = 3, .lstm = {}}, false);
 }
 
-TEST(NetworkGradient, RunsTheNetworkAsItJudges) {
+TEST(NetworkGradient, RunsTheNetworkAsRulesDo) {
     for (const NetworkShape& shape : {NetworkShape{.inputs = 9, .steps = 4, .lstm = {7, 5}},
                                       NetworkShape{.inputs = 9, .steps = 4, .lstm = {}}}) {
         const NetworkWeights<float> weights = InitialWeights(shape, 5);

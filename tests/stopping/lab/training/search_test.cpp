@@ -106,7 +106,7 @@ TEST(SearchResults, AreKept) {
 TEST(SearchCost, CountsSamplesAndWeights) {
     const std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 2, 4000),
                                                         MakeViewpoint("b", 2, 4000)};
-    const std::vector<JudgedBlock> blocks =
+    const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a"), MakeHumanRow("b")}, nullptr);
     const std::vector<BlockSplit> splits = LeaveEachOut(blocks);
     const ModelSettings settings;

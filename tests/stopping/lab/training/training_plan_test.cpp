@@ -18,7 +18,7 @@ std::vector<std::string> Names(const std::vector<BlockSplit>& splits) {
 TEST(TrainingPlan, TrainsOneOnAllUnlessToldOtherwise) {
     const LearningData data;
     TrainingPlan plan = data.Plan();
-    const std::vector<JudgedBlock> blocks = data.Blocks();
+    const std::vector<LabelledBlock> blocks = data.Blocks();
     EXPECT_EQ(Names(MakeSplits(plan, blocks)), std::vector<std::string>{""});
     plan.crossValidate = true;
     EXPECT_EQ(Names(MakeSplits(plan, blocks)),
@@ -44,7 +44,7 @@ TEST(TrainingPlan, LeavesOutByNameOrByAFile) {
     EXPECT_THROW(MakeSplits(plan, data.Blocks()), std::runtime_error);
     plan.leaveOut.clear();
     plan.crossValidate = true;
-    const std::vector<JudgedBlock> blocks = data.Blocks();
+    const std::vector<LabelledBlock> blocks = data.Blocks();
     EXPECT_THROW(MakeSplits(plan, std::span(blocks).first(4)), std::runtime_error);  // one only
 }
 

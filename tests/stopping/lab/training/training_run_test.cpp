@@ -31,7 +31,7 @@ struct Watcher {
     }
 };
 
-TEST(TrainAll, JudgesEachNetworkByWhatItHasNotSeen) {
+TEST(TrainAll, ScoresEachNetworkByWhatItHasNotSeen) {
     const LearningData data;
     TrainingPlan plan = data.Plan();
     plan.crossValidate = true;
@@ -46,8 +46,8 @@ TEST(TrainAll, JudgesEachNetworkByWhatItHasNotSeen) {
     ASSERT_EQ(result->rules.size(), 4u);
     EXPECT_EQ(LabelOf(result->rules[0]), "each viewpoint left out, at least");
     EXPECT_EQ(LabelOf(result->rules[1]), "each viewpoint left out, extended");
-    EXPECT_EQ(Judge(result->rules[0].viewpoints, {}).open,
-              Judge(result->rules[1].viewpoints, {}).open);
+    EXPECT_EQ(Score(result->rules[0].viewpoints, {}).open,
+              Score(result->rules[1].viewpoints, {}).open);
     EXPECT_EQ(result->rules[0].viewpoints.size(), 2u);
     EXPECT_EQ(result->rules[0].viewpoints[1].name, "barn");
     EXPECT_EQ(result->rules[2].name, "blocks trained on");

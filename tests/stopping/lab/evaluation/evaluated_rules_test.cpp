@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/judged_rules.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 
 #include <gtest/gtest.h>
 
@@ -11,19 +11,19 @@ namespace {
 
 void Ignore(const std::string&) {}
 
-TEST(JudgedRules, AreThresholdsOfTheViewpointsThatPeopleJudged) {
+TEST(EvaluatedRules, AreThresholdsOfTheViewpointsThatPeopleJudged) {
     const LearningData data;
     ThresholdsRow late = MakeHumanRow("attic");
     for (int& spp : late.spp) spp += 40;
     const ScratchFile predicted(".csv", Line(late) + Line(MakeHumanRow("shed")));
     const std::vector<ThresholdsRow> people = ReadHumanThresholds(data.human.path, {});
     std::vector<std::string> said;
-    const JudgedRule rule =
-        JudgeThresholds(predicted.path, data.human.path, people, 40,
-                        [&](const std::string& message) { said.push_back(message); });
+    const EvaluatedRule rule =
+        EvaluateThresholds(predicted.path, data.human.path, people, 40,
+                           [&](const std::string& message) { said.push_back(message); });
     ASSERT_EQ(rule.viewpoints.size(), 1u);
     EXPECT_EQ(rule.viewpoints[0].name, "attic");
-    EXPECT_EQ(Judge(rule.viewpoints, {}).absoluteError, 40);
+    EXPECT_EQ(Score(rule.viewpoints, {}).absoluteError, 40);
     ASSERT_EQ(said.size(), 1u);
     EXPECT_TRUE(said[0].starts_with("1 of 2 viewpoints in ")) << said[0];
 
@@ -31,22 +31,22 @@ TEST(JudgedRules, AreThresholdsOfTheViewpointsThatPeopleJudged) {
     EXPECT_THROW(ReadHumanThresholds(data.human.path, {"shed"}), std::runtime_error);
     const ScratchFile other(".csv", Line(MakeHumanRow("shed"))), few(".csv", "attic;40;\n");
     for (const std::string& path : {other.path, few.path})
-        EXPECT_THROW(JudgeThresholds(path, data.human.path, people, 40, Ignore),
+        EXPECT_THROW(EvaluateThresholds(path, data.human.path, people, 40, Ignore),
                      std::runtime_error);
 }
 
-TEST(JudgedRules, RunOnRecordings) {
+TEST(EvaluatedRules, RunOnRecordings) {
     const LearningData data;
     const ScratchFile predicted(".csv", Line(MakeHumanRow("attic")) + Line(MakeHumanRow("barn")));
-    const std::vector<JudgedBlock> blocks = data.Blocks();
-    const std::vector<JudgedRule> rules = JudgeOnBlocks(
+    const std::vector<LabelledBlock> blocks = data.Blocks();
+    const std::vector<EvaluatedRule> rules = EvaluateOnBlocks(
         blocks, {.rivals = true, .rules = {"fixed:400"}, .predicted = {predicted.path}});
     ASSERT_GT(rules.size(), 3u);
     EXPECT_NE(rules.front().setting, "");  // a rival
-    const JudgedRule& fixed = rules[rules.size() - 3];
+    const EvaluatedRule& fixed = rules[rules.size() - 3];
     EXPECT_EQ(fixed.name, "fixed:400");
     EXPECT_EQ(fixed.viewpoints.at(1).blocks.at(2).outcome.stop, 400);
-    EXPECT_EQ(Judge(rules[rules.size() - 2].viewpoints, {}).absoluteError, 0);
+    EXPECT_EQ(Score(rules[rules.size() - 2].viewpoints, {}).absoluteError, 0);
     EXPECT_FALSE(rules[rules.size() - 2].name.ends_with(", clipped"));
     EXPECT_TRUE(rules.back().name.ends_with(", clipped"));
 
@@ -54,14 +54,14 @@ TEST(JudgedRules, RunOnRecordings) {
     ThresholdsRow late = MakeHumanRow("attic");
     late.spp[1] = 5000;
     const ScratchFile beyond(".csv", Line(late) + Line(MakeHumanRow("barn")));
-    const std::vector<JudgedRule> files = JudgeOnBlocks(blocks, {.predicted = {beyond.path}});
+    const std::vector<EvaluatedRule> files = EvaluateOnBlocks(blocks, {.predicted = {beyond.path}});
     ASSERT_EQ(files.size(), 2u);
     EXPECT_EQ(files[0].viewpoints[0].blocks[1].outcome.stop, 5000);
     EXPECT_EQ(files[1].viewpoints[0].blocks[1].outcome.stop, 1200);
     EXPECT_TRUE(files[1].viewpoints[0].blocks[1].outcome.open);
     EXPECT_FALSE(files[1].viewpoints[0].blocks[0].outcome.open);
     // So is a block of a rule, which has a second row on extended recordings.
-    const std::vector<JudgedRule> open = JudgeOnBlocks(blocks, {.rules = {"lnoise:0.5"}});
+    const std::vector<EvaluatedRule> open = EvaluateOnBlocks(blocks, {.rules = {"lnoise:0.5"}});
     ASSERT_EQ(open.size(), 2u);
     EXPECT_EQ(open[0].openStops, OpenStops::Ends);
     EXPECT_EQ(open[1].openStops, OpenStops::Extended);
@@ -69,7 +69,7 @@ TEST(JudgedRules, RunOnRecordings) {
     // Noise of 20 / sqrt(n).
     EXPECT_NEAR(open[1].viewpoints[0].blocks[0].outcome.stop, 1600, 150);
     const ScratchFile part(".csv", Line(MakeHumanRow("attic")));
-    EXPECT_THROW(JudgeOnBlocks(blocks, {.predicted = {part.path}}), std::runtime_error);
+    EXPECT_THROW(EvaluateOnBlocks(blocks, {.predicted = {part.path}}), std::runtime_error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/judged_rules.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 
 #include <fmt/format.h>
 
@@ -16,18 +16,18 @@ namespace {
 
 // Adds rivals; the settings of those that go on for longer than recordings are chosen on extended
 // recordings as well.
-void AddRivals(std::span<const JudgedBlock> blocks, std::span<const JudgedBlock> extended,
-               const RulesToJudge& judged, std::vector<JudgedRule>* rules) {
-    const auto judge = [&](std::span<const JudgedBlock> on) {
-        return JudgeRivals(on, judged.chooseBy, judged.grid);
+void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBlock> extended,
+               const RulesToEvaluate& wanted, std::vector<EvaluatedRule>* rules) {
+    const auto run = [&](std::span<const LabelledBlock> on) {
+        return EvaluateRivals(on, wanted.chooseBy, wanted.grid);
     };
     const auto ruleOf = [](Rival& rival) {
-        return JudgedRule{rival.rule, rival.bestOfAll, std::move(rival.viewpoints)};
+        return EvaluatedRule{rival.rule, rival.bestOfAll, std::move(rival.viewpoints)};
     };
-    std::vector<Rival> recorded = judge(blocks), longer;
+    std::vector<Rival> recorded = run(blocks), longer;
     for (size_t i = 0; i < recorded.size(); ++i) {
         const auto extend = [&] {
-            if (longer.empty()) longer = judge(extended);
+            if (longer.empty()) longer = run(extended);
             return ruleOf(longer[i]);
         };
         AddTwoFigures(blocks, ruleOf(recorded[i]), extend, rules);
@@ -36,11 +36,12 @@ void AddRivals(std::span<const JudgedBlock> blocks, std::span<const JudgedBlock>
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// Judges the thresholds of a file on recorded blocks; those beyond the end of a recording as they
-// are or, if `clipped`, at that end.
-JudgedRule JudgeFile(const std::string& path, std::span<const JudgedBlock> blocks, bool clipped) {
+// Evaluates the thresholds of a file on recorded blocks; those beyond the end of a recording as
+// they are or, if `clipped`, at that end.
+EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBlock> blocks,
+                           bool clipped) {
     const std::vector<ThresholdsRow> rows = ReadThresholds(path);
-    const Simulator simulator = [&](const JudgedBlock& block) {
+    const Simulator simulator = [&](const LabelledBlock& block) {
         const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
         if (row == rows.end() || size_t(block.block) >= row->spp.size())
             throw std::runtime_error(fmt::format("{}: has no threshold for block {} of '{}'", path,
@@ -67,22 +68,22 @@ std::vector<ThresholdsRow> ReadHumanThresholds(const std::string& human,
     return rows;
 }
 
-JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
-                           const std::vector<ThresholdsRow>& people, int grid,
-                           const WarningSink& warn) {
+EvaluatedRule EvaluateThresholds(const std::string& path, const std::string& human,
+                                 const std::vector<ThresholdsRow>& people, int grid,
+                                 const WarningSink& warn) {
     const std::vector<ThresholdsRow> rows = ReadThresholds(path);
-    JudgedRule rule{.name = Stem(path)};
-    for (const ThresholdsRow& judged : people) {
-        const auto row = std::ranges::find(rows, judged.name, &ThresholdsRow::name);
+    EvaluatedRule rule{.name = Stem(path)};
+    for (const ThresholdsRow& wanted : people) {
+        const auto row = std::ranges::find(rows, wanted.name, &ThresholdsRow::name);
         if (row == rows.end()) continue;
-        if (row->spp.size() != judged.spp.size())
+        if (row->spp.size() != wanted.spp.size())
             throw std::runtime_error(fmt::format("{}: '{}' has {} thresholds, but {} in {}", path,
-                                                 row->name, row->spp.size(), judged.spp.size(),
+                                                 row->name, row->spp.size(), wanted.spp.size(),
                                                  human));
         ViewpointOutcome& viewpoint = rule.viewpoints.emplace_back();
         viewpoint.name = row->name;
         for (size_t i = 0; i < row->spp.size(); ++i)
-            viewpoint.blocks.push_back({judged.spp[i], OutcomeOfStop(row->spp[i], grid)});
+            viewpoint.blocks.push_back({wanted.spp[i], OutcomeOfStop(row->spp[i], grid)});
     }
     if (rule.viewpoints.empty())
         throw std::runtime_error(fmt::format("{} and {} have no viewpoint in common", path, human));
@@ -94,25 +95,25 @@ JudgedRule JudgeThresholds(const std::string& path, const std::string& human,
     return rule;
 }
 
-std::vector<JudgedRule> JudgeOnBlocks(std::span<const JudgedBlock> blocks,
-                                      const RulesToJudge& judged) {
-    std::vector<JudgedRule> rules;
+std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> blocks,
+                                            const RulesToEvaluate& wanted) {
+    std::vector<EvaluatedRule> rules;
     const ExtendedBlocks extended = ExtendBlocks(blocks);
-    if (judged.rivals) AddRivals(blocks, extended.blocks, judged, &rules);
-    RuleContext context = judged.context;
+    if (wanted.rivals) AddRivals(blocks, extended.blocks, wanted, &rules);
+    RuleContext context = wanted.context;
     if (!blocks.empty()) context.passSpp = blocks.front().passSpp;
-    for (const std::string& rule : judged.rules) {
+    for (const std::string& rule : wanted.rules) {
         const Simulator simulator = MakeSimulator(rule, context);
-        const auto judge = [&](std::span<const JudgedBlock> on) {
-            return JudgedRule{.name = rule, .viewpoints = Simulate(on, simulator, "")};
+        const auto run = [&](std::span<const LabelledBlock> on) {
+            return EvaluatedRule{.name = rule, .viewpoints = Simulate(on, simulator, "")};
         };
         AddTwoFigures(
-            blocks, judge(blocks), [&] { return judge(extended.blocks); }, &rules);
+            blocks, run(blocks), [&] { return run(extended.blocks); }, &rules);
     }
     const bool anyShort = !extended.recordings.empty();
-    for (const std::string& path : judged.predicted) {
-        rules.push_back(JudgeFile(path, blocks, false));
-        if (anyShort) rules.push_back(JudgeFile(path, blocks, true));
+    for (const std::string& path : wanted.predicted) {
+        rules.push_back(EvaluateFile(path, blocks, false));
+        if (anyShort) rules.push_back(EvaluateFile(path, blocks, true));
     }
     return rules;
 }

@@ -8,28 +8,29 @@
 namespace lull {
 
 // Holds what is said of a block after a pass.
-struct Judgement {
+struct BlockCheck {
     BlockAnswer answer;
-    Decision decision;    // of the criterion, which may not have looked at the block
-    double variance = 1;  // as the criterion was told, see BlockView
-    double seconds = 0;   // of processors, that it took, the view of the pixels included
+    Decision decision;                     // of the criterion, which may not have checked the block
+    std::optional<double> noiseTold = {};  // Criterion::NoiseTold()
+    double variance = 1;                   // as the criterion was told, see BlockView
+    double seconds = 0;  // of processors, that it took, the view of the pixels included
 };
 
 // Nobody else touches a block between the end of its pass and the decision, so that blocks can be
-// judged at the same time without locks.
-class BlockJudge {
+// checked at the same time without locks.
+class BlockCriteria {
   public:
     // Makes the criteria of the blocks that vote, as an interrupted render has left them. Film and
     // options must outlive it.
-    BlockJudge(const RenderOptions&, const Film&, std::span<const Block> blocks,
-               const RenderState* interrupted);
+    BlockCriteria(const RenderOptions&, const Film&, std::span<const Block> blocks,
+                  const RenderState* interrupted);
 
     // Returns what criterion and clock have to see of a block.
     ViewNeed NeedAt(int block, int spp) const;
-    // Judges a block whose pass has come to `spp`, and whose samples took so many seconds so far.
+    // Checks a block whose pass has come to `spp`, and whose samples took so many seconds so far.
     // `complete`, if any, fills in the pixels of the view that other ranks have rendered.
-    Judgement Judge(int index, const Block&, int spp, double seconds,
-                    const std::function<void(int block, FilmView*)>& complete);
+    BlockCheck Check(int index, const Block&, int spp, double seconds,
+                     const std::function<void(int block, FilmView*)>& complete);
     // Returns the states of the criteria, for checkpoints.
     std::vector<std::vector<std::byte>> Save() const;
 

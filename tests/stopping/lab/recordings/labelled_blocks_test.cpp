@@ -1,4 +1,4 @@
-#include "stopping/lab/recordings/judged_blocks.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ struct Listener {
     }
 };
 
-TEST(JudgedBlocks, AreThoseThatPeopleJudged) {
+TEST(LabelledBlocks, AreThoseThatPeopleJudged) {
     const LearningData data;
     Listener listener;
     const auto read = [&](const std::vector<std::string>& without) {
         listener.said.clear();
-        return ReadJudgedBlocks(data.viewpoints, data.human.path, without, listener.Ear());
+        return ReadLabelledBlocks(data.viewpoints, data.human.path, without, listener.Ear());
     };
     EXPECT_EQ(read({}).size(), 7u);
     EXPECT_EQ(listener.said,
@@ -32,18 +32,18 @@ TEST(JudgedBlocks, AreThoseThatPeopleJudged) {
     EXPECT_THROW(read({"shed"}), std::runtime_error);
 }
 
-TEST(JudgedBlocks, NameTheFileThatDoesNotFit) {
+TEST(LabelledBlocks, NameTheFileThatDoesNotFit) {
     const LearningData data;
     const ScratchFile shorter(".csv", "attic;40;40;\n");
     try {
-        ReadJudgedBlocks(data.viewpoints, shorter.path, {}, [](const std::string&) {});
+        ReadLabelledBlocks(data.viewpoints, shorter.path, {}, [](const std::string&) {});
         FAIL();
     } catch (const std::runtime_error& error) {
         EXPECT_TRUE(std::string(error.what()).starts_with(shorter.path + ": ")) << error.what();
     }
 }
 
-TEST(JudgedBlocks, AreReadFromSeveralFilesAsOne) {
+TEST(LabelledBlocks, AreReadFromSeveralFilesAsOne) {
     const LearningData data, other;
     const std::vector<ViewpointRecording> all = ReadDatasets({data.dataset.path});
     EXPECT_EQ(all.size(), 3u);
@@ -51,10 +51,10 @@ TEST(JudgedBlocks, AreReadFromSeveralFilesAsOne) {
     EXPECT_THROW(ReadDatasets({data.human.path}), std::runtime_error);
 }
 
-TEST(JudgedBlocks, HaveAllThatIsAskedFor) {
+TEST(LabelledBlocks, HaveAllThatIsAskedFor) {
     LearningData data;
     data.viewpoints[0].blocks.at(2).absent.set(ChannelIndex("attributes26"));
-    const std::vector<JudgedBlock> blocks = data.Blocks();
+    const std::vector<LabelledBlock> blocks = data.Blocks();
     const ModelSettings entropy, attributes{.features = ParseFeatures("attributes26")};
     Listener listener;
     EXPECT_EQ(KeepRecordedForAll(blocks, {&entropy, 1}, listener.Ear()).size(), 7u);

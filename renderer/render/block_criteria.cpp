@@ -1,4 +1,4 @@
-#include "renderer/render/block_judge_internal.h"
+#include "renderer/render/block_criteria_internal.h"
 
 #include "renderer/base/thread_clock.h"
 #include "renderer/render/guide_learning.h"
@@ -82,23 +82,23 @@ std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOpt
     return StartsOf(interrupted->blocks, options, film);
 }
 
-BlockJudge::BlockJudge(const RenderOptions& options, const Film& film,
-                       std::span<const Block> blocks, const RenderState* interrupted)
+BlockCriteria::BlockCriteria(const RenderOptions& options, const Film& film,
+                             std::span<const Block> blocks, const RenderState* interrupted)
     : film(film),
       learner(options.learner),
       schedule(options.schedule),
       hasClock(options.secondsLeft),
       criteria(MakeCriteria(options, film.Region(), blocks, interrupted)) {}
 
-ViewNeed BlockJudge::NeedAt(int block, int spp) const {
+ViewNeed BlockCriteria::NeedAt(int block, int spp) const {
     if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
     const ViewNeed own = hasClock ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
     const auto& criterion = criteria[size_t(block)];
     return criterion ? std::max(own, criterion->Need(spp)) : own;
 }
 
-Judgement BlockJudge::Judge(int index, const Block& block, int spp, double seconds,
-                            const std::function<void(int, FilmView*)>& complete) {
+BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double seconds,
+                                const std::function<void(int, FilmView*)>& complete) {
     const auto& criterion = criteria[size_t(index)];
     if ((!criterion && !hasClock) || !IsPassEnd(spp, schedule)) return {};
     const double start = ThreadSeconds();
@@ -106,19 +106,20 @@ Judgement BlockJudge::Judge(int index, const Block& block, int spp, double secon
     view.spp = spp;
     view.seconds = seconds;
     if (learner) view.variance = learner->Variance(film, block.pixels);
-    Judgement judgement;
-    judgement.variance = view.variance;
-    if (criterion) judgement.decision = criterion->Observe(view);
-    judgement.answer.stop = judgement.decision.stop;
-    if (hasClock)
-        judgement.answer.noise =
-            judgement.decision.visibleNoise ? *judgement.decision.visibleNoise : NoiseOf(view);
-    judgement.seconds = ThreadSeconds() - start;
-    return judgement;
+    BlockCheck check;
+    check.variance = view.variance;
+    if (criterion) {
+        check.decision = criterion->Observe(view);
+        check.noiseTold = criterion->NoiseTold();
+    }
+    check.answer.stop = check.decision.stop;
+    if (hasClock) check.answer.noise = NoiseOf(view);
+    check.seconds = ThreadSeconds() - start;
+    return check;
 }
 
-BlockView BlockJudge::ViewOf(int index, const Block& block, ViewNeed need,
-                             const std::function<void(int, FilmView*)>& complete) {
+BlockView BlockCriteria::ViewOf(int index, const Block& block, ViewNeed need,
+                                const std::function<void(int, FilmView*)>& complete) {
     BlockView blockView;
     blockView.width = block.pixels.Width();
     blockView.height = block.pixels.Height();
@@ -133,7 +134,7 @@ BlockView BlockJudge::ViewOf(int index, const Block& block, ViewNeed need,
     return blockView;
 }
 
-std::vector<std::vector<std::byte>> BlockJudge::Save() const {
+std::vector<std::vector<std::byte>> BlockCriteria::Save() const {
     std::vector<std::vector<std::byte>> states;
     for (const std::unique_ptr<Criterion>& criterion : criteria)
         states.push_back(criterion ? criterion->Save() : std::vector<std::byte>());

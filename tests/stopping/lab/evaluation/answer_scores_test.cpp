@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/answer_judgement.h"
+#include "stopping/lab/evaluation/answer_scores.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/stopping/lab/recordings/channel_recordings.h"
 #include "tests/stopping/scratch_file.h"
 
-namespace lull::answer_judgement_test {
+namespace lull::answer_scores_test {
 namespace {
 
 // Returns a picture of 9 blocks, 7 of them recorded, whose noise is 0.5 at the thresholds. The
@@ -52,36 +52,36 @@ std::vector<SingleAnswer> Answers(std::span<const double> thresholds, int each, 
 
 const std::vector<double> kThresholds = {200, 400, 800, 1600, 3200, 1000, 500, 600, 700};
 
-TEST(AnswerJudgement, SharesOutWhatTheRulesExplain) {
+TEST(AnswerScores, SharesOutWhatTheRulesExplain) {
     const ViewpointRecording picture = Picture(kThresholds, 10000);
     const std::vector<std::string> rules = {"lnoise:0.5", "dammertz:0.01", "fixed:800"};
-    const AnswerJudgement judgement =
-        JudgeByAnswers(picture, Answers(kThresholds, 200, 0.5), rules, {});
-    EXPECT_EQ(judgement.viewpoint, "attic");
-    EXPECT_EQ(judgement.used.all, 1800);
-    EXPECT_EQ(judgement.used.allBlocks, 9);
-    EXPECT_EQ(judgement.used.answers, 1400);
-    EXPECT_EQ(judgement.used.blocks, 7);
-    EXPECT_EQ(judgement.used.notRecorded, 400);
-    EXPECT_EQ(judgement.used.blocksNotRecorded, (std::vector<int>{7, 8}));
-    EXPECT_LT(judgement.worst, judgement.best);
-    ASSERT_EQ(judgement.blocks.size(), 7u);
+    const AnswerScores scores =
+        EvaluateByAnswers(picture, Answers(kThresholds, 200, 0.5), rules, {});
+    EXPECT_EQ(scores.viewpoint, "attic");
+    EXPECT_EQ(scores.used.all, 1800);
+    EXPECT_EQ(scores.used.allBlocks, 9);
+    EXPECT_EQ(scores.used.answers, 1400);
+    EXPECT_EQ(scores.used.blocks, 7);
+    EXPECT_EQ(scores.used.notRecorded, 400);
+    EXPECT_EQ(scores.used.blocksNotRecorded, (std::vector<int>{7, 8}));
+    EXPECT_LT(scores.worst, scores.best);
+    ASSERT_EQ(scores.blocks.size(), 7u);
     for (size_t i = 0; i < 7; ++i) {
-        EXPECT_EQ(judgement.blocks[i].answers, 200);
-        ASSERT_TRUE(judgement.blocks[i].threshold);
-        EXPECT_NEAR(std::log(*judgement.blocks[i].threshold / kThresholds[i]), 0, 0.25);
+        EXPECT_EQ(scores.blocks[i].answers, 200);
+        ASSERT_TRUE(scores.blocks[i].threshold);
+        EXPECT_NEAR(std::log(*scores.blocks[i].threshold / kThresholds[i]), 0, 0.25);
     }
-    ASSERT_EQ(judgement.rules.size(), 3u);
+    ASSERT_EQ(scores.rules.size(), 3u);
     // The numbers of lnoise are those that people go by, and noise falls as the root of the spp.
-    const RuleByAnswers& noise = judgement.rules[0];
+    const RuleByAnswers& noise = scores.rules[0];
     EXPECT_NEAR(noise.explained.value(), 1, 0.03);
     EXPECT_NEAR(noise.slope, 2 / 0.5, 0.6);
     EXPECT_NEAR(noise.level.value(), 1, 0.15);
     EXPECT_GT(noise.auc, 0.9);
     // The order of blocks is the wrong one, and fixed has none.
-    EXPECT_LT(judgement.rules[1].explained.value(), 0);
-    EXPECT_LT(judgement.rules[1].auc, judgement.rules[2].auc);
-    const RuleByAnswers& fixed = judgement.rules[2];
+    EXPECT_LT(scores.rules[1].explained.value(), 0);
+    EXPECT_LT(scores.rules[1].auc, scores.rules[2].auc);
+    const RuleByAnswers& fixed = scores.rules[2];
     EXPECT_NEAR(fixed.explained.value(), 0, 1e-6);
     EXPECT_NEAR(fixed.early.value(), 2 / 7.0, 0.15);
     EXPECT_NEAR(fixed.late.value(), 3 / 7.0, 0.15);
@@ -89,7 +89,7 @@ TEST(AnswerJudgement, SharesOutWhatTheRulesExplain) {
     EXPECT_EQ(fixed.open, 0);
 }
 
-TEST(AnswerJudgement, LeavesOutWhatIsNotKnown) {
+TEST(AnswerScores, LeavesOutWhatIsNotKnown) {
     // The recordings end at 1,000 spp; luxtile has no number before 40.
     const ViewpointRecording picture = Picture(kThresholds, 1000);
     std::vector<SingleAnswer> answers = Answers(kThresholds, 50, 0.5);
@@ -97,18 +97,18 @@ TEST(AnswerJudgement, LeavesOutWhatIsNotKnown) {
         answers, [](const SingleAnswer& a) { return a.block < 7 && a.spp > 1020; }));
     answers.push_back({.block = 1, .spp = 20, .seen = true});
     const std::vector<std::string> rules = {"lnoise:0.5", "luxtile:0.1"};
-    const AnswerJudgement judgement = JudgeByAnswers(picture, answers, rules, {});
-    EXPECT_EQ(judgement.used.withoutNumber, int(beyond) + 1);
-    EXPECT_EQ(judgement.used.answers + judgement.used.withoutNumber + judgement.used.notRecorded,
-              judgement.used.all);
-    EXPECT_EQ(judgement.rules[0].open, 3);  // 1,000 as well: three votes
-    EXPECT_NEAR(judgement.rules[0].stops[3], 1700, 100);
+    const AnswerScores scores = EvaluateByAnswers(picture, answers, rules, {});
+    EXPECT_EQ(scores.used.withoutNumber, int(beyond) + 1);
+    EXPECT_EQ(scores.used.answers + scores.used.withoutNumber + scores.used.notRecorded,
+              scores.used.all);
+    EXPECT_EQ(scores.rules[0].open, 3);  // 1,000 as well: three votes
+    EXPECT_NEAR(scores.rules[0].stops[3], 1700, 100);
 
     const std::vector<SingleAnswer> elsewhere = {{.block = 8, .spp = 100, .seen = true}};
-    EXPECT_THROW(JudgeByAnswers(picture, elsewhere, rules, {}), std::runtime_error);
+    EXPECT_THROW(EvaluateByAnswers(picture, elsewhere, rules, {}), std::runtime_error);
 }
 
-TEST(AnswerJudgement, HasNoThresholdWhereAllAnswersAreTheSame) {
+TEST(AnswerScores, HasNoThresholdWhereAllAnswersAreTheSame) {
     const ViewpointRecording picture = Picture(kThresholds, 10000);
     std::vector<SingleAnswer> answers;
     for (const int spp : {100, 200, 400, 800}) {
@@ -117,19 +117,19 @@ TEST(AnswerJudgement, HasNoThresholdWhereAllAnswersAreTheSame) {
         answers.push_back({.block = 1, .spp = spp, .seen = spp < 300});
     }
     const std::vector<std::string> rules = {"lnoise:0.5"};
-    const AnswerJudgement judgement = JudgeByAnswers(picture, answers, rules, {});
-    ASSERT_EQ(judgement.blocks.size(), 3u);
-    EXPECT_FALSE(judgement.blocks[0].threshold);
-    EXPECT_TRUE(judgement.blocks[1].threshold);
-    EXPECT_FALSE(judgement.blocks[2].threshold);
-    EXPECT_GT(judgement.best, -1e-3);
+    const AnswerScores scores = EvaluateByAnswers(picture, answers, rules, {});
+    ASSERT_EQ(scores.blocks.size(), 3u);
+    EXPECT_FALSE(scores.blocks[0].threshold);
+    EXPECT_TRUE(scores.blocks[1].threshold);
+    EXPECT_FALSE(scores.blocks[2].threshold);
+    EXPECT_GT(scores.best, -1e-3);
     // Answers that are all the same leave nothing to explain.
     std::erase_if(answers, [](const SingleAnswer& a) { return a.block != 4; });
-    const AnswerJudgement same = JudgeByAnswers(picture, answers, rules, {});
+    const AnswerScores same = EvaluateByAnswers(picture, answers, rules, {});
     EXPECT_FALSE(same.rules[0].explained);
     EXPECT_FALSE(same.rules[0].level);
     EXPECT_TRUE(std::isfinite(same.rules[0].logLikelihood));
 }
 
 }  // namespace
-}  // namespace lull::answer_judgement_test
+}  // namespace lull::answer_scores_test

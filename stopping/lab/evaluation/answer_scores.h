@@ -13,7 +13,7 @@
 
 #include "stopping/lab/evaluation/single_answers.h"
 #include "stopping/lab/recordings/dataset.h"
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -44,7 +44,7 @@ struct RuleByAnswers {
     int open = 0;                 // stops beyond recordings, which were extended (extension.h)
 };
 
-struct AnswerJudgement {
+struct AnswerScores {
     std::string viewpoint;
     AnswersUsed used = {};
     double best = 0, worst = 0;  // log likelihoods
@@ -55,7 +55,7 @@ struct AnswerJudgement {
 // Judges rules, as MakeSimulator() reads them, all by the same answers: to recorded blocks, where
 // every rule has a number. That is read off between recorded passes. Throws as MakeSimulator() and
 // its simulators do, and std::runtime_error if no answer is left.
-AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
+AnswerScores EvaluateByAnswers(const ViewpointRecording& viewpoint,
                                std::span<const SingleAnswer> answers,
                                std::span<const std::string> rules, const RuleContext& context);
 

@@ -1,4 +1,4 @@
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule_table.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 template <typename Error>
 std::string ErrorOf(const std::string& rule, const RuleContext& context = {}) {
     try {
-        MakeCriterionFactory(rule, context);
+        ParseRule(rule, context);
     } catch (const Error& error) {
         return error.what();
     }
@@ -37,23 +37,23 @@ int StopSpp(Criterion* criterion, int end = 2000) {
 }
 
 TEST(Rule, MakesItsCriterion) {
-    const CriterionFactory fixed = MakeCriterionFactory("fixed:100");
-    EXPECT_EQ(fixed.rule, "fixed:100");
+    const Rule fixed = ParseRule("fixed:100");
+    EXPECT_EQ(fixed.text, "fixed:100");
     EXPECT_EQ(fixed.checksum, "");
     EXPECT_EQ(fixed.smallestSide, 0);
-    EXPECT_EQ(StopSpp(fixed.make({}).get()), 100);
+    EXPECT_EQ(StopSpp(MakeCriterion(fixed).get()), 100);
 
     for (const char* rule : {"dammertz:0.05", "cycles:0.05", "luxtile:0.1", "lnoise:1"}) {
-        const CriterionFactory factory = MakeCriterionFactory(rule);
+        const Rule factory = ParseRule(rule);
         EXPECT_EQ(factory.smallestSide, smallestVotingSide);
-        EXPECT_GT(StopSpp(factory.make({}).get()), 20) << rule;
+        EXPECT_GT(StopSpp(MakeCriterion(factory).get()), 20) << rule;
     }
-    EXPECT_EQ(MakeCriterionFactory("dammertz").rule, "dammertz:0.02");
-    EXPECT_EQ(MakeCriterionFactory("lnoise").rule, "lnoise:0.65");
+    EXPECT_EQ(ParseRule("dammertz").text, "dammertz:0.02");
+    EXPECT_EQ(ParseRule("lnoise").text, "lnoise:0.65");
     // With the area factor a block that is a sixteenth of the image has a quarter of the error.
     const BlockImage block = NoisyBlock(40, 40, 0.2, 20, 1);
-    const auto plain = MakeCriterionFactory("dammertz:0.05").make({.areaFraction = 0.0625});
-    const auto byArea = MakeCriterionFactory("dammertz:0.05:area").make({.areaFraction = 0.0625});
+    const auto plain = MakeCriterion(ParseRule("dammertz:0.05"), {.areaFraction = 0.0625});
+    const auto byArea = MakeCriterion(ParseRule("dammertz:0.05:area"), {.areaFraction = 0.0625});
     EXPECT_NEAR(byArea->Observe(block.At(20)).value, plain->Observe(block.At(20)).value / 4, 1e-12);
 }
 
@@ -92,17 +92,16 @@ TEST(Rule, SaysWhatIsWrongWithIt) {
 
 TEST(Rule, TakesThresholdsFromAFile) {
     const ScratchFile file(".csv", "kitchen;105;40;\ncrown;200;300;\n");
-    const CriterionFactory factory =
-        MakeCriterionFactory("thresholds:" + file.path + ":kitchen", {.blockCount = 2});
+    const Rule factory = ParseRule("thresholds:" + file.path + ":kitchen", {.blockCount = 2});
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
     EXPECT_EQ(factory.smallestSide, 0);
-    EXPECT_EQ(StopSpp(factory.make({.index = 0}).get()), 120);  // rounded up to a pass
-    EXPECT_EQ(StopSpp(factory.make({.index = 1}).get()), 40);
-    EXPECT_THROW(factory.make({.index = 2}), std::invalid_argument);
-    EXPECT_THROW(factory.make({.index = -1}), std::invalid_argument);
+    EXPECT_EQ(StopSpp(MakeCriterion(factory, {.index = 0}).get()), 120);  // rounded up to a pass
+    EXPECT_EQ(StopSpp(MakeCriterion(factory, {.index = 1}).get()), 40);
+    EXPECT_THROW(MakeCriterion(factory, {.index = 2}), std::invalid_argument);
+    EXPECT_THROW(MakeCriterion(factory, {.index = -1}), std::invalid_argument);
 
-    const auto byScene = MakeCriterionFactory("thresholds:" + file.path, {.sceneName = "crown"});
-    EXPECT_EQ(StopSpp(byScene.make({.index = 0}).get()), 200);
+    const auto byScene = ParseRule("thresholds:" + file.path, {.sceneName = "crown"});
+    EXPECT_EQ(StopSpp(MakeCriterion(byScene, {.index = 0}).get()), 200);
 
     using Failed = std::runtime_error;
     const std::string rule = "thresholds:" + file.path;
@@ -118,8 +117,8 @@ TEST(Rule, TakesThresholdsFromAFile) {
 TEST(Rule, TakesTheOnlyRowAndPathsWithColons) {
     const ScratchFile file(":x.csv", "kitchen;60;\n");
     const std::string rule = "thresholds:" + file.path;
-    EXPECT_EQ(StopSpp(MakeCriterionFactory(rule, {.sceneName = "other"}).make({}).get()), 60);
-    EXPECT_EQ(StopSpp(MakeCriterionFactory(rule + ":kitchen").make({}).get()), 60);
+    EXPECT_EQ(StopSpp(MakeCriterion(ParseRule(rule, {.sceneName = "other"})).get()), 60);
+    EXPECT_EQ(StopSpp(MakeCriterion(ParseRule(rule + ":kitchen")).get()), 60);
 }
 
 TEST(Rule, LoadsAModel) {
@@ -128,11 +127,11 @@ TEST(Rule, LoadsAModel) {
     network.dense[0].kernel.setZero();
     network.dense[0].bias[0] = -3;  // always noiseless
     WriteModel(file.path, network, {.k = 3, .n = 20, .m = 25});
-    const CriterionFactory factory = MakeCriterionFactory("learned:" + file.path);
+    const Rule factory = ParseRule("learned:" + file.path);
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
     EXPECT_EQ(factory.smallestSide, smallestVotingSide);
-    EXPECT_EQ(StopSpp(factory.make({}).get()), 100);
-    EXPECT_EQ(StopSpp(MakeCriterionFactory("learned:" + file.path).make({}).get()), 100);
+    EXPECT_EQ(StopSpp(MakeCriterion(factory).get()), 100);
+    EXPECT_EQ(StopSpp(MakeCriterion(ParseRule("learned:" + file.path)).get()), 100);
     using Failed = std::runtime_error;
     EXPECT_NE(ErrorOf<Failed>("learned:" + file.path, {.passSpp = 16}).find("16 spp"),
               std::string::npos);
@@ -145,10 +144,9 @@ TEST(Rule, FindsInstalledModelsByName) {
     WriteModel(file.path, RandomNetwork(25, {4}, 1), {.k = 3, .n = 20, .m = 25});
     const std::filesystem::path path(file.path);
     const RuleContext context{.models = path.parent_path().string()};
-    const CriterionFactory factory =
-        MakeCriterionFactory("learned:" + path.stem().string(), context);
+    const Rule factory = ParseRule("learned:" + path.stem().string(), context);
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
-    EXPECT_EQ(factory.rule, "learned:" + path.stem().string());
+    EXPECT_EQ(factory.text, "learned:" + path.stem().string());
     const std::string error = ErrorOf<std::runtime_error>("learned:none_such", context);
     EXPECT_NE(error.find("no model 'none_such'"), std::string::npos) << error;
     EXPECT_NE(error.find(path.stem().string()), std::string::npos) << error;
@@ -158,9 +156,9 @@ TEST(Rule, DividesThresholdsOfVisibleNoiseByCaution) {
     const BlockImage block(100, 100, 0.18f);
     const RuleContext careful{.caution = 2};
     for (const char* rule : {"lnoise:0.5", "entropy:0.5"}) {
-        const CriterionFactory factory = MakeCriterionFactory(rule, careful);
-        EXPECT_EQ(factory.rule, std::string(rule) + ", caution 2");
-        EXPECT_EQ(factory.make({})->Observe(block.At(20)).threshold, 0.25);
+        const Rule factory = ParseRule(rule, careful);
+        EXPECT_EQ(factory.text, std::string(rule) + ", caution 2");
+        EXPECT_EQ(MakeCriterion(factory)->Observe(block.At(20)).threshold, 0.25);
     }
     for (const char* rule : {"dammertz:0.02", "cycles:0.02", "luxtile:0.1", "fixed:20"}) {
         const std::string error = ErrorOf<std::invalid_argument>(rule, careful);
@@ -172,8 +170,7 @@ TEST(Rule, DividesThresholdsOfVisibleNoiseByCaution) {
               std::string::npos);
     WriteModel(noise.path, RandomNetwork(100, {4}, 1),
                {.k = 3, .n = 20, .features = {Feature::VisibleDrop}});
-    EXPECT_EQ(MakeCriterionFactory("learned:" + noise.path, careful).checksum,
-              FileChecksum(noise.path));
+    EXPECT_EQ(ParseRule("learned:" + noise.path, careful).checksum, FileChecksum(noise.path));
 }
 
 TEST(Rule, GoesOnFromSavedState) {
@@ -182,15 +179,15 @@ TEST(Rule, GoesOnFromSavedState) {
          {std::string("fixed:500"), std::string("dammertz:0.02"), std::string("cycles:0.02"),
           std::string("luxtile:0.1"), std::string("lnoise:2"), std::string("entropy:1"),
           "thresholds:" + thresholds.path}) {
-        const CriterionFactory factory = MakeCriterionFactory(rule);
-        auto criterion = factory.make({});
+        const Rule factory = ParseRule(rule);
+        auto criterion = MakeCriterion(factory);
         for (int spp = 20; spp <= 400; spp += 20) {
             const BlockImage block = NoisyBlock(40, 40, 0.2, spp, unsigned(spp));
-            const auto copy = factory.make({});
+            const auto copy = MakeCriterion(factory);
             copy->Restore(criterion->Save());
             const Decision a = criterion->Observe(block.At(spp)), b = copy->Observe(block.At(spp));
             EXPECT_EQ(a.stop, b.stop) << rule;
-            EXPECT_EQ(a.judged, b.judged) << rule;
+            EXPECT_EQ(a.checked, b.checked) << rule;
             EXPECT_EQ(a.value, b.value) << rule;
             EXPECT_EQ(a.threshold, b.threshold) << rule;
             EXPECT_EQ(copy->Save(), criterion->Save()) << rule;
@@ -199,14 +196,14 @@ TEST(Rule, GoesOnFromSavedState) {
 }
 
 TEST(Rule, RefusesTheStateOfAnother) {
-    const auto cycles = MakeCriterionFactory("cycles:0.01").make({});
+    const auto cycles = MakeCriterion(ParseRule("cycles:0.01"));
     const BlockImage block = NoisyBlock(40, 40, 0.2, 80, 1);
     cycles->Observe(block.At(80));
     const std::vector<std::byte> state = cycles->Save();
-    EXPECT_THROW(MakeCriterionFactory("fixed:20").make({})->Restore(state), std::runtime_error);
-    EXPECT_THROW(MakeCriterionFactory("cycles:0.01").make({})->Restore({}), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(ParseRule("fixed:20"))->Restore(state), std::runtime_error);
+    EXPECT_THROW(MakeCriterion(ParseRule("cycles:0.01"))->Restore({}), std::runtime_error);
     // A state cut short has too few pixels for the block.
-    const auto cut = MakeCriterionFactory("cycles:0.01").make({});
+    const auto cut = MakeCriterion(ParseRule("cycles:0.01"));
     cut->Restore(std::span(state).first(state.size() - 1));
     EXPECT_THROW(cut->Observe(block.At(100)), std::invalid_argument);
 }

@@ -1,4 +1,4 @@
-#include "stopping/lab/recordings/judged_blocks.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 
 #include <fmt/format.h>
 
@@ -20,10 +20,10 @@ std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& pat
     return all;
 }
 
-std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>& viewpoints,
-                                          const std::string& human,
-                                          const std::vector<std::string>& without,
-                                          const WarningSink& warn) try {
+std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecording>& viewpoints,
+                                              const std::string& human,
+                                              const std::vector<std::string>& without,
+                                              const WarningSink& warn) try {
     std::vector<ThresholdsRow> rows = ReadThresholds(human);
     for (const std::string& name : without)
         if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0 &&
@@ -31,7 +31,7 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
             throw std::runtime_error(
                 fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
     std::vector<std::string> unknown;
-    std::vector<JudgedBlock> blocks = JoinHuman(viewpoints, rows, &unknown);
+    std::vector<LabelledBlock> blocks = JoinHuman(viewpoints, rows, &unknown);
     for (const std::string& name : unknown)
         if (std::ranges::find(without, name) == without.end())
             warn(fmt::format("{} has no thresholds for '{}'", human, Printable(name)));
@@ -42,10 +42,10 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
     throw std::runtime_error(human + ": " + error.what());
 }
 
-std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
-                                            std::span<const ModelSettings> settings,
-                                            const WarningSink& warn) {
-    std::vector<JudgedBlock> blocks = judged;
+std::vector<LabelledBlock> KeepRecordedForAll(const std::vector<LabelledBlock>& judged,
+                                              std::span<const ModelSettings> settings,
+                                              const WarningSink& warn) {
+    std::vector<LabelledBlock> blocks = judged;
     for (const ModelSettings& s : settings) blocks = KeepRecorded(blocks, s);
     if (blocks.empty()) throw std::runtime_error("no block was recorded with attributes26");
     if (blocks.size() < judged.size())

@@ -1,4 +1,4 @@
-// Judges the pictures of any renderer: `judge_pngs SPP a.png b.png ...`, each with SPP samples per
+// Judges the pictures of any renderer: `watch_pngs SPP a.png b.png ...`, each with SPP samples per
 // pixel more than the one before. Says of each whether blocks of it still need samples.
 #include <lull/stopping.h>
 #include <png.h>
@@ -8,13 +8,13 @@
 #include <vector>
 
 static int Fail(const char* file, const char* message) {
-    std::fprintf(stderr, "judge_pngs: %s: %s\n", file, message);
+    std::fprintf(stderr, "watch_pngs: %s: %s\n", file, message);
     return 1;
 }
 
 int main(int argc, char** argv) {
     const int step = argc > 2 ? std::atoi(argv[1]) : 0;
-    if (step < 1) return Fail("usage", "judge_pngs SPP a.png b.png ...");
+    if (step < 1) return Fail("usage", "watch_pngs SPP a.png b.png ...");
     lull_stopper* stopper = nullptr;
     for (int i = 2; i < argc; ++i) {
         png_image png = {};

@@ -22,15 +22,15 @@ std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& pat
 // the viewpoints in `without`; tells which have no thresholds. Throws std::runtime_error if no
 // block is left or they do not fit together, or for a name in `without` that is neither recorded
 // nor judged.
-std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>& viewpoints,
-                                          const std::string& human,
-                                          const std::vector<std::string>& without,
-                                          const WarningSink& warn);
+std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecording>& viewpoints,
+                                              const std::string& human,
+                                              const std::vector<std::string>& without,
+                                              const WarningSink& warn);
 
 // Returns the blocks that were recorded with all that any of the settings asks for, and tells how
 // many were not. Throws std::runtime_error if none is left.
-std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
-                                            std::span<const ModelSettings> settings,
-                                            const WarningSink& warn);
+std::vector<LabelledBlock> KeepRecordedForAll(const std::vector<LabelledBlock>& judged,
+                                              std::span<const ModelSettings> settings,
+                                              const WarningSink& warn);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/answer_judgement.h"
+#include "stopping/lab/evaluation/answer_scores.h"
 
 #include <fmt/format.h>
 
@@ -67,9 +67,9 @@ struct RuleRun {
 };
 
 RuleRun RunRule(const std::string& rule, const RuleContext& context,
-                std::span<const JudgedBlock> recorded, std::span<const JudgedBlock> extended) {
+                std::span<const LabelledBlock> recorded, std::span<const LabelledBlock> extended) {
     const Simulator simulator = MakeSimulator(rule, context);
-    const Rule* entry = FindRule(rule);
+    const RuleEntry* entry = FindRule(rule);
     RuleRun run{.rule = rule,
                 .isKnown = entry && entry->replay == Replay::Counts,
                 .outcomes = {},
@@ -82,9 +82,9 @@ RuleRun RunRule(const std::string& rule, const RuleContext& context,
     return run;
 }
 
-std::vector<JudgedBlock> BlocksOf(const ViewpointRecording& viewpoint,
-                                  const std::set<int>& answered) {
-    std::vector<JudgedBlock> blocks;
+std::vector<LabelledBlock> BlocksOf(const ViewpointRecording& viewpoint,
+                                    const std::set<int>& answered) {
+    std::vector<LabelledBlock> blocks;
     for (const auto& [number, recording] : viewpoint.blocks)
         if (answered.contains(number))
             blocks.push_back({.viewpoint = viewpoint.name,
@@ -103,12 +103,12 @@ struct Asked {
 };
 
 std::vector<Asked> AskRules(std::span<const SingleAnswer> answers,
-                            std::span<const JudgedBlock> blocks, std::span<const RuleRun> runs,
+                            std::span<const LabelledBlock> blocks, std::span<const RuleRun> runs,
                             AnswersUsed* used) {
     std::vector<Asked> asked;
     std::set<int> without;
     for (const SingleAnswer& answer : answers) {
-        const auto block = std::ranges::find(blocks, answer.block, &JudgedBlock::block);
+        const auto block = std::ranges::find(blocks, answer.block, &LabelledBlock::block);
         if (block == blocks.end()) {
             ++used->notRecorded;
             without.insert(answer.block);
@@ -158,10 +158,10 @@ ScaledFit FitAnswers(std::span<const Asked> asked, size_t places, const auto& pl
 double LogSpp(const Asked& one) { return std::log(one.answer.spp); }
 
 std::vector<AnsweredBlock> ThresholdsOfBlocks(std::span<const Asked> asked,
-                                              std::span<const JudgedBlock> blocks,
+                                              std::span<const LabelledBlock> blocks,
                                               const ScaledFit& best) {
     std::vector<AnsweredBlock> answered;
-    for (const JudgedBlock& block : blocks) answered.push_back({.block = block.block});
+    for (const LabelledBlock& block : blocks) answered.push_back({.block = block.block});
     for (const Asked& one : asked) {
         ++answered[one.place].answers;
         answered[one.place].seen += one.answer.seen;
@@ -174,30 +174,30 @@ std::vector<AnsweredBlock> ThresholdsOfBlocks(std::span<const Asked> asked,
     return answered;
 }
 
-RuleByAnswers JudgeRule(const RuleRun& run, size_t index, std::span<const Asked> asked,
-                        std::span<const JudgedBlock> blocks, const AnswerJudgement& judgement) {
+RuleByAnswers ScoreRule(const RuleRun& run, size_t index, std::span<const Asked> asked,
+                        std::span<const LabelledBlock> blocks, const AnswerScores& scores) {
     const auto valueOf = [&](const Asked& one) { return one.values[index]; };
     const ScaledFit own = FitAnswers(
         asked, 1, [](const Asked&) { return size_t(0); }, valueOf);
     RuleByAnswers result{
         .rule = run.rule, .logLikelihood = own.fit.logLikelihood, .slope = own.Slope()};
-    if (const double span = judgement.best - judgement.worst; span > 1e-6)
-        result.explained = (result.logLikelihood - judgement.worst) / span;
-    std::vector<float> scores;
+    if (const double span = scores.best - scores.worst; span > 1e-6)
+        result.explained = (result.logLikelihood - scores.worst) / span;
+    std::vector<float> values;
     std::vector<char> labels;
     for (const Asked& one : asked) {
-        scores.push_back(float(valueOf(one)));
+        values.push_back(float(valueOf(one)));
         labels.push_back(one.answer.seen);
     }
-    result.auc = AreaUnderRoc(scores, labels);
+    result.auc = AreaUnderRoc(values, labels);
 
     double early = 0, late = 0, logs = 0, count = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
         const int stop = run.outcomes[i].stop, end = blocks[i].recording->spp.back();
         result.stops.push_back(stop);
         result.open += !run.isKnown && end < kJudgedCap && stop > end;
-        if (!judgement.blocks[i].threshold) continue;
-        const double ratio = std::max(1, stop) / *judgement.blocks[i].threshold;
+        if (!scores.blocks[i].threshold) continue;
+        const double ratio = std::max(1, stop) / *scores.blocks[i].threshold;
         early += ratio < 0.8;
         late += ratio > 1.25;
         logs += std::log(ratio);
@@ -213,12 +213,12 @@ RuleByAnswers JudgeRule(const RuleRun& run, size_t index, std::span<const Asked>
 
 }  // namespace
 
-AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
+AnswerScores EvaluateByAnswers(const ViewpointRecording& viewpoint,
                                std::span<const SingleAnswer> answers,
                                std::span<const std::string> rules, const RuleContext& context) {
     std::set<int> answered;
     for (const SingleAnswer& answer : answers) answered.insert(answer.block);
-    const std::vector<JudgedBlock> recorded = BlocksOf(viewpoint, answered);
+    const std::vector<LabelledBlock> recorded = BlocksOf(viewpoint, answered);
     const ExtendedBlocks extended = ExtendBlocks(recorded);
     RuleContext ofRecording = context;
     ofRecording.passSpp = viewpoint.passSpp;
@@ -226,8 +226,8 @@ AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
     for (const std::string& rule : rules)
         runs.push_back(RunRule(rule, ofRecording, recorded, extended.blocks));
 
-    AnswerJudgement judgement{.viewpoint = viewpoint.name};
-    AnswersUsed& used = judgement.used;
+    AnswerScores scores{.viewpoint = viewpoint.name};
+    AnswersUsed& used = scores.used;
     used.all = int(answers.size());
     used.allBlocks = int(answered.size());
     const std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
@@ -239,14 +239,14 @@ AnswerJudgement JudgeByAnswers(const ViewpointRecording& viewpoint,
     const auto all = [](const Asked&) { return size_t(0); };
     const ScaledFit best = FitAnswers(
         asked, recorded.size(), [](const Asked& one) { return one.place; }, LogSpp);
-    judgement.best = best.fit.logLikelihood;
-    judgement.worst = FitAnswers(asked, 1, all, LogSpp).fit.logLikelihood;
-    judgement.blocks = ThresholdsOfBlocks(asked, recorded, best);
+    scores.best = best.fit.logLikelihood;
+    scores.worst = FitAnswers(asked, 1, all, LogSpp).fit.logLikelihood;
+    scores.blocks = ThresholdsOfBlocks(asked, recorded, best);
     used.answers = int(asked.size());
-    used.blocks = int(std::ranges::count_if(judgement.blocks, &AnsweredBlock::answers));
+    used.blocks = int(std::ranges::count_if(scores.blocks, &AnsweredBlock::answers));
     for (size_t i = 0; i < runs.size(); ++i)
-        judgement.rules.push_back(JudgeRule(runs[i], i, asked, recorded, judgement));
-    return judgement;
+        scores.rules.push_back(ScoreRule(runs[i], i, asked, recorded, scores));
+    return scores;
 }
 
 }  // namespace lull

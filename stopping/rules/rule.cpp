@@ -1,0 +1,113 @@
+#include "stopping/rules/rule.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace lull {
+
+namespace {
+
+// Stops a block at `spp` samples per pixel, or the end of the pass that reaches it.
+class CountingCriterion final : public Criterion {
+  public:
+    explicit CountingCriterion(int spp) : target(spp) {}
+
+    ViewNeed Need(int) const override { return ViewNeed::Nothing; }
+    Decision Observe(const BlockView& view) override {
+        CheckView(view, ViewNeed::Nothing);
+        return {.stop = view.spp >= target,
+                .checked = true,
+                .value = double(view.spp),
+                .threshold = double(target)};
+    }
+
+  private:
+    int target;
+};
+
+}  // namespace
+
+Rule CountingRule(std::function<int(const BlockInfo&)> stopAt) {
+    return {.smallestSide = 0, .stopAt = std::move(stopAt)};
+}
+
+RuleCriterion::RuleCriterion(std::shared_ptr<const Rule> given, const BlockInfo& block)
+    : rule(std::move(given)),
+      block(block),
+      statistic(rule->makeStatistic ? rule->makeStatistic() : nullptr),
+      value(rule->valueBefore) {}
+
+Decision RuleCriterion::Decide(int spp, Signals signals) {
+    std::optional<double> number;
+    if (IsDue(spp)) {
+        last = spp;
+        number = statistic ? statistic->Add(spp, std::move(signals)) : std::get<double>(signals);
+    }
+    if (number) {
+        value = *number;
+        votes = value < rule->threshold ? votes + 1 : 0;
+    }
+    return {.stop = number && votes >= std::max(1, rule->votes),
+            .checked = number.has_value(),
+            .value = value,
+            .threshold = rule->threshold,
+            .votes = rule->votes > 0 ? votes : 0};
+}
+
+ViewNeed RuleCriterion::Need(int spp) const { return IsDue(spp) ? rule->need : ViewNeed::Nothing; }
+
+Decision RuleCriterion::Observe(const BlockView& view) {
+    CheckView(view, Need(view.spp));
+    return Decide(view.spp, IsDue(view.spp) ? rule->measure(view, block) : Signals());
+}
+
+std::optional<double> RuleCriterion::NoiseTold() const {
+    return statistic ? statistic->Noise() : std::nullopt;
+}
+
+std::vector<std::byte> RuleCriterion::Save() const {
+    StateWriter writer;
+    writer.Put(rule->tag);
+    writer.Put(value);
+    writer.Put(int32_t(last));
+    writer.Put(int32_t(votes));
+    if (statistic) statistic->Save(&writer);
+    return std::move(writer.bytes);
+}
+
+void RuleCriterion::Restore(std::span<const std::byte> state) {
+    StateReader reader(state);
+    reader.Expect(rule->tag);
+    value = reader.Get<double>();
+    last = reader.Get<int32_t>();
+    votes = reader.Get<int32_t>();
+    if (!(value >= 0) || last < 0 || votes < 0)
+        throw std::runtime_error("the saved state of a stopping rule is damaged");
+    if (statistic) statistic->Restore(&reader);
+    reader.Finish();
+}
+
+std::unique_ptr<Criterion> MakeCriterion(std::shared_ptr<const Rule> rule, const BlockInfo& block) {
+    if (rule->stopAt) return std::make_unique<CountingCriterion>(rule->stopAt(block));
+    return std::make_unique<RuleCriterion>(std::move(rule), block);
+}
+
+std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block) {
+    return MakeCriterion(std::make_shared<const Rule>(std::move(rule)), block);
+}
+
+std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule) {
+    return [rule = std::make_shared<const Rule>(std::move(rule))](const BlockInfo& block) {
+        return MakeCriterion(rule, block);
+    };
+}
+
+const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule) {
+    const auto measure = context.measures.find(rule);
+    if (measure == context.measures.end())
+        throw std::invalid_argument("it looks at more of a block than this program shows it");
+    return measure->second;
+}
+
+}  // namespace lull

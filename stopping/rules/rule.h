@@ -1,0 +1,129 @@
+// Defines stopping rules: "the number of a block was below a threshold at three checks in a row".
+//
+// A Rule says what is measured of a block, at which of its Checks, and what the number is compared
+// with. A Statistic makes that number of what is measured. A Criterion is a rule at work on one
+// block: it counts the checks in a row that were below the threshold. Renders measure a block; on
+// a recording what was measured is read, and decided on in the same way.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stopping/base/state.h"
+#include "stopping/features/recorded_measures.h"
+#include "stopping/rules/checks.h"
+#include "stopping/rules/criterion.h"
+#include "stopping/rules/signals.h"
+#include "stopping/rules/trend.h"
+
+namespace lull {
+
+// Makes the number of one block from its signals, and remembers what that takes.
+class Statistic {
+  public:
+    virtual ~Statistic() = default;
+
+    // Takes note of the signals at a check, whose spp increase. Returns the number, at least 0 and
+    // not NaN; nothing where there is nothing yet to compare with. Throws std::invalid_argument.
+    virtual std::optional<double> Add(int spp, Signals signals) = 0;
+
+    // Returns the noise that the last number was made of, where it was made of nothing else.
+    virtual std::optional<double> Noise() const { return {}; }
+
+    // Write and read what Add() has left behind. Restore() throws std::runtime_error if it is
+    // damaged.
+    virtual void Save(StateWriter*) const = 0;
+    virtual void Restore(StateReader*) = 0;
+};
+
+// Measures what a rule looks at in a block.
+using SignalMeasure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
+
+struct Rule {
+    std::string text = {};      // as it was given, for headers and reports
+    std::string checksum = {};  // of the file that it reads; empty if it reads none
+    // How its stops lie to those of people, see network/human_range.h; empty: not known.
+    std::vector<double> logRatios = {};
+    RuleTrend trend = {};
+    // Pixels a side below which a block is not checked, but follows a neighbour (small_blocks.h).
+    int smallestSide = smallestVotingSide;
+    uint32_t tag = 0;  // tells saved states of its criteria from those of others
+
+    Checks checks = {};
+    double threshold = 0;
+    int votes = 0;  // checks in a row below it that stop a block; 0: one does, and none is counted
+    ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
+    SignalMeasure measure = {};
+    // Returns from a recording what `measure` would have; empty: that is not recorded.
+    std::function<Signals(int spp, const RecordedValues& values)> recall = {};
+    // Empty: the number is what is measured.
+    std::function<std::unique_ptr<Statistic>()> makeStatistic = {};
+    double valueBefore = 0;  // the number of a block that has none yet
+    int spacing = 0;         // spp between two states that it compares; 0: it takes what there is
+
+    // In place of all these, where rules that only count samples stop a block, in spp, before the
+    // end of the pass is waited for. Throws std::invalid_argument for a block that the rule has no
+    // answer for.
+    std::function<int(const BlockInfo&)> stopAt = {};
+};
+
+// Returns the rule that stops blocks where `stopAt` says.
+Rule CountingRule(std::function<int(const BlockInfo&)> stopAt);
+
+// Applies a rule with a threshold to one block.
+class RuleCriterion final : public Criterion {
+  public:
+    RuleCriterion(std::shared_ptr<const Rule> rule, const BlockInfo& block);
+
+    bool IsDue(int spp) const { return rule->checks.AreDue(spp, last); }
+    // Decides after a pass. Signals are read only where a check is due. Throws
+    // std::invalid_argument as the statistic does.
+    Decision Decide(int spp, Signals signals);
+
+    ViewNeed Need(int spp) const override;
+    Decision Observe(const BlockView& view) override;
+    std::optional<double> NoiseTold() const override;
+    std::vector<std::byte> Save() const override;
+    void Restore(std::span<const std::byte> state) override;
+
+  private:
+    std::shared_ptr<const Rule> rule;
+    BlockInfo block;
+    std::unique_ptr<Statistic> statistic;  // null: the number is what is measured
+    double value;                          // the last number
+    int last = 0;                          // spp of the last check; 0: there was none
+    int votes = 0;                         // checks in a row below the threshold
+};
+
+// Makes the criterion of one block. Throws as Rule::stopAt does.
+std::unique_ptr<Criterion> MakeCriterion(std::shared_ptr<const Rule> rule,
+                                         const BlockInfo& block = {});
+std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {});
+// Returns what makes those of all blocks of an image, from any thread.
+std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule);
+
+// Says what a rule can depend on beside its own text.
+struct RuleContext {
+    int passSpp = 20;            // spp of a pass, also of the first; 0: any (see Checks)
+    int blockCount = 0;          // blocks in the image; 0: not known
+    int cap = 0;                 // spp that no block exceeds; 0: not known
+    std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty
+    std::string models = {};     // the folder of installed models, NAME.h5; may be empty
+    // Divides the threshold of visible noise: 2 lets half as much of it be. Above 0; others than 1
+    // only for rules that have such a threshold.
+    double caution = 1;
+    NoiseVisibility visibility = {};  // to the rule `entropy`
+    // By the name of a rule, what the program measures for it that a BlockView does not show. A
+    // rule that needs that is refused where it is missing.
+    std::map<std::string, SignalMeasure> measures = {};
+};
+
+// Returns what the program measures for a rule. Throws std::invalid_argument if it does not.
+const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule);
+
+}  // namespace lull

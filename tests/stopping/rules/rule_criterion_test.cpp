@@ -1,0 +1,107 @@
+#include "stopping/rules/rule.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace lull {
+namespace {
+
+constexpr uint32_t kTag = 0x31303030;
+
+// Returns a rule whose number is what the program says of a block: 100 / spp, and more for others.
+Rule OwnRule(const Checks& checks, int votes) {
+    RuleContext context;
+    context.measures["own"] = [](const BlockView& view, const BlockInfo& block) {
+        return 100.0 * (block.index + 1) / view.spp;
+    };
+    return {.tag = kTag,
+            .checks = checks,
+            .threshold = 0.5,
+            .votes = votes,
+            .need = ViewNeed::Nothing,
+            .measure = SuppliedMeasure(context, "own")};
+}
+
+std::vector<int> ChecksOf(Criterion* criterion, int begin, int end) {
+    std::vector<int> checks;
+    for (int spp = begin; spp <= end; spp += 20) {
+        const Decision decision = criterion->Observe({.width = 40, .height = 40, .spp = spp});
+        if (decision.checked) checks.push_back(spp);
+        if (decision.stop) break;
+    }
+    return checks;
+}
+
+TEST(RuleCriterion, TakesWhatTheProgramMeasures) {
+    const auto first = MakeCriterion(OwnRule({}, 0), {.index = 0}),
+               third = MakeCriterion(OwnRule({}, 0), {.index = 2});
+    EXPECT_EQ(ChecksOf(first.get(), 20, 2000).back(), 220);
+    EXPECT_EQ(ChecksOf(third.get(), 20, 2000).back(), 620);
+    EXPECT_THROW(SuppliedMeasure({}, "own"), std::invalid_argument);
+}
+
+TEST(RuleCriterion, GoesOnWithItsChecksWhereverItIsInterrupted) {
+    const Checks octaves{.first = 40, .growth = 2};
+    const std::vector<int> expected{40, 80, 160, 320, 640, 1280};
+    EXPECT_EQ(ChecksOf(MakeCriterion(OwnRule(octaves, 3)).get(), 20, 10000), expected);
+    for (const int split : {20, 40, 60, 160, 500}) {
+        const auto before = MakeCriterion(OwnRule(octaves, 3)),
+                   after = MakeCriterion(OwnRule(octaves, 3));
+        std::vector<int> checks = ChecksOf(before.get(), 20, split);
+        after->Restore(before->Save());
+        EXPECT_EQ(after->Save(), before->Save());
+        for (const int spp : ChecksOf(after.get(), split + 20, 10000)) checks.push_back(spp);
+        EXPECT_EQ(checks, expected) << split;
+    }
+}
+
+TEST(RuleCriterion, StopsBelowTheThresholdSoManyTimesInARow) {
+    RuleCriterion criterion(std::make_shared<const Rule>(OwnRule({}, 3)), {});
+    const double numbers[] = {0.1, 0.4999, 0.5, 0.0, 0.2, 0.3};  // 0.5 is not below 0.5
+    const int votes[] = {1, 2, 0, 1, 2, 3};
+    for (int i = 0; i < 6; ++i) {
+        const Decision decision = criterion.Decide(20 * (i + 1), numbers[i]);
+        EXPECT_EQ(decision.votes, votes[i]);
+        EXPECT_EQ(decision.stop, i == 5);
+    }
+    const Decision nonsense = criterion.Decide(140, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_FALSE(nonsense.stop);
+    EXPECT_EQ(nonsense.votes, 0);
+}
+
+TEST(RuleCriterion, StopsAtOnceWhereTheRuleDoesNotVote) {
+    RuleCriterion criterion(std::make_shared<const Rule>(OwnRule({}, 0)), {});
+    EXPECT_FALSE(criterion.Decide(20, 0.5).stop);
+    const Decision decision = criterion.Decide(40, 0.4);
+    EXPECT_TRUE(decision.stop);
+    EXPECT_EQ(decision.votes, 0);
+}
+
+TEST(RuleCriterion, DecidesOnSignalsAloneAsOnWhatItMeasures) {
+    const auto rule = std::make_shared<const Rule>(OwnRule({}, 2));
+    RuleCriterion measuring(rule, {}), told(rule, {});
+    for (int spp = 20; spp <= 240; spp += 20) {
+        const Decision a = measuring.Observe({.width = 40, .height = 40, .spp = spp}),
+                       b = told.Decide(spp, 100.0 / spp);
+        EXPECT_EQ(a.value, b.value);
+        EXPECT_EQ(a.votes, b.votes);
+        EXPECT_EQ(a.stop, b.stop);
+        EXPECT_EQ(a.stop, spp == 240);  // 220 and 240 are below
+    }
+    EXPECT_EQ(measuring.Save(), told.Save());
+}
+
+TEST(RuleCriterion, RefusesStatesThatAreNotItsOwn) {
+    const auto rule = MakeCriterion(OwnRule({.first = 20, .growth = 2}, 3));
+    std::vector<std::byte> state = rule->Save();
+    for (size_t size = 0; size < state.size(); ++size)
+        EXPECT_THROW(rule->Restore(std::span(state).first(size)), std::runtime_error) << size;
+    state[0] ^= std::byte(1);
+    EXPECT_THROW(rule->Restore(state), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace lull
