@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stopping/base/input_file.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/entropy.h"
@@ -173,7 +174,7 @@ Rule ParseRule(const std::string& given, const RuleContext& context) {
         }
         return rule;
     } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument("stopping rule '" + text + "': " + error.what());
+        throw std::invalid_argument("stopping rule '" + Printable(text) + "': " + error.what());
     }
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
@@ -156,7 +157,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
         return ThresholdsSimulator(ArgumentOf(text));
     if (const RuleEntry* entry = FindRule(text); entry && entry->replay == Replay::Unknown)
-        throw std::invalid_argument("stopping rule '" + text +
+        throw std::invalid_argument("stopping rule '" + Printable(text) +
                                     "': recordings hold no denoised pictures, nor what these are "
                                     "made of; thresholds that a render has written can be judged");
     const auto rule = std::make_shared<const Rule>(ParseRule(text, context));
