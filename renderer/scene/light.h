@@ -15,7 +15,9 @@
 //     Rgb Le(const Vec3f& n, const Vec3f& w, const Hit&) const
 //         returns the radiance that leaves a hit with normal n towards w;
 //     float Pdf(const Vec3f& from, const Vec3f& p, const Vec3f& n) const
-//         returns the density, 1/sr, with which Sample finds the point p with normal n,
+//         returns the density, 1/sr, with which Sample finds the point p with normal n
+//     bool isHidden
+//         whether rays pass it by all the same,
 //
 // and one of type Infinite, which rays reach when they leave the scene,
 //
@@ -41,6 +43,40 @@ using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, A
 
 inline LightType TypeOf(const Light& light) {
     return Visit(light, []<typename L>(const L&) { return L::kType; });
+}
+
+// Returns whether rays can find the light.
+inline bool IsVisible(const Light& light) {
+    const AreaLight* area = std::get_if<AreaLight>(&light);
+    return area ? !area->isHidden : !IsDelta(TypeOf(light));
+}
+
+// Do what the kinds of type Area do; those of other types give none and are not found.
+inline Rgb Le(const Light& light, const Vec3f& n, const Vec3f& w, const Hit& hit) {
+    return Visit(light, [&]<typename L>(const L& l) -> Rgb {
+        if constexpr (L::kType == LightType::Area) return l.Le(n, w, hit);
+        return Rgb::Zero();
+    });
+}
+inline float Pdf(const Light& light, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
+    return Visit(light, [&]<typename L>(const L& l) -> float {
+        if constexpr (L::kType == LightType::Area) return l.Pdf(from, p, n);
+        return 0;
+    });
+}
+
+// Do what the kinds of type Infinite do.
+inline Rgb Le(const Light& light, const Vec3f& w) {
+    return Visit(light, [&]<typename L>(const L& l) -> Rgb {
+        if constexpr (L::kType == LightType::Infinite) return l.Le(w);
+        return Rgb::Zero();
+    });
+}
+inline float Pdf(const Light& light, const Vec3f& w) {
+    return Visit(light, [&]<typename L>(const L& l) -> float {
+        if constexpr (L::kType == LightType::Infinite) return l.Pdf(w);
+        return 0;
+    });
 }
 
 }  // namespace lull

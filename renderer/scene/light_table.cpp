@@ -150,10 +150,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         }
     }
     if (lights.empty()) return;
-    anyVisible = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
-        const AreaLight* area = std::get_if<AreaLight>(&light);
-        return !IsDelta(TypeOf(light)) && !(area && area->isHidden);
-    });
+    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
 
     const Entity& integrator = description.integrator;
     std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
