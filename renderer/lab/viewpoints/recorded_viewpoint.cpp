@@ -8,7 +8,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/render/peers.h"
-#include "stopping/rules/small_blocks.h"
+#include "stopping/base/block_view.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -43,11 +43,11 @@ RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& 
 
 void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions& schedule) {
     for (const Block& block : blocks)
-        if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
+        if (std::min(block.pixels.Width(), block.pixels.Height()) < kSmallestVotingSide)
             throw Error(
                 fmt::format("blocks of less than {} pixels a side cannot be recorded; "
                             "choose a --resolution that is a multiple of {}",
-                            smallestVotingSide, schedule.blockSize));
+                            kSmallestVotingSide, schedule.blockSize));
 }
 
 std::string CheckViewpointName(const std::string& name) {
