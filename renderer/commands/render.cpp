@@ -151,7 +151,7 @@ Rule ReadRule(const Options& options, const PixelRect& region,
     std::map<std::string, SignalMeasure> measures;
     if (options.denoise) {
         *denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(region, settings->schedule));
-        measures[denoisedRuleName] = MeasureOf(*denoiser);
+        measures[kDenoisedRuleName] = MeasureOf(*denoiser);
     }
     const Rule rule = ReadRule("--stop", options.rule, *settings, region, std::move(measures));
     settings->schedule.smallestSide = rule.smallestSide;
@@ -293,7 +293,7 @@ ExitCode RunRender(Options options, Job* job) {
     options.aovs.alpha |= options.pictures.format.isTransparent;
     options.rule = options.spp > 0
                        ? fmt::format("fixed:{}", options.spp)
-                       : options.stop.value_or(options.denoise ? denoisedRuleName : defaultRule);
+                       : options.stop.value_or(options.denoise ? kDenoisedRuleName : kDefaultRule);
     RenderSettings& settings = options.render;
     SetWording(settings, job);
     const bool leads = job->Rank() == 0;  // prints, and has to do with files

@@ -87,7 +87,7 @@ std::string ModelFolder() {
 
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
-    if (rule.starts_with(denoisedRuleName) && measures.empty())
+    if (rule.starts_with(kDenoisedRuleName) && measures.empty())
         throw Error(
             option + " " + rule +
             ": it stops what is denoised: `lull render --denoise`; `lull compare --denoise` "

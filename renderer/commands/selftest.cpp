@@ -21,7 +21,7 @@ namespace {
 struct SelftestOptions {
     HardCaseOptions cases;
     std::string only;  // a part of the names of those to run; empty: all
-    std::string model = ModelFolder() + "/" + defaultModelName + ".h5";
+    std::string model = ModelFolder() + "/" + kDefaultModelName + ".h5";
     bool markdown = false;
 };
 

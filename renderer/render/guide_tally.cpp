@@ -1,16 +1,14 @@
 #include "renderer/render/guide_tally.h"
 
 #include "renderer/base/color.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
 namespace {
 
 // Returns the derivative of CIE lightness L* by luminance; 0 beyond white.
-double SlopeUpToWhite(double y) {
-    constexpr double kLinear = 0.008856, kSlope = 903.3;
-    return y > 1 ? 0 : y > kLinear ? 116. / 3 * std::pow(y, -2. / 3) : kSlope;
-}
+double SlopeUpToWhite(double y) { return y > 1 ? 0 : LightnessAt(y).slope; }
 
 // Returns the mean luminance of each tile.
 std::vector<double> LuminanceOf(const Film& film) {

@@ -1,6 +1,6 @@
 #include "renderer/render/schedule.h"
 
-#include "stopping/rules/small_blocks.h"
+#include "stopping/rules/block_grid.h"
 
 namespace lull {
 
@@ -25,22 +25,16 @@ PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
 }  // namespace
 
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& options) {
-    const int size = options.blockSize;
+    const BlockGrid grid =
+        CutIntoBlocks(region.Width(), region.Height(), options.blockSize, options.smallestSide);
     std::vector<Block> blocks;
-    for (int y = region.min.y(); y < region.max.y(); y += size)
-        for (int x = region.min.x(); x < region.max.x(); x += size)
-            blocks.push_back({.pixels = {{x, y},
-                                         {std::min(x + size, region.max.x()),
-                                          std::min(y + size, region.max.y())}}});
-
-    std::vector<BlockSize> sizes;
-    for (const Block& block : blocks)
-        sizes.push_back({block.pixels.Width(), block.pixels.Height()});
-    const std::vector<int> leaders =
-        BlockLeaders(std::max(1, CeilDiv(region.Width(), size)), sizes, options.smallestSide);
-    for (int i = 0; i < int(blocks.size()); ++i) {
-        blocks[i].votes = leaders[i] == i;
-        blocks[i].leader = blocks[i].votes ? -1 : leaders[i];
+    for (size_t i = 0; i < grid.blocks.size(); ++i) {
+        const BlockRect& rect = grid.blocks[i];
+        const Vec2i min = region.min + Vec2i(rect.x, rect.y);
+        const bool votes = grid.leaders[i] == int(i);
+        blocks.push_back({.pixels = {min, min + Vec2i(rect.width, rect.height)},
+                          .votes = votes,
+                          .leader = votes ? -1 : grid.leaders[i]});
     }
     return blocks;
 }

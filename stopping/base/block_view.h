@@ -30,6 +30,6 @@ enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };
 void CheckView(const BlockView& view, ViewNeed need);
 
 // Pixels a side below which a block is too small for meaningful statistics.
-inline constexpr int smallestVotingSide = 40;
+inline constexpr int kSmallestVotingSide = 40;
 
 }  // namespace lull

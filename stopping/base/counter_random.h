@@ -17,7 +17,7 @@ class CounterRandom {
         for (uint64_t p : purpose) key = Mix(key ^ Mix(p + 1));
     }
 
-    uint64_t Next() { return Mix(key + ++count * step); }
+    uint64_t Next() { return Mix(key + ++count * kStep); }
     // Returns a number in [0, 1), a multiple of 2^-53.
     double Uniform() { return double(Next() >> 11) * 0x1p-53; }
     // Returns an integer in [0, limit), limit > 0.
@@ -29,7 +29,7 @@ class CounterRandom {
     }
 
   private:
-    static constexpr uint64_t step = 0x9e3779b97f4a7c15;
+    static constexpr uint64_t kStep = 0x9e3779b97f4a7c15;
 
     // Mixes all bits into all others: the finalizer of splitmix64 (Steele, Lea, Flood 2014).
     static uint64_t Mix(uint64_t x) {

@@ -23,9 +23,9 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t stopperTag = 0x32504f53;  // "SOP2"
-constexpr int largestSide = 1 << 16;         // pixels
-constexpr int blockSide = 200;               // of the blocks that people have judged
+constexpr uint32_t kStopperTag = 0x32504f53;  // "SOP2"
+constexpr int kLargestSide = 1 << 16;         // pixels
+constexpr int kBlockSide = 200;               // of the blocks that people have judged
 
 void Require(bool holds, const std::string& message) {
     if (!holds) throw std::invalid_argument(message);
@@ -33,10 +33,10 @@ void Require(bool holds, const std::string& message) {
 
 void CheckSettings(const lull_settings& s) {
     const auto isSide = [](int pixels) {
-        return pixels >= smallestVotingSide && pixels <= largestSide;
+        return pixels >= kSmallestVotingSide && pixels <= kLargestSide;
     };
-    const std::string range = std::to_string(smallestVotingSide) + " to " +
-                              std::to_string(largestSide) + " pixels a side";
+    const std::string range = std::to_string(kSmallestVotingSide) + " to " +
+                              std::to_string(kLargestSide) + " pixels a side";
     Require(isSide(s.width) && isSide(s.height), "a picture of " + std::to_string(s.width) + "x" +
                                                      std::to_string(s.height) +
                                                      " pixels; it must have " + range);
@@ -50,7 +50,7 @@ void CheckSettings(const lull_settings& s) {
 Rule MakeRule(const lull_settings& s, int blockCount) {
     const std::string text = s.rule    ? std::string(s.rule)
                              : s.model ? "learned:" + std::string(s.model)
-                                       : std::string(defaultRule);
+                                       : std::string(kDefaultRule);
     // The HDF5 library, which reads the model, has one thread at a time.
     static std::mutex reading;
     const std::lock_guard lock(reading);
@@ -63,8 +63,9 @@ Rule MakeRule(const lull_settings& s, int blockCount) {
 
 // Returns the first spp from `spp` on at which a criterion checks a block; 0 if it never does.
 int NextCheck(const Criterion& criterion, int spp) {
-    constexpr int horizon = 10000;  // beyond any spacing of checks
-    const int end = int(std::min<int64_t>(int64_t(spp) + horizon, std::numeric_limits<int>::max()));
+    constexpr int kHorizon = 10000;  // beyond any spacing of checks
+    const int end =
+        int(std::min<int64_t>(int64_t(spp) + kHorizon, std::numeric_limits<int>::max()));
     for (int s = spp; s < end; ++s)
         if (criterion.Need(s) != ViewNeed::Nothing) return s;
     return 0;
@@ -78,7 +79,7 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
 std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;
-    writer.Put(stopperTag);
+    writer.Put(kStopperTag);
     writer.Put(settings.pass);
     writer.Put(settings.cap);
     const std::string who = rule.text + " " + rule.checksum;
@@ -92,10 +93,11 @@ std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rul
 
 Stopper::Stopper(const lull_settings& settings) {
     CheckSettings(settings);
-    const int side = settings.block > 0 ? settings.block : blockSide;
-    grid = CutIntoBlocks(settings.width, settings.height, side);
-    const int count = int(grid.blocks.size());
+    const int side = settings.block > 0 ? settings.block : kBlockSide;
+    const auto along = [&](int pixels) { return (pixels + side - 1) / side; };
+    const int count = along(settings.width) * along(settings.height);
     rule = std::make_shared<const Rule>(MakeRule(settings, count));
+    grid = CutIntoBlocks(settings.width, settings.height, side, rule->smallestSide);
     identity = IdentityOf(settings, *rule, grid);
     const auto first = MakeState(0).criterion;
     firstCheck = NextCheck(*first, 1);
@@ -104,16 +106,18 @@ Stopper::Stopper(const lull_settings& settings) {
     locks = std::vector<std::mutex>(states.size());
 }
 
-const lull_rect& Stopper::RectOf(int block) const {
+lull_rect Stopper::RectOf(int block) const {
     Require(block >= 0 && block < int(grid.blocks.size()),
             "there is no block " + std::to_string(block) + "; the picture has blocks 0 to " +
                 std::to_string(grid.blocks.size() - 1));
-    return grid.blocks[size_t(block)];
+    const BlockRect& rect = grid.blocks[size_t(block)];
+    return {rect.x, rect.y, rect.width, rect.height};
 }
 
 Stopper::BlockState Stopper::MakeState(int block) const {
-    const lull_rect& rect = grid.blocks[size_t(block)];
-    const lull_rect& last = grid.blocks.back();
+    if (grid.leaders[size_t(block)] != block) return {};
+    const BlockRect& rect = grid.blocks[size_t(block)];
+    const BlockRect& last = grid.blocks.back();
     const double pixels = double(last.x + last.width) * (last.y + last.height);
     BlockState state{.criterion =
                          MakeCriterion(rule, {block, rect.width * double(rect.height) / pixels})};
@@ -130,37 +134,41 @@ std::vector<std::unique_lock<std::mutex>> Stopper::LockAll() const {
 
 bool Stopper::Done() const {
     const auto all = LockAll();
-    return std::ranges::all_of(states, [](const BlockState& s) { return s.answer.stop == 1; });
+    return std::ranges::all_of(
+        states, [](const BlockState& s) { return !s.criterion || s.answer.stop == 1; });
 }
 
 lull_answer Stopper::Answer(int block) const {
     RectOf(block);
-    const std::lock_guard lock(locks[size_t(block)]);
-    return states[size_t(block)].answer;
+    const size_t leader = size_t(grid.leaders[size_t(block)]);
+    const std::lock_guard lock(locks[leader]);
+    return states[leader].answer;
 }
 
 std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) {
-    const lull_rect& last = grid.blocks.back();
+    const BlockRect& last = grid.blocks.back();
     CheckPicture(picture, last.x + last.width, last.y + last.height, needsHalf);
     const auto all = LockAll();
     Require(spp > 0, "a picture needs samples: spp must be above 0");
     for (const BlockState& state : states)
-        Require(state.answer.stop || spp > state.answer.spp,
+        Require(!state.criterion || state.answer.stop || spp > state.answer.spp,
                 "spp must increase: a picture at " + std::to_string(spp) + " spp after one at " +
                     std::to_string(state.answer.spp));
     // Isolated: this thread has all locks, and must not take up a task that waits for one.
     tbb::this_task_arena::isolate([&] {
-        ForEachIndex(int(states.size()),
-                     [&](int i) { Check(i, picture, grid.blocks[size_t(i)], spp); });
+        ForEachIndex(int(states.size()), [&](int i) {
+            if (states[size_t(i)].criterion) Check(i, picture, RectOf(i), spp);
+        });
     });
     std::vector<lull_answer> answers;
-    for (const BlockState& state : states) answers.push_back(state.answer);
+    for (const int leader : grid.leaders) answers.push_back(states[size_t(leader)].answer);
     return answers;
 }
 
 lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int spp) {
-    const lull_rect& rect = RectOf(block);
+    const lull_rect rect = RectOf(block);
     CheckPicture(picture, rect.width, rect.height, needsHalf);
+    if (grid.leaders[size_t(block)] != block) return Answer(block);
     const std::lock_guard lock(locks[size_t(block)]);
     const lull_answer& answer = states[size_t(block)].answer;
     Require(spp > 0, "a picture needs samples: spp must be above 0");
@@ -208,6 +216,7 @@ std::vector<std::byte> Stopper::Save() const {
     StateWriter writer;
     writer.bytes = identity;
     for (const BlockState& state : states) {
+        if (!state.criterion) continue;
         const std::vector<std::byte> own = state.criterion->Save();
         writer.Put(state.answer);
         writer.Put(uint32_t(own.size()));
@@ -227,6 +236,7 @@ void Stopper::Restore(std::span<const std::byte> state) {
     std::vector<BlockState> restored;
     for (int i = 0; i < int(states.size()); ++i) {
         restored.push_back(MakeState(i));
+        if (!restored.back().criterion) continue;
         restored.back().answer = reader.Get<lull_answer>();
         std::vector<std::byte> own(std::min<size_t>(reader.Get<uint32_t>(), reader.Left()));
         reader.GetAll(std::span(own));

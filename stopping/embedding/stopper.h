@@ -8,7 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "stopping/embedding/grid.h"
+#include "lull/stopping.h"
+#include "stopping/rules/block_grid.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {
@@ -20,7 +21,7 @@ class Stopper {
 
     const BlockGrid& Grid() const { return grid; }
     // Returns where a block lies. Throws std::invalid_argument if there is no such block.
-    const lull_rect& RectOf(int block) const;
+    lull_rect RectOf(int block) const;
     bool NeedsHalf() const { return needsHalf; }
     bool Done() const;
 
@@ -36,7 +37,7 @@ class Stopper {
 
   private:
     struct BlockState {
-        std::unique_ptr<Criterion> criterion;
+        std::unique_ptr<Criterion> criterion;  // null for a block that follows another
         lull_answer answer = {};
     };
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Stops another renderer where its picture has had enough samples.
 
-    drive_renderer.py --pictures frame-*.png --step 64     judges pictures that are there
+    drive_renderer.py --pictures frame-*.png --step 64     watches pictures that are there
     drive_renderer.py                                      drives a small renderer of its own
 
 The first takes PNG files (needs Pillow), each with so many samples per pixel more than the one before.

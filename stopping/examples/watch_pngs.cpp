@@ -1,4 +1,4 @@
-// Judges the pictures of any renderer: `watch_pngs SPP a.png b.png ...`, each with SPP samples per
+// Watches the pictures of any renderer: `watch_pngs SPP a.png b.png ...`, each with SPP samples per
 // pixel more than the one before. Says of each whether blocks of it still need samples.
 #include <lull/stopping.h>
 #include <png.h>

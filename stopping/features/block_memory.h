@@ -1,15 +1,13 @@
 // Remembers what the later windows of a block are made of.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "stopping/features/window.h"
-#include "stopping/signals/drop_history.h"
 
 namespace lull {
 
-// Turns the measures of a block, pass by pass, into windows: adds how far entropies have fallen
+// Turns the measures of a block, check by check, into windows: adds how far entropies have fallen
 // since half as many samples, and keeps the inputs.
 class BlockMemory {
   public:
@@ -17,11 +15,13 @@ class BlockMemory {
     explicit BlockMemory(const ModelSettings& settings);
 
     // Adds measures, with increasing spp; those without an earlier state to compare with give no
-    // inputs. Throws as InputVector() and FeatureHistory::Add() do.
+    // inputs. Throws as InputVector() and History::Add() do.
     void Add(BlockMeasures measures);
 
-    // Returns the window that ends at `spp`, as FeatureHistory::WindowAt() does.
-    std::optional<Eigen::MatrixXf> WindowAt(int spp) const { return inputs.WindowAt(spp); }
+    // Returns the window that ends at `spp`, as WindowOf() does.
+    std::optional<Eigen::MatrixXf> WindowAt(int spp) const {
+        return WindowOf(inputs, settings, spp);
+    }
 
     // Write and read all that Add() has left behind. Restore() throws std::runtime_error if it is
     // damaged.
@@ -29,14 +29,11 @@ class BlockMemory {
     void Restore(StateReader* reader);
 
   private:
-    static constexpr std::array kDrops = {Feature::EntropyDrop, Feature::EntropyDrop1,
-                                          Feature::EntropyDrop2, Feature::VisibleDrop};
-
     bool Complete(BlockMeasures* measures);
 
     ModelSettings settings;
-    FeatureHistory inputs;
-    std::array<DropHistory, kDrops.size()> drops;  // those of features that are asked for
+    History<double> inputs;
+    History<float> entropies;  // where their falls are asked for
 };
 
 }  // namespace lull

@@ -18,7 +18,7 @@ namespace {
 // Whether an entropy is asked for, or its fall.
 bool NeedsEntropy(const ModelSettings& settings, Feature entropy) {
     return std::ranges::any_of(settings.features, [&](Feature f) {
-        return f == entropy || (IsDrop(f) && EntropyOf(f) == entropy);
+        return f == entropy || (IsDrop(f) && entropy == Feature::H);
     });
 }
 
@@ -58,12 +58,8 @@ void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
         measures->Of(feature).assign(values.begin(), values.end());
     };
     put(Feature::Lightness, s.lightness);
-    put(Feature::Deviation, s.deviation);
-    put(Feature::Texture, s.texture);
     put(Feature::Noise, s.noise);
-    put(Feature::NoiseMean, s.noiseMean);
     put(Feature::MaskedNoise, s.maskedNoise);
-    put(Feature::HalfNoise, s.halfNoise);
     measures->Of(Feature::DetailMaskedNoise) =
         DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
 }
@@ -75,15 +71,10 @@ int ValueCount(const ModelSettings& settings, Feature feature) {
     return isEntropy ? settings.m : kMeasuredSubBlocks;
 }
 
-double Pooled(const Pool& pool, std::vector<double> values) {
+double Pooled(const Pool& pool, const std::vector<double>& values) {
     const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
-    if (pool.kind == Pool::PowerMean)
-        return pool.number == 1 ? v.mean()
-                                : std::pow(v.abs().pow(pool.number).mean(), 1.0 / pool.number);
-    std::sort(values.begin(), values.end());
-    const double place = pool.number / 100.0 * double(values.size() - 1);
-    const size_t below = size_t(place), above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - double(below)) * (values[above] - values[below]);
+    return pool.exponent == 1 ? v.mean()
+                              : std::pow(v.abs().pow(pool.exponent).mean(), 1.0 / pool.exponent);
 }
 
 // Returns what is added to noise before its logarithm is taken.
@@ -93,8 +84,6 @@ double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.
 double Scaled(Feature feature, double value) {
     if (IsNormalized(feature)) return value;
     if (feature == Feature::Lightness) return value / 100;
-    if (feature == Feature::Deviation || feature == Feature::Texture)
-        return std::log1p(std::max(value, 0.0) / 4) / 2;
     return std::log(std::max(value, 0.0) + LeastNoise(feature));
 }
 

@@ -45,10 +45,10 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings);
 int InputCount(const ModelSettings& settings);
 
 // Returns the input of one step, InputCount() values, before it is normalised over a window:
-// entropies as they are; noise, times the caution, and drops as log(v + 0.001); deviation and
-// texture as log(1 + v / 4) / 2 (a texture t masks noise by 1 + t / 4); lightness / 100; the spp as
-// log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their logarithm is
-// taken. Throws std::invalid_argument if the measures of a feature have a wrong length.
+// entropies as they are; noise, times the caution, and drops as log(v + 0.001); lightness / 100;
+// the spp as log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their
+// logarithm is taken. Throws std::invalid_argument if the measures of a feature have a wrong
+// length.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
 // Says whether noise, pooled to one number, is the only input of a network.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -13,56 +12,43 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 17> featureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 11> kFeatureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
      {Feature::Lightness, "lightness"},
-     {Feature::Deviation, "deviation"},
-     {Feature::Texture, "texture"},
      {Feature::Noise, "noise"},
-     {Feature::NoiseMean, "noise_mean"},
      {Feature::MaskedNoise, "masked_noise"},
-     {Feature::HalfNoise, "half_noise"},
      {Feature::DetailMaskedNoise, "detail_masked_noise"},
      {Feature::EntropyDrop, "entropy_drop"},
-     {Feature::EntropyDrop1, "entropy_drop_h1"},
-     {Feature::EntropyDrop2, "entropy_drop_h2"},
      {Feature::VisibleDrop, "visible_drop"},
      {Feature::Attributes26, "attributes26"},
      {Feature::LogSpp, "logspp"}}};
 
 Feature ParseFeature(const std::string& name) {
     std::string known;
-    for (const auto& [feature, text] : featureNames) {
+    for (const auto& [feature, text] : kFeatureNames) {
         if (name == text) return feature;
         known += std::string(known.empty() ? "" : ", ") + text;
     }
     throw std::invalid_argument("feature '" + name + "' is not known; there are " + known);
 }
 
-std::string FeatureName(Feature feature) { return featureNames[size_t(feature)].second; }
+std::string FeatureName(Feature feature) { return kFeatureNames[size_t(feature)].second; }
 
 Pool ParsePool(const std::string& name) {
-    if (name == "mean") return {Pool::PowerMean, 1};
-    if (name == "rms") return {Pool::PowerMean, 2};
-    const char* const end = name.data() + name.size();
-    if (name.size() > 1 && (name[0] == 'p' || name[0] == 'q')) {
-        Pool pool{name[0] == 'p' ? Pool::PowerMean : Pool::Quantile};
-        const auto [at, error] = std::from_chars(name.data() + 1, end, pool.number);
-        const int least = name[0] == 'p' ? 3 : 0, most = name[0] == 'p' ? 9 : 100;
-        if (error == std::errc() && at == end && pool.number >= least && pool.number <= most)
-            return pool;
-    }
+    if (name == "mean") return {1};
+    if (name == "rms") return {2};
+    if (name.size() == 2 && name[0] == 'p' && name[1] >= '3' && name[1] <= '9')
+        return {name[1] - '0'};
     throw std::invalid_argument("pooling '" + name +
-                                "' is not known; there are mean, rms, p3 to p9 and q0 to q100");
+                                "' is not known; there are mean, rms and p3 to p9");
 }
 
 std::string PoolName(const Pool& pool) {
-    if (pool == Pool{Pool::PowerMean, 1}) return "mean";
-    if (pool == Pool{Pool::PowerMean, 2}) return "rms";
-    return std::string(pool.kind == Pool::PowerMean ? "p" : "q")
-        .append(std::to_string(pool.number));
+    return pool.exponent == 1   ? "mean"
+           : pool.exponent == 2 ? "rms"
+                                : "p" + std::to_string(pool.exponent);
 }
 
 template <typename T>
@@ -126,7 +112,7 @@ void CheckSettings(const ModelSettings& s) {
     };
     check("k", s.k, 1, 1000);
     check("n", s.n, 1, 1000000);
-    check("m", s.m, 1, smallestVotingSide * smallestVotingSide);
+    check("m", s.m, 1, kSmallestVotingSide * kSmallestVotingSide);
     check("votes", s.votes, 1, 1000);
     check("vote_spacing", s.voteSpacing, 0, 1000000);
     const int side = int(std::lround(std::sqrt(s.m)));

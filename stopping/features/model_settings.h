@@ -11,44 +11,31 @@ namespace lull {
 
 // Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
 // features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
-// the fall of the entropies of m sub-blocks since half as many samples and the noise that it makes
-// visible (see entropy_drop.h; for m = 100), how much filters remove from the whole block (see
+// the fall of the entropies H since half as many samples and the noise that it makes visible (see
+// entropy_drop.h; for m = 100), how much filters remove from the whole block (see
 // attributes26.h), and the logarithm of the spp, one number.
 enum class Feature {
     H,
     H1,
     H2,
     Lightness,
-    Deviation,
-    Texture,
     Noise,
-    NoiseMean,
     MaskedNoise,
-    HalfNoise,
     DetailMaskedNoise,
     EntropyDrop,
-    EntropyDrop1,
-    EntropyDrop2,
     VisibleDrop,
     Attributes26,
     LogSpp
 };
 
-// Convert to and from names: "H", "H1", "H2", "lightness", "deviation", "texture", "noise",
-// "noise_mean", "masked_noise", "half_noise", "detail_masked_noise", "entropy_drop" (of H),
-// "entropy_drop_h1", "entropy_drop_h2", "visible_drop", "attributes26" and "logspp"; a list is
+// Convert to and from names: "H", "H1", "H2", "lightness", "noise", "masked_noise",
+// "detail_masked_noise", "entropy_drop", "visible_drop", "attributes26" and "logspp"; a list is
 // separated by commas. ParseFeatures() throws std::invalid_argument for others, and for duplicates.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 inline bool IsDrop(Feature feature) {
     return feature >= Feature::EntropyDrop && feature <= Feature::VisibleDrop;
-}
-// Returns the entropy of which `drop` is the fall.
-inline Feature EntropyOf(Feature drop) {
-    return drop == Feature::EntropyDrop1   ? Feature::H1
-           : drop == Feature::EntropyDrop2 ? Feature::H2
-                                           : Feature::H;
 }
 // Says whether a feature is the standard deviation of noise in lightness, which `caution` scales.
 inline bool IsNoise(Feature feature) {
@@ -63,27 +50,22 @@ inline bool IsNormalized(Feature feature) {
 // Says whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
 
-// Summarises the values of all sub-blocks in one number.
+// Summarises the values of all sub-blocks in one number, a power mean. What is seen anywhere in a
+// picture adds up with exponents of 3 to 4 (probability summation; Quick 1974, Watson 1979).
 struct Pool {
-    enum Kind { PowerMean, Quantile };
-
-    Kind kind = PowerMean;
-    // Of a power mean, its exponent: with 1 the mean, with 2 the root mean square. What is seen
-    // anywhere in a picture adds up with 3 to 4 (probability summation; Quick 1974, Watson 1979).
-    // Of a quantile, per cent: the least value at 0, the largest at 100.
-    int number = 1;
+    int exponent = 1;  // 1: the mean, 2: the root mean square
 
     bool operator==(const Pool&) const = default;
 };
 
-// Convert to and from names: "mean", "rms", "p3" to "p9" for power means with those exponents, "q0"
-// to "q100"; a list is separated by commas and may be empty. ParsePools() throws
-// std::invalid_argument as ParseFeatures() does.
+// Convert to and from names: "mean", "rms", and "p3" to "p9" for larger exponents; a list is
+// separated by commas and may be empty. ParsePools() throws std::invalid_argument as
+// ParseFeatures() does.
 std::string PoolNames(std::span<const Pool> pools);
 std::vector<Pool> ParsePools(const std::string& names);
 
 // Says how far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
-// previous one, or the nearest that is kept (see ladder.h).
+// previous one, or the nearest that is kept (see history.h).
 enum class Spacing { Fixed, Geometric };
 std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
 Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument

@@ -38,7 +38,7 @@ BlockMeasures RecordedMeasures(int spp, const RecordedValues& values,
     for (const Feature feature : settings.features) {
         if (feature == Feature::LogSpp) continue;
         if (IsDrop(feature)) {
-            put(EntropyOf(feature), EntropyChannel(EntropyOf(feature), settings.m));
+            put(Feature::H, EntropyChannel(Feature::H, settings.m));
             if (feature == Feature::VisibleDrop) measures.lightness = RecordedLightness(values);
         } else if (feature == Feature::DetailMaskedNoise) {
             measures.Of(feature) =

@@ -10,7 +10,7 @@
 namespace lull {
 
 // Returns the numbers that were recorded of a block at some spp under a name, one of kChannels
-// (learning/recording.h). Throws std::invalid_argument for what was not recorded.
+// (lab/recordings/recording.h). Throws std::invalid_argument for what was not recorded.
 using RecordedValues = std::function<std::span<const float>(std::string_view channel)>;
 
 // Returns what was recorded of the lightness of the sub-blocks.

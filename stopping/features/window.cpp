@@ -1,65 +1,30 @@
 #include "stopping/features/window.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
-
-#include "stopping/signals/ladder.h"
+#include <utility>
 
 namespace lull {
 
-Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values) {
-    const double min = values.minCoeff(), max = values.maxCoeff();
-    return (values - min) / (max - min + std::numeric_limits<double>::epsilon());
-}
+namespace {
 
-FeatureHistory::FeatureHistory(const ModelSettings& settings)
-    : settings(settings), ranges(InputRanges(settings)), inputs(InputCount(settings)) {
-    CheckSettings(settings);
-}
-
-void FeatureHistory::Add(int spp, std::span<const double> feature) {
-    if (feature.size() != size_t(inputs))
-        throw std::invalid_argument("a feature of " + std::to_string(inputs) + " values is needed");
-    if (!std::all_of(feature.begin(), feature.end(), [](double v) { return std::isfinite(v); }))
-        throw std::invalid_argument("a feature is NaN or infinite");
-    if (spp < 1 || (!entries.empty() && spp <= entries.back().spp))
-        throw std::invalid_argument("features must come with increasing spp");
-
-    if (settings.spacing == Spacing::Geometric) {
-        AddToLadder(Entry{spp, {feature.begin(), feature.end()}},
-                    std::pow(settings.ratio, settings.k - 1), &entries);
-        return;
-    }
-    // Forget what has left the window of this and all later spp.
-    const int64_t oldest = int64_t(spp) - int64_t(settings.k - 1) * settings.n;
-    std::erase_if(entries, [&](const Entry& e) { return e.spp < oldest; });
-    entries.push_back({spp, {feature.begin(), feature.end()}});
-}
-
-const std::vector<double>* FeatureHistory::FindStep(int spp, int stepsBefore) const {
+const BlockState<double>* FindStep(const History<double>& history, const ModelSettings& settings,
+                                   int spp, int stepsBefore) {
     if (settings.spacing == Spacing::Fixed) {
         const int64_t at = int64_t(spp) - int64_t(stepsBefore) * settings.n;
-        return at > 0 ? Find(int(at)) : nullptr;
+        return at > 0 ? history.At(int(at)) : nullptr;
     }
-    if (entries.empty() || entries.back().spp != spp) return nullptr;
-    if (stepsBefore == 0) return &entries.back().feature;
+    const auto& states = history.States();
+    if (states.empty() || states.back().spp != spp) return nullptr;
+    if (stepsBefore == 0) return &states.back();
     // So near that no step is nearer to another place of the window.
-    const Entry* entry = FindInLadder(entries, spp / std::pow(settings.ratio, stepsBefore),
-                                      std::sqrt(settings.ratio), true);
-    return entry ? &entry->feature : nullptr;
+    return history.Nearest(spp / std::pow(settings.ratio, stepsBefore), std::sqrt(settings.ratio));
 }
 
-const std::vector<double>* FeatureHistory::Find(int spp) const {
-    const auto it = std::lower_bound(entries.begin(), entries.end(), spp,
-                                     [](const Entry& e, int s) { return e.spp < s; });
-    return it != entries.end() && it->spp == spp ? &it->feature : nullptr;
-}
-
-void FeatureHistory::NormalizeRange(Eigen::Ref<Eigen::ArrayXXd> window) const {
+void NormalizeRange(const ModelSettings& settings, Eigen::Ref<Eigen::ArrayXXd> window) {
     if (settings.bnorm)
         for (int step = 0; step < settings.k; ++step)
             window.col(step) = Normalize(window.col(step));
@@ -68,17 +33,38 @@ void FeatureHistory::NormalizeRange(Eigen::Ref<Eigen::ArrayXXd> window) const {
             window.row(i) = Normalize(window.row(i).transpose()).transpose();
 }
 
-std::optional<Eigen::MatrixXf> FeatureHistory::WindowAt(int spp) const {
-    Eigen::ArrayXXd window(inputs, settings.k);
+}  // namespace
+
+Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values) {
+    const double min = values.minCoeff(), max = values.maxCoeff();
+    return (values - min) / (max - min + std::numeric_limits<double>::epsilon());
+}
+
+void AddInputs(int spp, std::vector<double> inputs, const ModelSettings& settings,
+               History<double>* history) {
+    if (inputs.size() != size_t(InputCount(settings)))
+        throw std::invalid_argument("inputs of " + std::to_string(InputCount(settings)) +
+                                    " values are needed");
+    history->Add({spp, std::move(inputs)});
+    if (settings.spacing == Spacing::Geometric)
+        history->Thin(std::pow(settings.ratio, settings.k - 1));
+    else
+        history->ForgetBelow(int64_t(spp) - int64_t(settings.k - 1) * settings.n);
+}
+
+std::optional<Eigen::MatrixXf> WindowOf(const History<double>& history,
+                                        const ModelSettings& settings, int spp) {
+    const int count = InputCount(settings);
+    Eigen::ArrayXXd window(count, settings.k);
     for (int step = 0; step < settings.k; ++step) {
-        const std::vector<double>* feature = FindStep(spp, settings.k - 1 - step);
-        if (!feature) return {};
-        window.col(step) = Eigen::Map<const Eigen::ArrayXd>(feature->data(), inputs);
+        const BlockState<double>* state = FindStep(history, settings, spp, settings.k - 1 - step);
+        if (!state) return {};
+        window.col(step) = Eigen::Map<const Eigen::ArrayXd>(state->values.data(), count);
     }
     // Normalise in double: late in a rendering the values of a window differ by little.
-    for (const InputRange& range : ranges)
+    for (const InputRange& range : InputRanges(settings))
         if (IsNormalized(range.feature))
-            NormalizeRange(window.middleRows(range.begin, range.count));
+            NormalizeRange(settings, window.middleRows(range.begin, range.count));
     return window.matrix().cast<float>();
 }
 

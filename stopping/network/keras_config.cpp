@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int mostCount = 16384;  // a bound on what a damaged file can ask for
+constexpr int kMostCount = 16384;  // a bound on what a damaged file can ask for
 
 const std::array<std::pair<const char*, Activation>, 4> activationNames = {
     {{"linear", Activation::Linear},
@@ -29,11 +29,11 @@ const char* ActivationName(Activation activation) {
     throw std::runtime_error("layer '" + layer + "': " + what);
 }
 
-// Reads a whole number from 0 to `mostCount`. (JSON has numbers that no int can hold.)
+// Reads a whole number from 0 to `kMostCount`. (JSON has numbers that no int can hold.)
 int ParseCount(const Json& value, const std::string& what) {
-    if (!value.is_number_integer() || value < 0 || value > mostCount)
+    if (!value.is_number_integer() || value < 0 || value > kMostCount)
         throw std::runtime_error(what + " " + value.dump() + " is not a whole number up to " +
-                                 std::to_string(mostCount));
+                                 std::to_string(kMostCount));
     return value.get<int>();
 }
 

@@ -13,11 +13,11 @@ namespace lull {
 
 namespace {
 
-constexpr int cyclesSpacing = 20;  // spp between the tests of the rule `cycles`
-constexpr int luxMinimumSpp = 32;
-constexpr uint32_t dammertzTag = 0x315a4d44;  // "DMZ1"
-constexpr uint32_t cyclesTag = 0x32435943;    // "CYC2"
-constexpr uint32_t luxTileTag = 0x3158554c;   // "LUX1"
+constexpr int kCyclesSpacing = 20;  // spp between the tests of the rule `cycles`
+constexpr int kLuxMinimumSpp = 32;
+constexpr uint32_t kDammertzTag = 0x315a4d44;  // "DMZ1"
+constexpr uint32_t kCyclesTag = 0x32435943;    // "CYC2"
+constexpr uint32_t kLuxTileTag = 0x3158554c;   // "LUX1"
 
 double Finite(float x) { return std::isfinite(x) ? x : 0; }
 
@@ -91,8 +91,8 @@ class CyclesStatistic final : public Statistic {
 // Returns the checks of Cycles: every 20 spp, after the sample of 0-based index k > minimum.
 Checks CyclesChecks(double threshold) {
     const int64_t least = int64_t(CyclesMinimumSpp(threshold)) + 2;
-    return {.first = int((least + cyclesSpacing - 1) / cyclesSpacing * cyclesSpacing),
-            .every = cyclesSpacing};
+    return {.first = int((least + kCyclesSpacing - 1) / kCyclesSpacing * kCyclesSpacing),
+            .every = kCyclesSpacing};
 }
 
 // Reads one number of the block.
@@ -119,7 +119,7 @@ double DammertzError(const BlockView& view) {
 }
 
 Rule DammertzRule(double threshold, bool byArea) {
-    return {.tag = dammertzTag,
+    return {.tag = kDammertzTag,
             .threshold = threshold,
             .measure =
                 [byArea](const BlockView& view, const BlockInfo& block) {
@@ -147,7 +147,7 @@ PixelErrors CyclesErrors(const BlockView& view) {
 }
 
 Rule CyclesRule(double threshold) {
-    return {.tag = cyclesTag,
+    return {.tag = kCyclesTag,
             .checks = CyclesChecks(threshold),
             .threshold = threshold,
             .measure = [](const BlockView& view, const BlockInfo&) { return CyclesErrors(view); },
@@ -164,8 +164,8 @@ double LuxTileError(const BlockView& view) {
 }
 
 Rule LuxTileRule(double threshold) {
-    return {.tag = luxTileTag,
-            .checks = {.first = luxMinimumSpp},
+    return {.tag = kLuxTileTag,
+            .checks = {.first = kLuxMinimumSpp},
             .threshold = threshold,
             .measure = [](const BlockView& view, const BlockInfo&) { return LuxTileError(view); },
             .recall = RecordedNumber("luxtile")};

@@ -19,7 +19,7 @@ Rule ReadDenoised(const std::string& argument, const RuleContext& context) {
             .threshold = ParseThreshold(argument) / context.caution,
             .votes = kVotes,
             .need = ViewNeed::Measured,
-            .measure = SuppliedMeasure(context, denoisedRuleName)};
+            .measure = SuppliedMeasure(context, kDenoisedRuleName)};
 }
 
 }  // namespace lull

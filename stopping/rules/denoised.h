@@ -7,7 +7,7 @@ namespace lull {
 
 // The name under which a program supplies the measure: the visible error of the block, denoised
 // from nothing but its own samples, in lightness, as a bound that is seldom exceeded.
-inline constexpr const char* denoisedRuleName = "denoised";
+inline constexpr const char* kDenoisedRuleName = "denoised";
 
 // Reads the threshold T, which the context's caution divides. The block is checked first at 20
 // spp and then wherever the spp have grown by a quarter, as denoising it takes as long as some

@@ -5,14 +5,13 @@
 #include <stdexcept>
 
 #include "stopping/rules/argument.h"
-#include "stopping/signals/drop_history.h"
 
 namespace lull {
 
 namespace {
 
-constexpr uint32_t entropyTag = 0x32504445;  // "EDP2"
-constexpr int checkSpacing = 40;             // spp
+constexpr uint32_t kEntropyTag = 0x32504445;  // "EDP2"
+constexpr int kCheckSpacing = 40;             // spp
 
 class EntropyStatistic final : public Statistic {
   public:
@@ -21,8 +20,9 @@ class EntropyStatistic final : public Statistic {
     // There is a number where there is an earlier state to compare with.
     std::optional<double> Add(int spp, Signals signals) override {
         const BlockMeasures& measures = std::get<BlockMeasures>(signals);
-        const auto visible = AddVisible(spp, measures.Of(Feature::H), measures.lightness,
-                                        VisibilityWith(measures.variance, visibility), &history);
+        AddEntropies(spp, measures.Of(Feature::H), &history);
+        const auto visible = LatestVisibleDrop(history, measures.lightness,
+                                               VisibilityWith(measures.variance, visibility));
         if (!visible) return {};
         return MeanVisible(*visible);
     }
@@ -34,7 +34,7 @@ class EntropyStatistic final : public Statistic {
 
   private:
     NoiseVisibility visibility;
-    DropHistory history;
+    History<float> history;
 };
 
 // Says what is measured: entropies, and the lightness that makes their falls visible.
@@ -45,8 +45,8 @@ ModelSettings MeasuredSettings() {
 }  // namespace
 
 Checks EntropyChecks(int passSpp) {
-    if (passSpp == 0) return {.every = checkSpacing, .any = true};
-    return {.first = passSpp, .every = (checkSpacing + passSpp - 1) / passSpp * passSpp};
+    if (passSpp == 0) return {.every = kCheckSpacing, .any = true};
+    return {.first = passSpp, .every = (kCheckSpacing + passSpp - 1) / passSpp * passSpp};
 }
 
 double MeanVisible(std::span<const double> visibleDrops) {
@@ -56,7 +56,7 @@ double MeanVisible(std::span<const double> visibleDrops) {
 }
 
 Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp) {
-    return {.tag = entropyTag,
+    return {.tag = kEntropyTag,
             .checks = EntropyChecks(passSpp),
             .threshold = threshold,
             .votes = 3,

@@ -17,7 +17,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t learnedTag = 0x324e524c;  // "LRN2"
+constexpr uint32_t kLearnedTag = 0x324e524c;  // "LRN2"
 
 // Says when a model votes.
 Checks VotesOf(const ModelSettings& settings, int passSpp) {
@@ -98,7 +98,7 @@ double NoisyProbability(const Network& network, const Eigen::MatrixXf& window) {
 
 Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
     CheckFits(*model, passSpp);
-    return {.tag = learnedTag,
+    return {.tag = kLearnedTag,
             .checks = ChecksOf(model->settings, passSpp),
             .threshold = 0.5,
             .votes = model->settings.votes,
@@ -115,7 +115,7 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
 }
 
 std::string ModelPath(const std::string& argument, const std::string& models) {
-    const std::string name = argument.empty() ? defaultModelName : argument;
+    const std::string name = argument.empty() ? kDefaultModelName : argument;
     if (name.ends_with(".h5") || std::filesystem::exists(name)) return name;
     const std::filesystem::path path = std::filesystem::path(models) / (name + ".h5");
     if (std::filesystem::exists(path)) return path.string();

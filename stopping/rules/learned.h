@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Returns the probability that the block of a window (see FeatureHistory) is noisy, in
+// Returns the probability that the block of a window (see window.h) is noisy, in
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 
@@ -24,7 +24,7 @@ double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp);
 
 // The model where none is named.
-inline constexpr const char* defaultModelName = "entropy";
+inline constexpr const char* kDefaultModelName = "entropy";
 
 // Reads the name or the file of a model.
 Rule ReadLearned(const std::string& argument, const RuleContext& context);

@@ -10,8 +10,8 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t lightnessNoiseTag = 0x324e534c;  // "LSN2"
-constexpr int subBlocks = 100;
+constexpr uint32_t kLightnessNoiseTag = 0x324e534c;  // "LSN2"
+constexpr int kSubBlocks = 100;
 
 }  // namespace
 
@@ -23,11 +23,11 @@ double PooledRms(std::span<const float> subBlocks) {
 
 double VisibleNoise(const BlockView& view) {
     const LightnessNoise noise = ComputeLightnessNoise(view);
-    return PooledRms(SubBlockStatistics(noise, view.width, view.height, subBlocks).maskedNoise);
+    return PooledRms(SubBlockStatistics(noise, view.width, view.height, kSubBlocks).maskedNoise);
 }
 
 Rule LightnessNoiseRule(double threshold) {
-    return {.tag = lightnessNoiseTag,
+    return {.tag = kLightnessNoiseTag,
             .threshold = threshold,
             .votes = 3,
             .measure = [](const BlockView& view, const BlockInfo&) { return VisibleNoise(view); },

@@ -50,8 +50,8 @@ struct Rule {
     // How its stops lie to those of people, see network/human_range.h; empty: not known.
     std::vector<double> logRatios = {};
     RuleTrend trend = {};
-    // Pixels a side below which a block is not checked, but follows a neighbour (small_blocks.h).
-    int smallestSide = smallestVotingSide;
+    // Pixels a side below which a block is not checked, but follows a neighbour (block_grid.h).
+    int smallestSide = kSmallestVotingSide;
     uint32_t tag = 0;  // tells saved states of its criteria from those of others
 
     Checks checks = {};

@@ -82,7 +82,7 @@ constexpr RuleEntry kRules[] = {
      .replay = Replay::Decides,
      .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01},
      .read = ReadLightnessNoise},
-    {.name = denoisedRuleName,
+    {.name = kDenoisedRuleName,
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when the error that is visible once it is denoised was probably below T@ in "

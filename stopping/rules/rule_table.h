@@ -46,7 +46,7 @@ struct RuleEntry {
 std::span<const RuleEntry> RuleTable();
 
 // The rule where none is asked for.
-inline constexpr const char* defaultRule = "learned";
+inline constexpr const char* kDefaultRule = "learned";
 
 // Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument for
 // a bad rule and std::runtime_error for a bad file; the message says what is wrong and what would

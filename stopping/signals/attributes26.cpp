@@ -103,18 +103,18 @@ std::vector<std::pair<int, int>> MedianNetwork(int n) {
 template <int Size>
 void Median(const PaddedImage& image, std::span<double> filtered) {
     static const std::vector<std::pair<int, int>> network = MedianNetwork(Size * Size);
-    constexpr int lanes = 64;
-    double window[Size * Size][lanes] = {};
+    constexpr int kLanes = 64;
+    double window[Size * Size][kLanes] = {};
     for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; x += lanes) {
-            const int count = std::min(lanes, image.width - x);
+        for (int x = 0; x < image.width; x += kLanes) {
+            const int count = std::min(kLanes, image.width - x);
             for (int v = 0; v < Size; ++v)
                 for (int u = 0; u < Size; ++u)
                     std::copy_n(image.Row(y + v - Size / 2) + x + u - Size / 2, count,
                                 window[v * Size + u]);
             for (const auto& [i, j] : network) {
                 double *const a = window[i], *const b = window[j];
-                for (int lane = 0; lane < lanes; ++lane) {
+                for (int lane = 0; lane < kLanes; ++lane) {
                     const double low = std::min(a[lane], b[lane]);
                     const double high = std::max(a[lane], b[lane]);
                     a[lane] = low;

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"
 
 namespace lull {
 
 namespace {
+
+constexpr double kDepth = 4;        // states are kept down to this part of the spp
+constexpr double kTolerance = 1.6;  // of half and a quarter of the spp
 
 // Returns the square of the weighted sum of the roots of what the entropies of two states differ
 // by: few sub-blocks with much noise must not decide.
@@ -20,12 +24,8 @@ double Fall(const EntropyState& from, const EntropyState& to, std::span<const do
     return sum * sum;
 }
 
-// Returns the luminance whose lightness this is, and the derivative of lightness at a luminance,
-// but for a constant (see Lightness()).
-double LuminanceOf(double lightness) {
-    return lightness > 8 ? std::pow((lightness + 16) / 116, 3) : std::max(0.0, lightness) / 903.3;
-}
-double Slope(double luminance) { return std::pow(std::max(luminance, 0.008856), -2 / 3.0); }
+// Returns the derivative of lightness at a luminance, but for a constant.
+double Slope(double luminance) { return std::pow(std::max(luminance, kLinearLuminance), -2 / 3.0); }
 
 }  // namespace
 
@@ -110,6 +110,34 @@ std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLigh
                           (1 + lightness.deviation[i] / visibility.mask) * near);
     }
     return visible;
+}
+
+void AddEntropies(int spp, std::span<const double> entropies, History<float>* history) {
+    history->Add({spp, {entropies.begin(), entropies.end()}});
+    history->Thin(kDepth);
+}
+
+std::optional<std::vector<double>> LatestDrop(const History<float>& history,
+                                              std::span<const double> weights) {
+    if (history.States().empty()) return {};
+    const EntropyState& now = history.States().back();
+    if (weights.size() != now.values.size())
+        throw std::invalid_argument("a weight for each sub-block is needed");
+    const EntropyState* before = history.Nearest(now.spp / 2.0, kTolerance);
+    if (!before) return {};
+    const EntropyState* oldest = history.Nearest(before->spp / 2.0, kTolerance);
+    const bool three = oldest && oldest->spp < before->spp;
+    return EntropyDrop(*before, now, three ? RateOfFall(*oldest, *before, now, weights) : 1);
+}
+
+std::optional<std::vector<double>> LatestVisibleDrop(const History<float>& history,
+                                                     const SubBlockLightness& lightness,
+                                                     const NoiseVisibility& visibility) {
+    std::vector<double> weights;
+    for (const float l : lightness.mean) weights.push_back(l * FlareFactor(l, visibility.flare));
+    const auto drop = LatestDrop(history, weights);
+    if (!drop) return {};
+    return VisibleDrop(*drop, lightness, history.States().back().spp, visibility);
 }
 
 }  // namespace lull

@@ -8,10 +8,12 @@
 // singular value. This needs only two displayed pictures.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "stopping/base/block_view.h"
+#include "stopping/signals/history.h"
 
 namespace lull {
 
@@ -38,11 +40,8 @@ NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
 // that people judged: here, variance * N spp have as little noise as what they compared with.
 NoiseVisibility VisibilityWith(double variance, NoiseVisibility visibility);
 
-// Holds the entropies of the sub-blocks of a picture, row-major, at some spp.
-struct EntropyState {
-    int spp = 0;
-    std::vector<float> values = {};
-};
+// The entropies of the sub-blocks of a picture, row-major, at some spp.
+using EntropyState = BlockState<float>;
 
 // Returns the exponent a, in [1, 2], with which noise falls as spp^-a, from three states with
 // increasing spp, using weighted roots of the sub-blocks' falls; 1 if nothing changes. Independent
@@ -75,5 +74,22 @@ double FlareFactor(double lightness, double flare);
 // (1 - spp / reference)^nearness, in lightness; 0 from the reference on. All have the same length.
 std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,
                                 int spp, const NoiseVisibility& visibility);
+
+// Adds the entropies of the sub-blocks at `spp`, and keeps what later ones are compared with: about
+// eight states an octave down to a quarter of the spp, at most 19 (8 KB per block for 100
+// sub-blocks), however many samples there are. Throws as History::Add() does.
+void AddEntropies(int spp, std::span<const double> entropies, History<float>* history);
+
+// Returns EntropyDrop() of the last state since that nearest to half of its spp, corrected by
+// RateOfFall() with these weights if there is also one at about a quarter; nothing before there is
+// such a state. Throws std::invalid_argument if there are not as many weights as sub-blocks.
+std::optional<std::vector<double>> LatestDrop(const History<float>& history,
+                                              std::span<const double> weights);
+
+// Returns VisibleDrop() of the last state, which has this lightness, as LatestDrop() does; for the
+// rate of the fall, sub-blocks are weighted as their noise is in lightness.
+std::optional<std::vector<double>> LatestVisibleDrop(const History<float>& history,
+                                                     const SubBlockLightness& lightness,
+                                                     const NoiseVisibility& visibility);
 
 }  // namespace lull

@@ -16,9 +16,9 @@ namespace {
 // than 12.92, so two codes begin at least 1 / (12.92 * 255) apart, which is more than a cell:
 // one comparison settles the code.
 struct EncodeTable {
-    static constexpr int cells = 4096;
+    static constexpr int kCells = 4096;
     std::array<float, 257> start;
-    std::array<uint8_t, cells> first;
+    std::array<uint8_t, kCells> first;
 
     EncodeTable() {
         for (int c = 0; c < 256; ++c) {
@@ -27,8 +27,8 @@ struct EncodeTable {
             if (start[c] < exact) start[c] = std::nextafter(start[c], 2.f);
         }
         start[256] = std::numeric_limits<float>::infinity();
-        for (int i = 0, c = 0; i < cells; ++i) {
-            while (start[c + 1] <= float(i) / cells) ++c;
+        for (int i = 0, c = 0; i < kCells; ++i) {
+            while (start[c + 1] <= float(i) / kCells) ++c;
             first[i] = uint8_t(c);
         }
     }
@@ -36,7 +36,7 @@ struct EncodeTable {
     uint8_t operator()(float x) const {
         if (!(x > 0)) return 0;  // false for NaN as well
         if (x >= 1) return 255;
-        const int c = first[size_t(x * cells)];
+        const int c = first[size_t(x * kCells)];
         return uint8_t(c + (x >= start[c + 1]));
     }
 };
@@ -47,7 +47,8 @@ struct LuminanceTable {
 
     LuminanceTable() {
         for (int i = 0; i < 3; ++i)
-            for (int c = 0; c < 256; ++c) share[i][c] = luminanceWeights[i] * DecodeSrgb(c / 255.0);
+            for (int c = 0; c < 256; ++c)
+                share[i][c] = kLuminanceWeights[i] * DecodeSrgb(c / 255.0);
     }
 };
 
@@ -71,9 +72,12 @@ void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness) {
     for (size_t i = 0; i < lightness.size(); ++i) {
         const double y = table.share[0][srgb[3 * i]] + table.share[1][srgb[3 * i + 1]] +
                          table.share[2][srgb[3 * i + 2]];
-        const double f = y > 0.008856 ? std::cbrt(y) : 7.787 * y + 16.0 / 116;
-        lightness[i] = std::clamp(116 * f - 16, 0.0, 100.0);
+        lightness[i] = std::min(100.0, LightnessAt(y).lightness);
     }
+}
+
+double LuminanceOf(double lightness) {
+    return lightness > 8 ? std::pow((lightness + 16) / 116, 3) : std::max(0.0, lightness) / 903.3;
 }
 
 std::vector<double> LightnessOf(std::span<const float> linear) {

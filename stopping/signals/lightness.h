@@ -10,7 +10,7 @@
 namespace lull {
 
 // The shares of linear R, G and B (Rec. 709 primaries) in the luminance Y, which is 1 at white.
-inline constexpr double luminanceWeights[3] = {0.212671, 0.715160, 0.072169};
+inline constexpr double kLuminanceWeights[3] = {0.212671, 0.715160, 0.072169};
 
 // Returns what a display shows of a linear component, in [0, 1]; 0 for NaN.
 inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
@@ -24,12 +24,15 @@ double DecodeSrgb(double v);
 void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb);
 
 // Computes the CIE 1976 lightness, in [0, 100], of pixels in 8-bit sRGB (row-major R, G, B):
-// L = 116 f(Y) - 16 with f(t) = cbrt(t) where t > 0.008856 and 7.787 t + 16/116 elsewhere.
+// L = 116 f(Y) - 16 with f(t) = cbrt(t) where t > kLinearLuminance and 7.787 t + 16/116 elsewhere.
 // Throws std::invalid_argument if `srgb` is not three times as long as `lightness`.
 void Lightness(std::span<const uint8_t> srgb, std::span<double> lightness);
 
 // Returns the lightness of linear pixels (R, G, B) as an 8-bit display shows them.
 std::vector<double> LightnessOf(std::span<const float> linear);
+
+// The luminance below which L is linear in it.
+inline constexpr double kLinearLuminance = 0.008856;
 
 // Holds L at a luminance, at least 0, and its derivative there; above white L goes on.
 template <typename Real>
@@ -38,11 +41,14 @@ struct LightnessSlope {
 };
 template <typename Real>
 LightnessSlope<Real> LightnessAt(Real y) {
-    if (!(y > Real(0.008856)))
+    if (!(y > Real(kLinearLuminance)))
         return {std::max(Real(0), 116 * (Real(7.787) * y + 16 / Real(116)) - 16),
                 116 * Real(7.787)};
     const Real root = std::cbrt(y);
     return {116 * root - 16, 116 / (3 * root * root)};
 }
+
+// Returns the luminance, at least 0, that has this L.
+double LuminanceOf(double lightness);
 
 }  // namespace lull

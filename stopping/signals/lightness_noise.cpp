@@ -11,8 +11,8 @@ namespace lull {
 
 namespace {
 
-constexpr int smoothingRadius = 2;  // 5 x 5 pixels
-constexpr int textureRadius = 6;    // 13 x 13 pixels
+constexpr int kSmoothingRadius = 2;  // 5 x 5 pixels
+constexpr int kTextureRadius = 6;    // 13 x 13 pixels
 
 float Finite(float x) { return std::isfinite(x) ? x : 0; }
 
@@ -20,8 +20,8 @@ float Finite(float x) { return std::isfinite(x) ? x : 0; }
 bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
 float Luminance(float r, float g, float b) {
-    return float(luminanceWeights[0]) * r + float(luminanceWeights[1]) * g +
-           float(luminanceWeights[2]) * b;
+    return float(kLuminanceWeights[0]) * r + float(kLuminanceWeights[1]) * g +
+           float(kLuminanceWeights[2]) * b;
 }
 
 // The luminance of white can round to more than 1.
@@ -78,14 +78,14 @@ std::vector<float> Texture(const std::vector<float>& lightness, int width, int h
     const float origin = lightness[0];
     std::vector<double> smooth(lightness.size());
     const SumTable plain(width, height, [&](size_t i) { return double(lightness[i] - origin); });
-    ForWindows(width, height, smoothingRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
+    ForWindows(width, height, kSmoothingRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
         smooth[i] = plain.Sum(x0, x1, y0, y1) / ((x1 - x0) * (y1 - y0));
     });
 
     std::vector<float> texture(lightness.size());
     const SumTable sums(width, height, [&](size_t i) { return smooth[i]; });
     const SumTable squares(width, height, [&](size_t i) { return smooth[i] * smooth[i]; });
-    ForWindows(width, height, textureRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
+    ForWindows(width, height, kTextureRadius, [&](size_t i, int x0, int x1, int y0, int y1) {
         const double area = (x1 - x0) * (y1 - y0), mean = sums.Sum(x0, x1, y0, y1) / area;
         const double variance = squares.Sum(x0, x1, y0, y1) / area - mean * mean;
         texture[i] = float(std::sqrt(std::max(0.0, variance)));

@@ -29,7 +29,7 @@ def picture(spp, seed=0):
 
 def numbers(answer):
     return [np.asarray(getattr(answer, name)).tolist() for name in
-            ("stop", "stopped", "judged", "spp", "next_spp", "votes", "value", "probability")]
+            ("stop", "stopped", "checked", "spp", "next_spp", "votes", "value", "probability")]
 
 
 class StopperTest(unittest.TestCase):

@@ -186,13 +186,13 @@ TEST(Stopper, CountsWhatIsNotFiniteAsBlack) {
     EXPECT_TRUE(std::isfinite(a.value));
 }
 
-TEST(Stopper, CutsPicturesIntoBlocksThatCanBeChecked) {
+TEST(Stopper, CutsPicturesIntoTheBlocksOfRenders) {
     struct Case {
         int width, height, block, columns, rows, lastWidth, lastHeight;
     };
-    for (const Case& c : {Case{1920, 1080, 0, 10, 6, 120, 80}, Case{239, 240, 0, 1, 2, 239, 40},
+    for (const Case& c : {Case{1920, 1080, 0, 10, 6, 120, 80}, Case{239, 240, 0, 2, 2, 39, 40},
                           Case{40, 40, 0, 1, 1, 40, 40}, Case{500, 300, 65536, 1, 1, 500, 300},
-                          Case{100, 90, 40, 2, 2, 60, 50}}) {
+                          Case{100, 90, 40, 3, 3, 20, 10}}) {
         lull_settings settings = SettingsOf(c.width, c.height, "fixed:1");
         settings.block = c.block;
         const StopperHandle stopper = MakeStopper(settings);
@@ -210,6 +210,51 @@ TEST(Stopper, CutsPicturesIntoBlocksThatCanBeChecked) {
         EXPECT_EQ(rect.height, c.lastHeight);
         EXPECT_EQ(covered, std::vector<int>(covered.size(), 1));
     }
+}
+
+// The block at the right is 30 pixels wide, and noisier.
+TEST(Stopper, LetsSmallBlocksFollowTheirNeighbour) {
+    lull_settings settings = SettingsOf(90, 60, "lnoise:1");
+    settings.block = 60;
+    const StopperHandle whole = MakeStopper(settings), pieces = MakeStopper(settings);
+    const StopperHandle alone = MakeStopper(SettingsOf(60, 60, "lnoise:1"));
+    bool hasStopped = false;
+    for (int spp = 20; spp <= 400 && !hasStopped; spp += 20) {
+        const BlockImage image = ImageAt(spp, 60, 60);
+        BlockImage wider(90, 60, 0.5f);
+        for (int y = 0; y < 60; ++y)
+            for (int x = 0; x < 90; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    wider.Mean(x, y)[c] = x < 60 ? image.mean[size_t(3 * (60 * y + x) + c)] : 0.5f;
+                    wider.HalfMean(x, y)[c] =
+                        x < 60 ? image.halfMean[size_t(3 * (60 * y + x) + c)] : float(x % 2);
+                }
+        lull_answer answers[2], piece;
+        const lull_picture picture = PictureOf(wider);
+        ASSERT_EQ(lull_stopper_observe(whole.get(), &picture, spp, answers), LULL_OK);
+        EXPECT_TRUE(SameAnswer(answers[0], answers[1]));
+        EXPECT_TRUE(SameAnswer(answers[0], Show(alone, PictureOf(image), spp)));
+        for (const int block : {0, 1}) {
+            lull_picture part = picture;
+            part.width = block == 0 ? 60 : 30;
+            part.row_stride = 90 * 3 * sizeof(float);
+            part.mean = wider.Mean(60 * block, 0);
+            part.half = wider.HalfMean(60 * block, 0);
+            ASSERT_EQ(lull_stopper_observe_block(pieces.get(), block, &part, spp, &piece), LULL_OK);
+            EXPECT_TRUE(SameAnswer(piece, answers[0])) << block;
+        }
+        hasStopped = answers[0].stop;
+        EXPECT_EQ(lull_stopper_done(whole.get()), answers[0].stop);
+    }
+    EXPECT_TRUE(hasStopped);
+    // It is saved and restored as the other is.
+    size_t size = 0;
+    ASSERT_EQ(lull_stopper_save(whole.get(), nullptr, &size), LULL_OK);
+    std::vector<char> state(size);
+    ASSERT_EQ(lull_stopper_save(whole.get(), state.data(), &size), LULL_OK);
+    const StopperHandle restored = MakeStopper(settings);
+    ASSERT_EQ(lull_stopper_restore(restored.get(), state.data(), size), LULL_OK);
+    EXPECT_EQ(lull_stopper_done(restored.get()), 1);
 }
 
 TEST(Stopper, TakesLargePictures) {

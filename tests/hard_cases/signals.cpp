@@ -194,13 +194,15 @@ HardCaseResult NoiseOnTexture(const HardCaseOptions& options) {
     return Worst(results);
 }
 
+const ModelSettings kFourSteps{.k = 4};
+
 HardCaseResult ConstantWindow(const HardCaseOptions&) {
     std::vector<HardCaseResult> results;
     for (const double value : {0.0, 1e-12, 0.5, 1.0}) {
-        FeatureHistory history({.k = 4});
-        const std::vector<double> feature(100, value);
-        for (int spp = 40; spp <= 160; spp += 40) history.Add(spp, feature);
-        results.push_back({0, double(history.WindowAt(160)->cwiseAbs().maxCoeff()), 0,
+        History<double> history;
+        for (int spp = 40; spp <= 160; spp += 40)
+            AddInputs(spp, std::vector<double>(100, value), kFourSteps, &history);
+        results.push_back({0, double(WindowOf(history, kFourSteps, 160)->cwiseAbs().maxCoeff()), 0,
                            fmt::format("worst: entropies of {:g}", value)});
     }
     return Worst(results);
@@ -210,11 +212,12 @@ HardCaseResult ConstantWindow(const HardCaseOptions&) {
 HardCaseResult LastBitWindow(const HardCaseOptions&) {
     Failures outside;
     for (const double value : {1e-12, 0.1, 0.5, 0.999}) {
-        FeatureHistory history({.k = 4});
+        History<double> history;
         for (int i = 0; i < 4; ++i)
-            history.Add(40 * (i + 1),
-                        std::vector<double>(100, i % 2 ? value : std::nextafter(value, 2)));
-        const Eigen::MatrixXf window = *history.WindowAt(160);
+            AddInputs(40 * (i + 1),
+                      std::vector<double>(100, i % 2 ? value : std::nextafter(value, 2)),
+                      kFourSteps, &history);
+        const Eigen::MatrixXf window = *WindowOf(history, kFourSteps, 160);
         for (const float v : window.reshaped())
             outside.Note(!(v >= 0 && v <= 1), [&] { return fmt::format("{:g}", value); });
     }

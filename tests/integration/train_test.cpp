@@ -71,7 +71,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
 TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const TrainingDirectory directory;
     const std::string options =
-        "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,q90 --quiet "
+        "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,p4 --quiet "
         "--channels masked_noise,logspp --learning-rate 0.02 --epochs 60 ";
     const Outcome outcome =
         RunLull(directory, options + "--cross-validate -o model.h5 --csv judged.csv");

@@ -98,8 +98,8 @@ std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& reg
     texts.push_back("learned");
     std::map<std::string, SignalMeasure> measures;
     if (denoiser) {
-        texts.push_back(denoisedRuleName);
-        measures[denoisedRuleName] = MeasureOf(denoiser);
+        texts.push_back(kDenoisedRuleName);
+        measures[kDenoisedRuleName] = MeasureOf(denoiser);
     }
     for (const std::string& rule : options.rules)
         if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
@@ -107,7 +107,7 @@ std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& reg
     for (const std::string& text : texts) {
         const Rule rule = ReadRule("--rule", text, options.render, region, measures);
         rules.push_back({text, rule.text, rule.smallestSide, CriteriaOf(rule),
-                         text.starts_with(denoisedRuleName)});
+                         text.starts_with(kDenoisedRuleName)});
     }
     return rules;
 }

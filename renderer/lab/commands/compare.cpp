@@ -116,8 +116,8 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
         prepared.denoiser =
             std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
         ObservedRule& rule = prepared.rules.emplace_back(
-            MakeRule("denoised", ReadRule("--denoise", denoisedRuleName, settings, input.region,
-                                          {{denoisedRuleName, MeasureOf(prepared.denoiser)}})));
+            MakeRule("denoised", ReadRule("--denoise", kDenoisedRuleName, settings, input.region,
+                                          {{kDenoisedRuleName, MeasureOf(prepared.denoiser)}})));
         rule.isDenoised = true;
     }
     if (job.Rank() == 0) {

@@ -7,7 +7,7 @@ namespace lull {
 
 struct CompareOptions {
     RenderSettings render;
-    std::string rule = defaultRule;
+    std::string rule = kDefaultRule;
     std::string human, automatic, reference;  // empty: none
     std::string output, report;
     bool snapshots = false, denoise = false;

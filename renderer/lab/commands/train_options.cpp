@@ -24,17 +24,15 @@ Viewpoints are joined by their exact names; those without thresholds are left as
 
 Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
-  noise, noise_mean, masked_noise, detail_masked_noise, half_noise, lightness, deviation, texture
+  noise, masked_noise, detail_masked_noise, lightness
                      statistics of 10x10 sub-blocks, never normalised over the window
-  entropy_drop, entropy_drop_h1, entropy_drop_h2
-                     the fall of these entropies since half as many samples
+  entropy_drop       the fall of H since half as many samples
   visible_drop       the noise in lightness that the fall of H makes visible, of 10x10 sub-blocks
   attributes26       how much 13 filters take out of the block, means and deviations; blocks that were
                      recorded without are left aside
   logspp             the logarithm of the samples per pixel
---pool rms,q90 gives the network a few numbers for each feature in place of all sub-blocks: mean,
-rms, pN for the power mean with exponent N (from 3 to 9), or qN for the quantile at N %; none gives it
-the value of each sub-block.
+--pool rms,p4 gives the network a few numbers for each feature in place of all sub-blocks: mean, rms,
+or pN for the power mean with exponent N (from 3 to 9); none gives it the value of each sub-block.
 
 --units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
 
@@ -56,7 +54,7 @@ Examples:
   lull train data.h5 --human human.csv -o model.h5
   lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
   lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
-      --pool rms,q90 --units 16,8
+      --pool rms,p4 --units 16,8
   lull train data.h5 --human human.csv --cross-validate --preset paper
   lull train data.h5 --human human.csv --search grid.txt --csv search.csv --preset paper
       --units 32 --epochs 10

@@ -10,7 +10,7 @@
 #include "renderer/files/file_io.h"
 #include "renderer/files/file_lock.h"
 #include "renderer/render/peers.h"
-#include "stopping/rules/small_blocks.h"
+#include "stopping/base/block_view.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -45,11 +45,11 @@ RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& 
 
 void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions& schedule) {
     for (const Block& block : blocks)
-        if (std::min(block.pixels.Width(), block.pixels.Height()) < smallestVotingSide)
+        if (std::min(block.pixels.Width(), block.pixels.Height()) < kSmallestVotingSide)
             throw Error(
                 fmt::format("blocks of less than {} pixels a side cannot be recorded; "
                             "choose a --resolution that is a multiple of {}",
-                            smallestVotingSide, schedule.blockSize));
+                            kSmallestVotingSide, schedule.blockSize));
 }
 
 std::string CheckViewpointName(const std::string& name) {

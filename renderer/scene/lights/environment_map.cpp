@@ -31,7 +31,7 @@ int ChooseFar(float nearWeight, float farWeight, float* t) {
 EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
     : image(std::move(i)),
       scale(s),
-      luminanceWeights(s * Rgb(Luminance({1, 0, 0}), Luminance({0, 1, 0}), Luminance({0, 0, 1}))) {
+      kLuminanceWeights(s * Rgb(Luminance({1, 0, 0}), Luminance({0, 1, 0}), Luminance({0, 0, 1}))) {
     const int rows = 2 * image.height;
     for (int v = 0; v < rows; ++v) rowWeights.push_back(std::sin(kPi * (v + 0.5f) / rows));
 
@@ -70,7 +70,7 @@ std::array<float, 4> EnvironmentMap::Corners(int i, int j) const {
     return std::visit(
         [&](const auto& texels) {
             const auto brightness = [&](int x, int y) {
-                return Rgb(luminanceWeights * TexelRgb(image, texels, x, y)).sum();
+                return Rgb(kLuminanceWeights * TexelRgb(image, texels, x, y)).sum();
             };
             return std::array{brightness(i, j), brightness(i1, j), brightness(i, j1),
                               brightness(i1, j1)};

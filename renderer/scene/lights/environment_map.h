@@ -45,7 +45,7 @@ class EnvironmentMap {
     float CellWeight(const std::array<float, 4>& corners, int u, int v) const;
 
     Image image;
-    Rgb scale, luminanceWeights;
+    Rgb scale, kLuminanceWeights;
     Distribution2D quads;
     float compensation = 0;         // brightness that is left to BSDF sampling
     std::vector<float> rowWeights;  // from brightness to density, by row of cells

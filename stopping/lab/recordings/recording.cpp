@@ -5,7 +5,6 @@
 #include <string>
 
 #include "stopping/base/state.h"
-#include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"
@@ -14,8 +13,8 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t recorderTag = 0x31434552;  // "REC1"
-constexpr int kAllPassesUntil = 400;          // spp
+constexpr uint32_t kRecorderTag = 0x31434552;  // "REC1"
+constexpr int kAllPassesUntil = 400;           // spp
 constexpr int kStatisticsSubBlocks = 100;
 
 void Append(std::span<const float> from, std::vector<float>* to) {
@@ -51,12 +50,6 @@ void AppendRecord(const BlockView& view, std::vector<float>* to) {
     to->push_back(float(LuxTileError(view)));
     for (const double v : ComputeAttributes(lightness, view.width, view.height))
         to->push_back(float(v));
-    const NoiseCharacter character =
-        DescribeNoise(view, noise, kStatisticsSubBlocks, NoiseVisibility().flare);
-    Append(character.saturated, to);
-    Append(character.chromaNoise, to);
-    Append(character.correlation, to);
-    Append(character.quantiles, to);
 }
 
 }  // namespace
@@ -116,7 +109,7 @@ Decision Recorder::Observe(const BlockView& view) {
 
 std::vector<std::byte> Recorder::Save() const {
     StateWriter writer;
-    writer.Put(recorderTag);
+    writer.Put(kRecorderTag);
     writer.Put(int32_t(kRecordLength));
     writer.Put(int32_t(recording->Count()));
     writer.PutAll<int>(recording->spp);
@@ -129,7 +122,7 @@ std::vector<std::byte> Recorder::Save() const {
 
 void Recorder::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
-    reader.Expect(recorderTag);
+    reader.Expect(kRecorderTag);
     if (reader.Get<int32_t>() != kRecordLength)
         throw std::runtime_error(
             "the saved recording has other channels: it can be finished only by the version of "

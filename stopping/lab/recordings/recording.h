@@ -11,7 +11,6 @@
 
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/attributes26.h"
-#include "stopping/signals/noise_character.h"
 
 namespace lull {
 
@@ -27,30 +26,23 @@ struct Channel {
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
 // deviation are mean and standard deviation of L; texture is the mean of t, and noise, noise_mean,
 // masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
-// of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L; saturated,
-// chroma_noise, noise_correlation and noise_quantiles are what noise_character.h says, with the
-// usual flare.
-inline constexpr std::array<Channel, 20> kChannels = {
-    {{"h4", 4},
-     {"h25", 25},
-     {"h100", 100},
-     {"h400", 400},
-     {"h1", 100},
-     {"h2", 100},
-     {"lightness", 100},
-     {"deviation", 100},
-     {"texture", 100},
-     {"noise", 100},
-     {"noise_mean", 100},
-     {"masked_noise", 100},
-     {"half_noise", 100},
-     {"dammertz", 1},
-     {"luxtile", 1},
-     {"attributes26", kAttributes, true},
-     {"saturated", 100, true},
-     {"chroma_noise", 100, true},
-     {"noise_correlation", 100, true},
-     {"noise_quantiles", int(kNoiseQuantiles.size()), true}}};
+// of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L.
+inline constexpr std::array<Channel, 16> kChannels = {{{"h4", 4},
+                                                       {"h25", 25},
+                                                       {"h100", 100},
+                                                       {"h400", 400},
+                                                       {"h1", 100},
+                                                       {"h2", 100},
+                                                       {"lightness", 100},
+                                                       {"deviation", 100},
+                                                       {"texture", 100},
+                                                       {"noise", 100},
+                                                       {"noise_mean", 100},
+                                                       {"masked_noise", 100},
+                                                       {"half_noise", 100},
+                                                       {"dammertz", 1},
+                                                       {"luxtile", 1},
+                                                       {"attributes26", kAttributes, true}}};
 
 // Returns which of kChannels it is, the place of its first number in a record, or how many there
 // are. Each throws std::invalid_argument for a name that there is not.

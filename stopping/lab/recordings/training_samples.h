@@ -44,7 +44,7 @@ std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
 struct TrainingSamples {
     ModelSettings settings;
     int windowSize = 0;               // inputs * k
-    std::vector<float> windows = {};  // each column-major as FeatureHistory::WindowAt() returns it
+    std::vector<float> windows = {};  // each column-major as WindowOf() returns it
     std::vector<char> noisy = {};  // of each window, whether its spp is below the human threshold
     std::vector<int> viewpoint = {};  // of each window, counted from 0
 

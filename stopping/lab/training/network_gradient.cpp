@@ -14,10 +14,10 @@ namespace {
 // makes worthwhile, whatever the number of threads: a sum must not depend on it.
 template <typename C, typename A, typename B>
 void AddProduct(C&& c, const A& a, const B& b) {
-    constexpr double workOfPart = 1 << 23;  // multiplications: a fraction of a millisecond
+    constexpr double kWorkOfPart = 1 << 23;  // multiplications: a fraction of a millisecond
     const double work = double(c.rows()) * double(c.cols()) * double(a.cols());
     const Eigen::Index most = std::max<Eigen::Index>(1, c.rows() / 128);
-    const Eigen::Index parts = std::clamp<Eigen::Index>(Eigen::Index(work / workOfPart), 1, most);
+    const Eigen::Index parts = std::clamp<Eigen::Index>(Eigen::Index(work / kWorkOfPart), 1, most);
     ForEachIndex(int(parts), [&](int i) {
         const Eigen::Index begin = c.rows() * i / parts, end = c.rows() * (i + 1) / parts;
         c.middleRows(begin, end - begin).noalias() += a.middleRows(begin, end - begin) * b;

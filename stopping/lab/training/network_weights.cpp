@@ -11,7 +11,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint64_t initialTag = 1;  // tells these random numbers from those of other purposes
+constexpr uint64_t kInitialTag = 1;  // tells these random numbers from those of other purposes
 
 void CheckSize(int64_t size, const char* what, int64_t most = 16384) {
     if (size < 1 || size > most)
@@ -40,15 +40,15 @@ Eigen::MatrixXf Orthonormal(Eigen::Index rows, Eigen::Index columns, CounterRand
 }  // namespace
 
 NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
-    constexpr int64_t mostWeights = 1 << 28;
+    constexpr int64_t kMostWeights = 1 << 28;
     CheckSize(shape.inputs, "inputs", 1000000);
     CheckSize(shape.steps, "steps");
     NetworkWeights<float> weights;
     int64_t inputs = shape.lstm.empty() ? int64_t(shape.inputs) * shape.steps : shape.inputs;
     for (uint64_t layer = 0; int units : shape.lstm) {
         CheckSize(units, "units");
-        CheckSize(4 * int64_t(units) * (inputs + units), "weights of a layer", mostWeights);
-        CounterRandom random(seed, {initialTag, layer++});
+        CheckSize(4 * int64_t(units) * (inputs + units), "weights of a layer", kMostWeights);
+        CounterRandom random(seed, {kInitialTag, layer++});
         LstmWeights<float> l;
         l.kernel = GlorotUniform(4 * units, inputs, &random);
         l.recurrent = Orthonormal(4 * units, units, &random);
@@ -61,8 +61,8 @@ NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
     dense.push_back(1);
     for (uint64_t layer = 1000; int units : dense) {
         CheckSize(units, "units");
-        CheckSize(units * inputs, "weights of a layer", mostWeights);
-        CounterRandom random(seed, {initialTag, layer++});
+        CheckSize(units * inputs, "weights of a layer", kMostWeights);
+        CounterRandom random(seed, {kInitialTag, layer++});
         weights.dense.push_back(
             {GlorotUniform(units, inputs, &random), Eigen::VectorXf::Zero(units)});
         inputs = units;

@@ -9,7 +9,7 @@ namespace lull {
 
 void RmsProp::Step(std::span<const NetworkWeights<float>> gradients,
                    NetworkWeights<float>* weights) {
-    constexpr size_t sliceSize = 1 << 16;
+    constexpr size_t kSliceSize = 1 << 16;
     using Array = Eigen::Map<Eigen::ArrayXf>;
     using ConstArray = Eigen::Map<const Eigen::ArrayXf>;
 
@@ -22,8 +22,8 @@ void RmsProp::Step(std::span<const NetworkWeights<float>> gradients,
     for (const NetworkWeights<float>& gradient : gradients) g.push_back(gradient.Spans());
     std::vector<Slice> slices;
     for (size_t i = 0; i < w.size(); ++i)
-        for (size_t begin = 0; begin < w[i].size(); begin += sliceSize)
-            slices.push_back({i, begin, Eigen::Index(std::min(sliceSize, w[i].size() - begin))});
+        for (size_t begin = 0; begin < w[i].size(); begin += kSliceSize)
+            slices.push_back({i, begin, Eigen::Index(std::min(kSliceSize, w[i].size() - begin))});
 
     ForEachIndex(int(slices.size()), [&](int index) {
         const auto [i, begin, size] = slices[size_t(index)];

@@ -17,10 +17,10 @@ namespace lull {
 
 namespace {
 
-constexpr int chunkSize = 32;                // samples: enough for fast products of matrices
-constexpr uint32_t trainerTag = 0x314e5254;  // "TRN1"
+constexpr int kChunkSize = 32;                // samples: enough for fast products of matrices
+constexpr uint32_t kTrainerTag = 0x314e5254;  // "TRN1"
 // Tell random numbers of different purposes apart.
-constexpr uint64_t orderTag = 2, dropoutTag = 3, symmetryTag = 4;
+constexpr uint64_t kOrderTag = 2, kDropoutTag = 3, kSymmetryTag = 4;
 
 // Returns for each of the eight symmetries of a square the input that comes to each place.
 std::vector<std::vector<int>> MakeSymmetries(const ModelSettings& settings) {
@@ -103,7 +103,7 @@ Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     for (size_t i = 0; i < count; ++i)
         if (samples.noisy[i]) sampleWeights[i] *= float(options.noisyWeight);
     stepsPerEpoch = int64_t(count + size_t(options.batch) - 1) / options.batch;
-    const size_t most = (std::min(count, size_t(options.batch)) + chunkSize - 1) / chunkSize;
+    const size_t most = (std::min(count, size_t(options.batch)) + kChunkSize - 1) / kChunkSize;
     gradients.assign(most, optimizer.meanSquares);
     chunks.resize(most);
     StartEpoch();
@@ -112,7 +112,7 @@ Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
 void Trainer::StartEpoch() {
     order.resize(samples.Count());
     std::iota(order.begin(), order.end(), 0u);
-    CounterRandom random(options.seed, {orderTag, uint64_t(step / stepsPerEpoch)});
+    CounterRandom random(options.seed, {kOrderTag, uint64_t(step / stepsPerEpoch)});
     for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.Below(i)]);
 }
 
@@ -125,7 +125,7 @@ void Trainer::FillChunk(int chunk, int begin, int end, int batchSize) {
     batch.inputs.resize(inputs, count * steps);
     batch.targets.resize(count);
     batch.weights.resize(count);
-    CounterRandom random(options.seed, {symmetryTag, uint64_t(step), uint64_t(chunk)});
+    CounterRandom random(options.seed, {kSymmetryTag, uint64_t(step), uint64_t(chunk)});
     for (int s = 0; s < count; ++s) {
         const size_t sample = order[size_t(begin + s)];
         const std::vector<int>& sources = symmetries[options.augment ? random.Below(8) : 0];
@@ -140,7 +140,7 @@ void Trainer::FillChunk(int chunk, int begin, int end, int batchSize) {
     batch.masks.resize(options.dropout > 0 ? weights.lstm.size() : 0);
     const float kept = float(1 / (1 - options.dropout));
     for (size_t layer = 0; layer < batch.masks.size(); ++layer) {
-        CounterRandom random(options.seed, {dropoutTag, uint64_t(step), uint64_t(chunk), layer});
+        CounterRandom random(options.seed, {kDropoutTag, uint64_t(step), uint64_t(chunk), layer});
         batch.masks[layer] = Eigen::MatrixXf::NullaryExpr(
             weights.lstm[layer].kernel.cols(), count,
             [&] { return random.Uniform() < options.dropout ? 0.f : kept; });
@@ -157,9 +157,9 @@ void Trainer::Step() {
     }
     const int begin = int(place) * options.batch;
     const int end = std::min(begin + options.batch, int(samples.Count()));
-    const int used = (end - begin + chunkSize - 1) / chunkSize;
+    const int used = (end - begin + kChunkSize - 1) / kChunkSize;
     ForEachIndex(used, [&](int i) {
-        FillChunk(i, begin + i * chunkSize, std::min(begin + (i + 1) * chunkSize, end),
+        FillChunk(i, begin + i * kChunkSize, std::min(begin + (i + 1) * kChunkSize, end),
                   end - begin);
         for (std::span<float> span : gradients[size_t(i)].Spans())
             std::fill(span.begin(), span.end(), 0.f);
@@ -222,7 +222,7 @@ uint32_t Trainer::Fingerprint() const {
 
 std::vector<std::byte> Trainer::Save() const {
     StateWriter writer;
-    writer.Put(trainerTag);
+    writer.Put(kTrainerTag);
     writer.Put(Fingerprint());
     writer.Put(step);
     writer.Put(lossSum);
@@ -236,7 +236,7 @@ std::vector<std::byte> Trainer::Save() const {
 
 void Trainer::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
-    reader.Expect(trainerTag);
+    reader.Expect(kTrainerTag);
     if (reader.Get<uint32_t>() != Fingerprint())
         throw std::runtime_error("the saved training had other samples or options");
     step = reader.Get<int64_t>();

@@ -14,7 +14,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t checkpointTag = 0x3143524c;  // "LRC1"
+constexpr uint32_t kCheckpointTag = 0x3143524c;  // "LRC1"
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void TrainingCheckpoint::Read() try {
     std::ifstream file = OpenInput(path);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     StateReader reader(CheckSeal(std::as_bytes(std::span(text))));
-    reader.Expect(checkpointTag);
+    reader.Expect(kCheckpointTag);
     while (reader.Left() > 0) {
         const uint64_t size = reader.Get<uint64_t>();
         if (size > reader.Left()) throw std::runtime_error("the checkpoint is cut short");
@@ -55,7 +55,7 @@ bool TrainingCheckpoint::IsDue() const {
 void TrainingCheckpoint::Write() {
     if (path.empty()) return;
     StateWriter writer;
-    writer.Put(checkpointTag);
+    writer.Put(kCheckpointTag);
     for (const std::vector<std::byte>& state : states) writer.PutVector(state);
     Seal(&writer.bytes);
     try {

@@ -6,7 +6,7 @@ std::span<const TrainingPreset> TrainingPresets() {
     static const TrainingPreset presets[] = {{.name = "entropy",
                                               .settings = {.k = 2,
                                                            .features = {Feature::VisibleDrop},
-                                                           .pools = {{Pool::PowerMean, 1}},
+                                                           .pools = {{1}},
                                                            .spacing = Spacing::Geometric,
                                                            .ratio = 1.4142,
                                                            .visibility = {.mask = 1e9, .flare = 0}},

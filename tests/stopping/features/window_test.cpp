@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace lull {
@@ -13,11 +16,24 @@ ModelSettings Plain(int k, int n) {
     return {.k = k, .n = n, .m = 4, .snorm = false, .bnorm = false};
 }
 
-// Adds the feature (spp, spp + 1, spp + 2, spp + 3) / 1000.
-void Add(FeatureHistory* history, int spp) {
-    std::vector<double> feature;
-    for (int i = 0; i < 4; ++i) feature.push_back((spp + i) / 1000.0);
-    history->Add(spp, feature);
+// Holds the inputs of a block, and the settings that say what is kept of them.
+struct Inputs {
+    ModelSettings settings;
+    History<double> history = {};
+
+    void Add(int spp, std::vector<double> inputs) {
+        AddInputs(spp, std::move(inputs), settings, &history);
+    }
+    std::optional<Eigen::MatrixXf> WindowAt(int spp) const {
+        return WindowOf(history, settings, spp);
+    }
+};
+
+// Adds the inputs (spp, spp + 1, spp + 2, spp + 3) / 1000.
+void Add(Inputs* history, int spp) {
+    std::vector<double> inputs;
+    for (int i = 0; i < 4; ++i) inputs.push_back((spp + i) / 1000.0);
+    history->Add(spp, std::move(inputs));
 }
 
 TEST(Normalize, MapsToTheUnitInterval) {
@@ -31,8 +47,8 @@ TEST(Normalize, MapsToTheUnitInterval) {
     EXPECT_NEAR(Normalize(Eigen::Array2d(0, 2.220446049250313e-16))[1], 0.5, 1e-12);
 }
 
-TEST(FeatureHistory, TakesEveryNthSpp) {
-    FeatureHistory history(Plain(3, 40));
+TEST(Window, TakesEveryNthSpp) {
+    Inputs history{Plain(3, 40)};
     for (int spp = 20; spp <= 80; spp += 20) {
         Add(&history, spp);
         EXPECT_FALSE(history.WindowAt(spp)) << spp;
@@ -49,8 +65,8 @@ TEST(FeatureHistory, TakesEveryNthSpp) {
     EXPECT_FLOAT_EQ((*history.WindowAt(120))(0, 0), 0.040f);
 }
 
-TEST(FeatureHistory, IsFullFirstAt300SppWithThePapersSettings) {
-    FeatureHistory history({.m = 4});
+TEST(Window, IsFullFirstAt300SppWithThePapersSettings) {
+    Inputs history{{.m = 4}};
     for (int spp = 20; spp <= 300; spp += 20) {
         Add(&history, spp);
         EXPECT_EQ(history.WindowAt(spp).has_value(), spp == 300);
@@ -58,12 +74,12 @@ TEST(FeatureHistory, IsFullFirstAt300SppWithThePapersSettings) {
     for (int spp = 320; spp <= 2000; spp += 20) {
         Add(&history, spp);
         EXPECT_TRUE(history.WindowAt(spp));
-        EXPECT_EQ(history.Entries().size(), 15u);  // no more is kept than can be needed
+        EXPECT_EQ(history.history.States().size(), 15u);  // no more is kept than can be needed
     }
 }
 
-TEST(FeatureHistory, HasNoWindowWithAGap) {
-    FeatureHistory history(Plain(3, 40));
+TEST(Window, HasNoWindowWithAGap) {
+    Inputs history{Plain(3, 40)};
     for (int spp : {20, 100, 140}) Add(&history, spp);
     EXPECT_FALSE(history.WindowAt(100));
     EXPECT_FALSE(history.WindowAt(140));
@@ -71,10 +87,10 @@ TEST(FeatureHistory, HasNoWindowWithAGap) {
     EXPECT_TRUE(history.WindowAt(180));
 }
 
-TEST(FeatureHistory, NormalisesFeaturesFirstThenTheWindow) {
+TEST(Window, NormalisesFeaturesFirstThenTheWindow) {
     const std::vector<double> first = {0.1, 0.2, 0.3, 0.5}, second = {0.4, 0.0, 0.8, 0.4};
     auto window = [&](bool snorm, bool bnorm) {
-        FeatureHistory history({.k = 2, .n = 20, .m = 4, .snorm = snorm, .bnorm = bnorm});
+        Inputs history{{.k = 2, .n = 20, .m = 4, .snorm = snorm, .bnorm = bnorm}};
         history.Add(20, first);
         history.Add(40, second);
         return *history.WindowAt(40);
@@ -88,14 +104,14 @@ TEST(FeatureHistory, NormalisesFeaturesFirstThenTheWindow) {
     EXPECT_TRUE(window(true, true).isApprox(expected, 1e-6f));
 }
 
-TEST(FeatureHistory, NormalisesAConstantWindowToZero) {
-    FeatureHistory history({.k = 3, .n = 20, .m = 4, .snorm = true, .bnorm = true});
+TEST(Window, NormalisesAConstantWindowToZero) {
+    Inputs history{{.k = 3, .n = 20, .m = 4, .snorm = true, .bnorm = true}};
     for (int spp : {20, 40, 60}) history.Add(spp, std::vector<double>(4, 0.3));
     EXPECT_TRUE(history.WindowAt(60)->isZero(0));
 }
 
-TEST(FeatureHistory, RefusesWhatDoesNotFit) {
-    FeatureHistory history(Plain(3, 40));
+TEST(Window, RefusesWhatDoesNotFit) {
+    Inputs history{Plain(3, 40)};
     Add(&history, 40);
     EXPECT_THROW(Add(&history, 40), std::invalid_argument);
     EXPECT_THROW(Add(&history, 20), std::invalid_argument);

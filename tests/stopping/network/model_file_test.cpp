@@ -92,7 +92,7 @@ TEST(ModelFile, ReadsWhatItWrites) {
 
 TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
     ModelSettings settings = {.k = 3, .features = ParseFeatures("masked_noise,logspp")};
-    settings.pools = ParsePools("rms,q90");
+    settings.pools = ParsePools("rms,p4");
     Network network;
     network.dense.push_back({"dense_1", Eigen::MatrixXf::Random(4, 9), Eigen::VectorXf::Random(4)});
     network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
@@ -112,7 +112,7 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const ModelSettings settings{
         .k = 3,
         .features = {Feature::VisibleDrop},
-        .pools = {{Pool::PowerMean, 1}},
+        .pools = {{1}},
         .spacing = Spacing::Geometric,
         .ratio = 1.4,
         .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25}};

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stopping/base/block_view.h"
 #include "stopping/rules/rule_table.h"
-#include "stopping/rules/small_blocks.h"
 #include "tests/stopping/signals/block_images.h"
 
 namespace lull {
@@ -121,7 +121,7 @@ TEST(EntropyRule, RefusesOtherState) {
 TEST(EntropyRule, IsARule) {
     const Rule factory = ParseRule("entropy:0.5");
     EXPECT_EQ(factory.text, "entropy:0.5");
-    EXPECT_EQ(factory.smallestSide, smallestVotingSide);
+    EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
     const auto rule = MakeCriterion(factory);
     EXPECT_EQ(rule->Need(20), ViewNeed::Mean);
     EXPECT_EQ(rule->Need(40), ViewNeed::Nothing);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -87,20 +89,46 @@ TEST(Learned, NeverStopsOnNoise) {
     EXPECT_EQ(decisions.back().votes, 0);
 }
 
+// Returns a block of 2 x 2 sub-blocks of 20 x 20 pixels, black but for the first pixels of their
+// diagonals, which are white: as many as `ranks` says. These are the singular values, all equal, so
+// that the SVD-entropy is log(rank) / log(20).
+BlockImage DiagonalBlock(const std::array<int, 4>& ranks) {
+    BlockImage image(40, 40, 0);
+    for (int i = 0; i < 4; ++i)
+        for (int d = 0; d < ranks[size_t(i)]; ++d)
+            std::fill_n(image.Mean(20 * (i % 2) + d, 20 * (i / 2) + d), 3, 1.f);
+    return image;
+}
+
+// The network is a logistic regression on the whole window, with another weight for each value.
 TEST(Learned, VotesOnTheWindowOfItsFeatures) {
-    const ModelSettings settings = {.k = 3, .n = 40, .m = 25, .votes = 1000};
-    const Network network = RandomNetwork(25, {8, 4}, 2);
-    const auto decisions =
-        RunPasses(MakeCriterion(LearnedRule(MakeModel(network, settings), 20)).get(), 20, 200);
-    FeatureHistory history(settings);
+    const ModelSettings settings = {.k = 3, .n = 40, .m = 4, .votes = 1000};
+    const auto weight = [](int step, int subBlock) { return 0.3 * (step + 1) - 0.2 * subBlock; };
+    Network network;
+    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 12), Eigen::VectorXf::Zero(1)});
+    for (int step = 0; step < 3; ++step)
+        for (int i = 0; i < 4; ++i)
+            network.dense[0].kernel(0, 4 * step + i) = float(weight(step, i));
+    const auto criterion = MakeCriterion(LearnedRule(MakeModel(network, settings), 20));
+
+    std::vector<std::array<int, 4>> ranks;  // of all passes
     for (int spp = 20; spp <= 200; spp += 20) {
-        const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
-        history.Add(spp, InputVector(MeasureBlock(block.At(spp), settings), settings));
-        const Decision& decision = decisions[size_t(spp / 20 - 1)];
+        std::array<int, 4>& rank = ranks.emplace_back();
+        for (int i = 0; i < 4; ++i) rank[size_t(i)] = 1 + (7 * (spp / 20) + 5 * i) % 20;
+        const Decision decision = criterion->Observe(DiagonalBlock(rank).At(spp));
         ASSERT_EQ(decision.checked, spp >= 100);
-        if (decision.checked) {
-            EXPECT_EQ(decision.value, NoisyProbability(network, *history.WindowAt(spp)));
+        if (!decision.checked) continue;
+        // The states at spp - 80, spp - 40 and spp, each sub-block from 0 to 1 over them.
+        double sum = 0;
+        for (size_t i = 0; i < 4; ++i) {
+            double h[3];
+            for (size_t step = 0; step < 3; ++step)
+                h[step] = std::log(ranks[ranks.size() - 5 + 2 * step][i]) / std::log(20.0);
+            const auto [least, most] = std::minmax({h[0], h[1], h[2]});
+            for (int step = 0; step < 3; ++step)
+                sum += weight(step, int(i)) * (h[step] - least) / (most - least);
         }
+        EXPECT_NEAR(decision.value, 1 / (1 + std::exp(-sum)), 1e-6) << spp;
     }
 }
 
@@ -131,7 +159,7 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
 ModelSettings DropSettings(int k) {
     return {.k = k,
             .features = {Feature::VisibleDrop},
-            .pools = {{Pool::PowerMean, 1}},
+            .pools = {{1}},
             .votes = 1000,
             .voteSpacing = 40,
             .spacing = Spacing::Geometric,

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stopping/base/block_view.h"
 #include "stopping/rules/rule_table.h"
-#include "stopping/rules/small_blocks.h"
 #include "tests/stopping/signals/block_images.h"
 
 namespace lull {
@@ -88,7 +88,7 @@ TEST(LNoise, GoesOnCountingAfterARestart) {
 TEST(LNoise, IsARule) {
     const Rule rule = ParseRule("lnoise:0.5");
     EXPECT_EQ(factory.text, "lnoise:0.5");
-    EXPECT_EQ(factory.smallestSide, smallestVotingSide);
+    EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
     EXPECT_EQ(MakeCriterion(factory)->Observe(EvenNoise(0.4).At(20)).threshold, 0.5);
 }
 

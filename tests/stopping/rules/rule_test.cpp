@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "stopping/base/block_view.h"
 #include "stopping/base/checksum.h"
 #include "stopping/network/model_file.h"
-#include "stopping/rules/small_blocks.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
@@ -45,7 +45,7 @@ TEST(Rule, MakesItsCriterion) {
 
     for (const char* rule : {"dammertz:0.05", "cycles:0.05", "luxtile:0.1", "lnoise:1"}) {
         const Rule factory = ParseRule(rule);
-        EXPECT_EQ(factory.smallestSide, smallestVotingSide);
+        EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
         EXPECT_GT(StopSpp(MakeCriterion(factory).get()), 20) << rule;
     }
     EXPECT_EQ(ParseRule("dammertz").text, "dammertz:0.02");
@@ -129,7 +129,7 @@ TEST(Rule, LoadsAModel) {
     WriteModel(file.path, network, {.k = 3, .n = 20, .m = 25});
     const Rule factory = ParseRule("learned:" + file.path);
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
-    EXPECT_EQ(factory.smallestSide, smallestVotingSide);
+    EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
     EXPECT_EQ(StopSpp(MakeCriterion(factory).get()), 100);
     EXPECT_EQ(StopSpp(MakeCriterion(ParseRule("learned:" + file.path)).get()), 100);
     using Failed = std::runtime_error;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "stopping/signals/drop_history.h"
+#include "stopping/signals/history.h"
 #include "stopping/signals/svd_entropy.h"
 #include "tests/stopping/signals/block_images.h"
 
@@ -35,13 +35,13 @@ std::vector<double> Entropies(const BlockView& view) {
 // Returns the mean visible drop at `spp` of pictures whose noise is sqrt(40 / n^a) times as large
 // as at 1 spp would be 1, after those at all looks before.
 double VisibleAt(int spp, double scale, double a, const NoiseVisibility& visibility) {
-    DropHistory history;
+    History<float> history;
     std::optional<std::vector<double>> visible;
     for (int n = 20; n <= spp; n += 40) {
         const BlockImage image = GreyNoise(scale * std::pow(n, -a / 2), unsigned(n));
         const BlockView view = image.At(n);
-        visible = AddVisible(n, Entropies(view), MeasureLightness(view, kSubBlocks), visibility,
-                             &history);
+        AddEntropies(n, Entropies(view), &history);
+        visible = LatestVisibleDrop(history, MeasureLightness(view, kSubBlocks), visibility);
     }
     double sum = 0;
     for (const double v : *visible) sum += v / double(visible->size());

@@ -70,8 +70,10 @@ typedef struct lull_settings {
      * where the library is installed. */
     const char* models;
     /* Pixels a side of the blocks, at least 40; 0: 200, which the models were trained on. What is
-     * left at the right and at the bottom is a block of its own if it has 40 pixels or more, and
-     * is otherwise added to its neighbour. A block as large as the picture is the whole picture. */
+     * left at the right and at the bottom are smaller blocks. A block with a side below 40 pixels
+     * is not checked, but follows the largest of its neighbours, whose answer is its own, too
+     * (unless the rule only counts samples). A block as large as the picture is the whole picture.
+     */
     int block;
     /* Samples per pixel between two pictures of a block, if always the same: the first picture has
      * as many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
@@ -140,7 +142,8 @@ LULL_API int lull_stopper_needs_half(const lull_stopper* stopper);
  * unless `answers` is NULL. LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* picture,
                                           int spp, lull_answer* answers);
-/* Does the same for one block, with a picture of its size. `answer` may be NULL. */
+/* Does the same for one block, with a picture of its size. `answer` may be NULL. For a block that
+ * follows another nothing is done but to answer. */
 LULL_API lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
                                                 const lull_picture* picture, int spp,
                                                 lull_answer* answer);

@@ -4,8 +4,8 @@
 
 #include "renderer/base/error.h"
 #include "renderer/lab/comparison/verification.h"
+#include "stopping/base/block_view.h"
 #include "stopping/rules/baselines.h"
-#include "stopping/rules/small_blocks.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
@@ -26,7 +26,7 @@ std::vector<ObservedRule> Rules() {
     const auto bySpp = [](const BlockInfo& info) {
         return MakeCriterion(FixedRule(20 + 20 * (info.index % 5)));
     };
-    return {{"automatic", "dammertz:0.5", smallestVotingSide, dammertz},
+    return {{"automatic", "dammertz:0.5", kSmallestVotingSide, dammertz},
             {"human", "thresholds:h.csv", 0, bySpp}};
 }
 

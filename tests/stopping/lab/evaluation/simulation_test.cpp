@@ -73,7 +73,7 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
                {.k = 2,
                 .n = 40,
                 .features = {Feature::VisibleDrop},
-                .pools = {{Pool::PowerMean, 1}},
+                .pools = {{1}},
                 .voteSpacing = 40,
                 .spacing = Spacing::Geometric,
                 .ratio = 1.5});

@@ -65,15 +65,15 @@ TEST(MakeSamples, EndWindowsOnTheGrid) {
         EXPECT_EQ(int(samples.noisy[i]), 300 + 40 * int(i % 18) < (i < 18 ? 400 : 484)) << i;
 
     // They are the windows that a rule would see which looks at every recorded pass.
-    FeatureHistory history({});
+    History<double> history;
     const BlockRecording& recording = viewpoints[0].blocks.at(1);
     for (int i = 0, sample = 18; i < recording.Count(); ++i) {
         const int spp = recording.spp[size_t(i)];
-        history.Add(spp, InputVector(MeasuresOf(recording, i, {}), {}));
+        AddInputs(spp, InputVector(MeasuresOf(recording, i, {}), {}), {}, &history);
         if (spp < 300 || (spp - 20) % 40 != 0) continue;
         const Eigen::Map<const Eigen::MatrixXf> window(&samples.windows[size_t(sample++) * 800],
                                                        100, 8);
-        EXPECT_TRUE(window == *history.WindowAt(spp)) << spp;
+        EXPECT_TRUE(window == *WindowOf(history, {}, spp)) << spp;
     }
 }
 
