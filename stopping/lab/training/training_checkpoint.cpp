@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/state.h"
@@ -42,7 +43,7 @@ void TrainingCheckpoint::Restore(size_t training, Trainer* trainer) const {
     try {
         trainer->Restore(states[training]);
     } catch (const std::runtime_error& error) {
-        throw CheckpointError(path + ": " + error.what());
+        throw std::runtime_error(path + ": " + error.what());
     }
 }
 
@@ -56,11 +57,7 @@ void TrainingCheckpoint::Write() {
     writer.Put(checkpointTag);
     for (const std::vector<std::byte>& state : states) writer.PutVector(state);
     Seal(&writer.bytes);
-    try {
-        write(path, writer.bytes);
-    } catch (const std::runtime_error& error) {
-        throw CheckpointError(error.what());
-    }
+    write(path, writer.bytes);
     written = Clock::now();
 }
 
