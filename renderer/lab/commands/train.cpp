@@ -9,9 +9,11 @@
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/evaluation_table.h"
-#include "renderer/lab/commands/search.h"
+#include "renderer/lab/commands/train_options.h"
 #include "renderer/lab/commands/training_printer.h"
 #include "stopping/base/parallel.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
+#include "stopping/lab/training/training_run.h"
 #include "stopping/network/model_file.h"
 
 namespace lull {
@@ -50,8 +52,8 @@ ExitCode RunTrain(const TrainOptions& options) {
     const Talk talk{.isJson = options.jsonProgress};
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
-    const std::vector<LabelledBlock> blocks = KeepRecordedForAll(
-        ReadLabelledBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
+    const std::vector<LabelledBlock> blocks = KeepRecorded(
+        ReadLabelledBlocks(viewpoints, plan.human, plan.without, note), plan.settings, note);
     CheckSpacing(plan.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
@@ -90,9 +92,7 @@ void AddTrainCommand(CLI::App& app, Command* command) {
         CompleteTrainOptions(options.get());
         *command = [=] {
             ExitCode code = kDone;
-            RunWithThreads(options->threads, [&] {
-                code = options->search.empty() ? RunTrain(*options) : RunSearch(*options);
-            });
+            RunWithThreads(options->threads, [&] { code = RunTrain(*options); });
             return code;
         };
     });

@@ -28,8 +28,7 @@ std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecordi
     for (const std::string& name : without)
         if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0 &&
             std::ranges::find(viewpoints, name, &ViewpointRecording::name) == viewpoints.end())
-            throw std::runtime_error(
-                fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
+            throw std::runtime_error(fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
     std::vector<std::string> unknown;
     std::vector<LabelledBlock> blocks = JoinHuman(viewpoints, rows, &unknown);
     for (const std::string& name : unknown)
@@ -42,11 +41,9 @@ std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecordi
     throw std::runtime_error(human + ": " + error.what());
 }
 
-std::vector<LabelledBlock> KeepRecordedForAll(const std::vector<LabelledBlock>& judged,
-                                              std::span<const ModelSettings> settings,
-                                              const WarningSink& warn) {
-    std::vector<LabelledBlock> blocks = judged;
-    for (const ModelSettings& s : settings) blocks = KeepRecorded(blocks, s);
+std::vector<LabelledBlock> KeepRecorded(const std::vector<LabelledBlock>& judged,
+                                        const ModelSettings& settings, const WarningSink& warn) {
+    std::vector<LabelledBlock> blocks = KeepRecorded(judged, settings);
     if (blocks.empty()) throw std::runtime_error("no block was recorded with attributes26");
     if (blocks.size() < judged.size())
         warn(fmt::format("{} of {} blocks were recorded without attributes26",

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -27,10 +26,9 @@ std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecordi
                                               const std::vector<std::string>& without,
                                               const WarningSink& warn);
 
-// Returns the blocks that were recorded with all that any of the settings asks for, and tells how
-// many were not. Throws std::runtime_error if none is left.
-std::vector<LabelledBlock> KeepRecordedForAll(const std::vector<LabelledBlock>& judged,
-                                              std::span<const ModelSettings> settings,
-                                              const WarningSink& warn);
+// Returns the blocks that were recorded with all that the settings ask for, and tells how many were
+// not. Throws std::runtime_error if none is left.
+std::vector<LabelledBlock> KeepRecorded(const std::vector<LabelledBlock>& judged,
+                                        const ModelSettings& settings, const WarningSink& warn);
 
 }  // namespace lull

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/input_file.h"
@@ -44,7 +45,7 @@ void TrainingCheckpoint::Restore(size_t training, Trainer* trainer) const {
     try {
         trainer->Restore(states[training]);
     } catch (const std::runtime_error& error) {
-        throw CheckpointError(path + ": " + error.what());
+        throw std::runtime_error(path + ": " + error.what());
     }
 }
 
@@ -58,11 +59,7 @@ void TrainingCheckpoint::Write() {
     writer.Put(kCheckpointTag);
     for (const std::vector<std::byte>& state : states) writer.PutVector(state);
     Seal(&writer.bytes);
-    try {
-        write(path, writer.bytes);
-    } catch (const std::runtime_error& error) {
-        throw CheckpointError(error.what());
-    }
+    write(path, writer.bytes);
     written = Clock::now();
 }
 

@@ -23,7 +23,17 @@ std::string ScoresText(const std::vector<ViewpointOutcome>& viewpoints,
                        j.auc.value_or(0.5));
 }
 
-// Holds what networks did to blocks that each of them did not see, or did.
+void AddOutcomes(const Network& network, const ModelSettings& settings,
+                 std::span<const LabelledBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
+    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
+    const auto simulator = [&](const LabelledBlock& block) {
+        return SimulateRule(block, std::make_shared<const Rule>(LearnedRule(model, block.passSpp)));
+    };
+    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
+        viewpoints->push_back(std::move(viewpoint));
+}
+
+// What networks did to blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
     std::vector<LabelledBlock> blocks = {};
@@ -37,8 +47,8 @@ struct NetworkOutcomes {
     }
 };
 
-}  // namespace
-
+// Trains a network, or goes on with training number `index` of the checkpoint. Nothing if it was
+// cancelled: the checkpoint has it, but is not written.
 std::optional<Network> TrainNetwork(const ModelSettings& settings, const TrainingOptions& options,
                                     const BlockSplit& split, size_t index,
                                     TrainingCheckpoint* checkpoint, const TrainingEvents& events) {
@@ -61,15 +71,7 @@ std::optional<Network> TrainNetwork(const ModelSettings& settings, const Trainin
     return trainer.Result();
 }
 
-void AddOutcomes(const Network& network, const ModelSettings& settings,
-                 std::span<const LabelledBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
-    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
-    const auto simulator = [&](const LabelledBlock& block) {
-        return SimulateRule(block, std::make_shared<const Rule>(LearnedRule(model, block.passSpp)));
-    };
-    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
-        viewpoints->push_back(std::move(viewpoint));
-}
+}  // namespace
 
 std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
