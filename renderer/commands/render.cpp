@@ -320,15 +320,15 @@ ExitCode RunRender(Options options, Job* job) {
 
     Provenance provenance = ProvenanceOf(options, factory, *scene, input.film);
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
-    ProgressPrinter printer = MakePrinter(settings, FixedSpp(options.rule) == 0);
-    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
+    SessionOptions how =
+        MakeSessionOptions(settings, provenance.sampler, FixedSpp(options.rule) == 0, job);
     how.render.makeCriterion = MakeCriteria(factory, IsHtml(options.report), &histories);
     how.render.trend = factory.trend;
     how.render.display = display.get();
     if (clock)
-        how.render.onProgress =
-            WarnOfFirstSamples(region.Area(), talk, std::move(how.render.onProgress));
-    if (talk.isJson) how.render.onStop = StopEvents(factory.trend.kind);
+        how.render.events.onProgress =
+            WarnOfFirstSamples(region.Area(), talk, std::move(how.render.events.onProgress));
+    if (talk.isJson) how.render.events.onStop = StopEvents(factory.trend.kind);
     how.film = film;
     how.aovs = options.aovs;
     how.features = CollectsFeatures(options);
@@ -354,7 +354,6 @@ ExitCode RunRender(Options options, Job* job) {
     provenance.guideFigures = session.Guidance();
     job->End();
     if (!leads) return kDone;
-    printer.Finish(result.progress);
     PrintResult(settings, provenance, result, session.TheFilm().RejectedCount());
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     std::optional<DenoisedImage> denoised;

@@ -16,13 +16,13 @@ namespace {
 void ShareAmongRanks(Job* job, SessionOptions* options) {
     options->agree = [job](const std::string& what) { job->Begin(what); };
     options->render.peers = job->ThePeers();
-    options->render.onSilence = [job](const std::vector<int>& ranks) {
+    options->render.events.onSilence = [job](const std::vector<int>& ranks) {
         job->Warn(
             fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
                         "last checkpoint, with any number of ranks",
                         fmt::join(ranks, ", ")));
     };
-    options->render.onGivenUp = [job](int rank, double seconds) {
+    options->render.events.onGivenUp = [job](int rank, double seconds) {
         job->GiveUp(rank);
         job->Warn(
             fmt::format("rank {} has given no sign of life for {}: going on without it, and taking "
@@ -34,21 +34,24 @@ void ShareAmongRanks(Job* job, SessionOptions* options) {
 }  // namespace
 
 SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sampler,
-                                  ProgressPrinter* printer, Job* job) {
+                                  bool adaptive, Job* job) {
     SessionOptions options;
     RenderOptions& render = options.render;
     render.schedule = settings.schedule;
     render.sampler = sampler;
     render.seed = settings.seed;
     render.threads = settings.scene.compile.threads;
-    render.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
     render.isCancelled = Interrupted;
+    RenderEvents& events = render.events;
+    const auto printer = std::make_shared<ProgressPrinter>(MakePrinter(settings, adaptive));
+    events.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
+    events.onFinish = [printer](const RenderProgress& p) { printer->Finish(p); };
     options.estimator = settings.estimator;
     options.film.grid = GridOf(settings.schedule);
     const Talk talk = TalkOf(settings);
-    options.onResume = [talk](const std::string& message) { talk.Note(message); };
-    if (!settings.quiet) options.onLearning = options.onResume;
-    options.onWarning = [talk](const std::string& message) { talk.Warn(message); };
+    events.onResume = [talk](const std::string& message) { talk.Note(message); };
+    if (!settings.quiet) events.onLearning = events.onResume;
+    events.onWarning = [talk](const std::string& message) { talk.Warn(message); };
     if (job) ShareAmongRanks(job, &options);
     return options;
 }

@@ -7,9 +7,9 @@
 namespace lull {
 
 // Returns the options of a session, without a rule and without a checkpoint, that can be
-// interrupted, and that the ranks of the job share; null: it has none. What is given by pointer
-// must outlive it.
-SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, ProgressPrinter*, Job*);
+// interrupted, and that the ranks of the job share; null: it has none. `adaptive`: blocks stop by
+// themselves, as is to be seen of the progress. The job must outlive it.
+SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, bool adaptive, Job*);
 
 // Lets the job put errors and warnings as the settings want them; to be called first of all.
 void SetWording(const RenderSettings&, Job*);

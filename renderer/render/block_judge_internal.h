@@ -19,10 +19,9 @@ struct Judgement {
 // judged at the same time without locks.
 class BlockJudge {
   public:
-    // Makes the criteria of the blocks that vote, as an interrupted render has left them. Film and
-    // options must outlive it.
-    BlockJudge(const RenderOptions&, const Film&, std::span<const Block> blocks,
-               const RenderState* interrupted);
+    // Makes the criteria of the blocks that vote, as an interrupted render has left them. The
+    // context must outlive it.
+    BlockJudge(const RenderContext&, const RenderOptions&, std::span<const Block> blocks);
 
     // Returns what criterion and clock have to see of a block.
     ViewNeed NeedAt(int block, int spp) const;
@@ -37,8 +36,7 @@ class BlockJudge {
     BlockView ViewOf(int index, const Block&, ViewNeed,
                      const std::function<void(int block, FilmView*)>& complete);
 
-    const Film& film;
-    const GuideLearner* learner;  // null: paths are not guided
+    const RenderContext& context;
     const ScheduleOptions schedule;
     const bool hasClock;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
@@ -48,10 +46,10 @@ class BlockJudge {
 // Returns the most samples that a pixel has.
 int MostSamples(const PixelRect&, const Film&);
 
-// Says where blocks are that an interrupted render has left, null if there is none; with a clock,
-// also how noisy.
-std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions&,
-                                 const Film&);
-std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOptions&, const Film&);
+// Return where blocks are, those given or those that an interrupted render has left, none if there
+// is none; with a clock, also how noisy.
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext&,
+                                 const RenderOptions&);
+std::vector<BlockStart> StartsOf(const RenderContext&, const RenderOptions&);
 
 }  // namespace lull

@@ -31,8 +31,6 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
 
 struct SessionOptions {
-    // The session itself sets `layers`, `learner`, `secondsLeft`, `onCheckpoint` and
-    // `checkpointInterval`.
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
@@ -48,14 +46,10 @@ struct SessionOptions {
     // Waits until all ranks are about to render the same, of which `what` is a text that says it
     // all. Can be empty.
     std::function<void(const std::string& what)> agree;
-    // Get lines on what was resumed, on learning, and on checkpoints that could not be written. Can
-    // be empty.
-    std::function<void(const std::string&)> onResume, onLearning, onWarning;
 };
 
 // As Render(), or what prepares it and calls it.
-using RenderFunction = std::function<RenderResult(const SampleSource&, const RenderOptions&, Film*,
-                                                  const RenderState* interrupted)>;
+using RenderFunction = std::function<RenderResult(const RenderContext&, const RenderOptions&)>;
 
 class Session {
   public:
@@ -83,14 +77,14 @@ class Session {
     // Returns what was learned so far, or why nothing is; nothing where no guide was asked for.
     GuideFigures Guidance() const;
     // Return what was rendered, and how.
-    const SampleSource& Source() const { return source; }
+    const RenderContext& Context() const { return context; }
     const RenderOptions& Options() const { return options.render; }
 
   private:
     void SetSources();
+    void SetClock();
     void KeepCheckpoints();
     std::string TryToWrite(const RenderState&, const std::string& said);
-    bool HasCheckpoint() const { return !options.checkpoint.file.empty(); }
 
     const Scene& scene;
     const PixelRect region;
@@ -101,7 +95,7 @@ class Session {
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
-    SampleSource source;
+    RenderContext context;
 };
 
 }  // namespace lull

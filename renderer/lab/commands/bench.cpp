@@ -210,7 +210,7 @@ class PointCounter {
 
 // Returns how to render a variant.
 SessionOptions MakeOptions(const Options& options, const Variant& variant,
-                           const PreparedScene& prepared, ProgressPrinter* printer, Job* job) {
+                           const PreparedScene& prepared, Job* job) {
     Provenance provenance = prepared.provenance;
     provenance.sampler = variant.sampler;
     if (variant.isGuided) {
@@ -218,12 +218,12 @@ SessionOptions MakeOptions(const Options& options, const Variant& variant,
         provenance.guideMegabytes = options.guide.megabytes;
     }
     for (const ObservedRule& rule : prepared.rules) provenance.criterion += rule.text + " ";
-    SessionOptions how = MakeSessionOptions(options.render, variant.sampler, printer, job);
+    SessionOptions how = MakeSessionOptions(options.render, variant.sampler, false, job);
     if (variant.isGuided) how.guide = options.guide;
     how.checkpoint =
         ResumeIfThere(CheckpointName(options, variant), options.render.checkpoint.interval);
     how.identity = IdentityOf(provenance, prepared.sceneHash);
-    how.render.checkpointAtEnd = true;
+    how.checkpoint.isKept = true;
     how.features = options.denoise;
     return how;
 }
@@ -254,9 +254,8 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
                   std::vector<BenchPoint>* points) {
     const RenderSettings& settings = options.render;
     const PixelRect& region = prepared->provenance.crop;
-    ProgressPrinter printer = MakePrinter(settings, false);
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
-    SessionOptions how = MakeOptions(options, variant, *prepared, &printer, job);
+    SessionOptions how = MakeOptions(options, variant, *prepared, job);
     how.render.makeCriterion = MakeObservers(prepared->rules, region, settings.schedule,
                                              {.snapshots = true, .goesOn = true}, &histories);
     Session session(*prepared->scene, region, how);
@@ -264,12 +263,10 @@ bool BenchVariant(const Options& options, const Variant& variant, PreparedScene*
     session.Resume();
     if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
     const RenderResult result = session.Run();
-    printer.Finish(result.progress);
     if (result.cancelled) return false;
     if (variant.isGuided && !session.Guidance().isUsed) return true;
     if (session.Leads())
-        AddPoints(options, variant,
-                  {session.Source(), session.Options(), session.TheFilm(), result, histories},
+        AddPoints(options, variant, {session.Context(), session.Options(), result, histories},
                   session.Guidance(), prepared, points);
     return true;
 }

@@ -143,17 +143,13 @@ PreparedScene Prepare(const CompareOptions& options, const Job& job) {
 // Renders the automatic image by itself.
 Verification Verify(const PreparedScene& prepared, const RenderSettings& settings, int threads,
                     const ComparedImage& expected) {
-    ProgressPrinter printer = MakePrinter(settings, true);
-    SessionOptions how =
-        MakeSessionOptions(settings, prepared.provenance.sampler, &printer, nullptr);
+    SessionOptions how = MakeSessionOptions(settings, prepared.provenance.sampler, true, nullptr);
     how.render.schedule.smallestSide = prepared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = prepared.rules.front().make;
     if (!settings.quiet) TalkOf(settings).Note("the automatic image by itself");
     Session session(*prepared.scene, prepared.provenance.crop, how);
     const RenderResult result = session.Run();
-    printer.Finish(result.progress);
-
     return VerificationOf(result, session.TheFilm(), expected);
 }
 
@@ -239,8 +235,8 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
     std::vector<ComparedImage> fromFiles = ReadImagesBeside(options, report.comparison);
 
     report.histories.resize(report.comparison.blocks.size());
-    ProgressPrinter printer = MakePrinter(settings, !options.snapshots);
-    SessionOptions how = MakeSessionOptions(settings, prepared.provenance.sampler, &printer, job);
+    SessionOptions how =
+        MakeSessionOptions(settings, prepared.provenance.sampler, !options.snapshots, job);
     how.render.makeCriterion = MakeObservers(prepared.rules, region, settings.schedule,
                                              {.snapshots = true,
                                               .noise = true,
@@ -257,11 +253,10 @@ ExitCode CompareRenders(CompareOptions options, Job* job) {
     const RenderResult result = session.Run();
     job->End();
     if (!session.Leads()) return kDone;
-    printer.Finish(result.progress);
     if (result.cancelled) return SayInterrupted(settings);
 
     AddImages(options, prepared.rules,
-              {session.Source(), session.Options(), session.TheFilm(), result, report.histories},
+              {session.Context(), session.Options(), result, report.histories},
               std::move(fromFiles), &report);
     for (const int threads : options.verify) {
         const Verification v =

@@ -122,8 +122,7 @@ ExitCode RunDataset(const Options& options, Job* job) {
         MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
-    ProgressPrinter printer = MakePrinter(settings, false);
-    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, false, job);
     how.checkpoint = ResumeIfThere(CheckpointName(options), settings.checkpoint.interval);
     how.identity = identity;
     Session session(*scene, input.region, how);
@@ -133,7 +132,6 @@ ExitCode RunDataset(const Options& options, Job* job) {
         session.Run([&](auto&&... render) { return RecordBlocks(render..., limits, &viewpoint); });
     job->End();
     if (!leads) return kDone;
-    printer.Finish(result.progress);
     if (result.cancelled) return SayInterrupted(settings, CheckpointName(options));
 
     AddToDataset(viewpoint, &dataset);

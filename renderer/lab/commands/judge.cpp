@@ -87,8 +87,7 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     if (records) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
 
     Study study = BeginStudy(name, input.region, levels, blocks, identity);
-    ProgressPrinter printer = MakePrinter(settings, false);
-    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, nullptr);
+    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, false, nullptr);
     how.checkpoint = ResumeIfThere(file, settings.checkpoint.interval);
     how.identity = identity;
     Session session(*scene, input.region, how);
@@ -97,7 +96,6 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
     const RenderResult result = session.Run([&](auto&&... render) {
         return RenderStudy(render..., &study, records ? &viewpoint : nullptr);
     });
-    printer.Finish(result.progress);
     if (result.cancelled) return SayInterrupted(settings, file);
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });

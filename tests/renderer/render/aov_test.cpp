@@ -21,7 +21,7 @@ PathSample SampleWithHit(Sampler& sampler, const Vec2i& pixel, uint32_t index, F
 struct Rendered {
     Film film;
     AovFilm aovs;
-    RenderOptions options;
+    RenderSetup options;
     RenderResult result;
 
     Rendered()
@@ -33,10 +33,13 @@ struct Rendered {
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
         };
+        options.source = SyntheticSample;
+        options.film = &film;
         options.layers = {.aovs = &aovs, .source = SampleWithHit};
     }
     void Run(const RenderState* interrupted = nullptr) {
-        result = Render(SyntheticSample, options, &film, interrupted);
+        options.interrupted = interrupted;
+        result = Render(options, options);
     }
 };
 
@@ -62,8 +65,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
         EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
         EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
         Film without(kRegion);
-        render.options.layers = {};
-        Render(SyntheticSample, render.options, &without);
+        Render({.source = SyntheticSample, .film = &without}, render.options);
         EXPECT_TRUE(SamePixels(render.film, without));
     }
 }
@@ -101,10 +103,10 @@ TEST(Aovs, GoOnFromCheckpoints) {
             return SampleWithHit(s, pixel, k, h);
         };
         first.options.isCancelled = [&] { return taken > 50001; };
-        first.options.onCheckpoint = [&](const RenderState& s) {
+        first.options.checkpoints.write = [&](const RenderState& s) {
             WriteCheckpoint(path, identity, s, first.film, first.options.layers);
         };
-        first.options.checkpointInterval = 1e6;
+        first.options.checkpoints.interval = 1e6;
         first.Run();
         EXPECT_TRUE(first.result.cancelled);
     }

@@ -73,7 +73,8 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
     const TemporaryDirectory directory;
     const std::string path = directory.File("render.checkpoint");
     Film reference(kRegion);
-    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
+    const RenderResult expected =
+        Render({.source = SyntheticSample, .film = &reference}, SmallRender(2));
     EXPECT_LT(reference.SampleCount(), kRegion.Area() * 60);
 
     for (const int samplesARun : {5000, 12345, 100000, 300000}) {
@@ -90,10 +91,14 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
                 return SyntheticSample(sampler, pixel, index);
             };
             options.isCancelled = [&] { return samples >= samplesARun; };
-            options.onCheckpoint = [&](const RenderState& s) {
+            const auto write = [&](const RenderState& s) {
                 WriteCheckpoint(path, kIdentity, s, film);
             };
-            result = Render(source, options, &film, begun ? &state : nullptr);
+            result = Render({.source = source,
+                             .film = &film,
+                             .interrupted = begun ? &state : nullptr,
+                             .checkpoints = {write}},
+                            options);
             if (!result.cancelled) break;
             begun = true;
             film = Film(kRegion);
@@ -108,13 +113,14 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
 
 TEST(Checkpoint, IsTakenAgainAndAgainWithoutAnEffect) {
     Film reference(kRegion);
-    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
-    RenderOptions options = SmallRender(4);
-    options.checkpointInterval = 0;
+    const RenderResult expected =
+        Render({.source = SyntheticSample, .film = &reference}, SmallRender(2));
     int checkpoints = 0;
-    options.onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+    const auto count = [&](const RenderState&) { ++checkpoints; };
     Film film(kRegion);
-    ExpectSame(Render(SyntheticSample, options, &film), expected);
+    ExpectSame(Render({.source = SyntheticSample, .film = &film, .checkpoints = {count, 0}},
+                      SmallRender(4)),
+               expected);
     EXPECT_TRUE(SamePixels(film, reference));
     EXPECT_GT(checkpoints, 50);
 }
@@ -122,14 +128,15 @@ TEST(Checkpoint, IsTakenAgainAndAgainWithoutAnEffect) {
 TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     Film whole(kRegion), part(kRegion);
     const RenderOptions options = SmallRender(2);
-    const RenderResult expected = Render(SyntheticSample, options, &whole);
+    const RenderResult expected = Render({.source = SyntheticSample, .film = &whole}, options);
     RenderState state;
     for (const Block& block : MakeBlocks(kRegion, options.schedule)) {
         state.blocks.push_back({.block = block, .decisions = {}});
         state.blocks.back().block.stopped = state.blocks.size() != 3;
     }
     state.criteria.resize(state.blocks.size());
-    const RenderResult result = Render(SyntheticSample, options, &part, &state);
+    const RenderContext rest{.source = SyntheticSample, .film = &part, .interrupted = &state};
+    const RenderResult result = Render(rest, options);
     EXPECT_FALSE(result.cancelled);
     for (size_t i = 0; i < result.blocks.size(); ++i)
         EXPECT_EQ(result.blocks[i].block.spp, i == 2 ? expected.blocks[i].block.spp : 0);
@@ -137,7 +144,7 @@ TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     EXPECT_EQ(part.At({20, 20}).count, 0u);
 
     state.criteria.pop_back();
-    EXPECT_THROW(Render(SyntheticSample, options, &part, &state), std::invalid_argument);
+    EXPECT_THROW(Render(rest, options), std::invalid_argument);
 }
 
 // Writes the checkpoint of a render that has just begun.
@@ -146,8 +153,8 @@ void WriteSmallCheckpoint(const std::string& path) {
     RenderOptions options = SmallRender(1);
     std::atomic<int> tiles = 0;
     options.isCancelled = [&] { return tiles++ >= 50; };
-    options.onCheckpoint = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
-    Render(SyntheticSample, options, &film);
+    const auto write = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
+    Render({.source = SyntheticSample, .film = &film, .checkpoints = {write}}, options);
 }
 
 TEST(Checkpoint, SaysWhatIsNotTheSame) {

@@ -29,8 +29,10 @@ struct FeatureRender {
         options.makeCriterion = [](const BlockInfo&) {
             return std::make_unique<ScriptedCriterion>(1000);
         };
-        options.layers = {.features = &features, .source = SampleWithFeatures};
-        Render(SyntheticSample, options, &film);
+        Render({.source = SyntheticSample,
+                .film = &film,
+                .layers = {.features = &features, .source = SampleWithFeatures}},
+               options);
     }
 };
 
@@ -51,7 +53,7 @@ TEST(FeatureFilm, IsTheSameForAnyThreads) {
     options.makeCriterion = [](const BlockInfo&) {
         return std::make_unique<ScriptedCriterion>(1000);
     };
-    Render(SyntheticSample, options, &film);
+    Render({.source = SyntheticSample, .film = &film}, options);
     EXPECT_TRUE(SamePixels(one.film, film));
 }
 

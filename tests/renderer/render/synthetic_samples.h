@@ -32,6 +32,9 @@ inline FirstHit SyntheticHit(Sampler& sampler, const Vec2i& pixel, uint32_t inde
             .offset2 = u.y()};
 }
 
+// Context and options of a render, where a test changes either.
+struct RenderSetup : RenderContext, RenderOptions {};
+
 // Says whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {
     if (!(a.Region() == b.Region())) return false;
