@@ -6,9 +6,7 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
-#include "renderer/base/memory.h"
 #include "renderer/denoise/denoiser.h"
-#include "renderer/files/file_io.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
 
@@ -24,27 +22,11 @@ void Tell(const std::function<void(const std::string&)>& listener,
 
 }  // namespace
 
-void CheckCheckpoint(const CheckpointOptions& options) {
-    if (options.file.empty()) return;
-    CheckWritable(options.file);
-    if (!options.resume && std::filesystem::exists(options.file))
-        throw Error(options.file +
-                    ": is there already; give --resume to go on from it, or remove it");
-}
-
-CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
-    return {.file = file, .interval = interval, .resume = std::filesystem::exists(file)};
-}
-
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
-    // With what is made of them in the end.
+int64_t BytesOfLayers(const AovSet& wanted, bool features) {
     const size_t mattes =
         wanted.Mattes() ? MatteFilm::BytesOfPixel(wanted.cryptomatte) + 25 * sizeof(float) : 0;
-    const int64_t bytes = (wanted.Sums() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) + mattes +
-                          (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0);
-    CheckMemory(region.Area() * bytes,
-                fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
-                "render it in parts with --crop, or smaller with --resolution");
+    return int64_t((wanted.Sums() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) + mattes +
+                   (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0));
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
@@ -64,7 +46,6 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         context.layers.features = &*features;
         options.identity["features"] = "yes";
     }
-    CheckGuide(options.guide, scene, options.estimator);
     if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
     learner.emplace(scene,
                     LearningOptions{.mode = options.guide.mode,

@@ -13,22 +13,17 @@ namespace lull {
 
 // Says where a render keeps what it takes to go on after an interruption.
 struct CheckpointOptions {
-    std::string file;      // empty: none
-    double interval = 60;  // seconds
-    bool resume = false;   // goes on from the file, if it is there
-    bool isKept = false;   // also when every block has stopped
+    std::string file;        // empty: none
+    double interval = 60;    // seconds
+    bool resume = false;     // goes on from the file, if it is there
+    bool isKept = false;     // also when every block has stopped
+    bool isImplied = false;  // named by the command, which resumes without being told to
     MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
-// Throws Error if the file could not be written, or if it is there and not to be resumed from, as
-// the render would replace it.
-void CheckCheckpoint(const CheckpointOptions&);
-
-// Returns the options of a render that goes on from the file without being told to.
-CheckpointOptions ResumeIfThere(const std::string& file, double interval);
-
-// Throws Error where the memory cannot hold such layers, or features.
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
+// Returns the bytes a pixel that such layers, and features, take beside the film, with what is made
+// of them in the end.
+int64_t BytesOfLayers(const AovSet& wanted, bool features);
 
 struct SessionOptions {
     RenderOptions render;
@@ -53,7 +48,7 @@ using RenderFunction = std::function<RenderResult(const RenderContext&, const Re
 
 class Session {
   public:
-    // The scene must outlive it. Throws as CheckGuide().
+    // The scene must outlive it. Where it cannot be guided it is not, see Guidance().
     Session(const Scene&, const PixelRect& region, SessionOptions);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;

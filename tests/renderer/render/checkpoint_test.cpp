@@ -188,8 +188,8 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
     Film again(kRegion, {.withHalf = false});
     EXPECT_NO_THROW(ReadCheckpoint(path, kIdentity, &again));
     EXPECT_EQ(again.MeanImage(), whole.MeanImage());
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }), "--half-buffer on"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }),
+                         "without the sums of the half"));
 }
 
 TEST(Checkpoint, RefusesDamagedFiles) {

@@ -131,18 +131,6 @@ TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     EXPECT_TRUE(said.warnings[0].starts_with("no checkpoint: "));
 }
 
-TEST(Session, LeavesCheckpointsOfOthersAlone) {
-    const TemporaryDirectory directory;
-    const std::string file = directory.File("c.h5");
-    EXPECT_NO_THROW(CheckCheckpoint({}));
-    EXPECT_NO_THROW(CheckCheckpoint({.file = file}));
-    EXPECT_FALSE(ResumeIfThere(file, 1).resume);
-    directory.Write("c.h5", "x");
-    EXPECT_THROW(CheckCheckpoint({.file = file}), Error);
-    EXPECT_NO_THROW(CheckCheckpoint({.file = file, .resume = true}));
-    EXPECT_TRUE(ResumeIfThere(file, 1).resume);
-}
-
 // Learning ends early, and the files of the image take a part of the time.
 TEST(Session, HeedsTheClock) {
     const auto scene = MakeBox();
