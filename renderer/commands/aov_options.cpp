@@ -1,8 +1,12 @@
 #include "renderer/commands/aov_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "renderer/base/error.h"
+#include "renderer/base/memory.h"
+#include "renderer/render/session.h"
 
 namespace lull {
 
@@ -24,6 +28,12 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Of what is seen in mirrors and through glass, instead of these")
         ->needs(aov);
+}
+
+void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
+    CheckMemory(region.Area() * BytesOfLayers(wanted, features),
+                fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
+                "render it in parts with --crop, or smaller with --resolution");
 }
 
 }  // namespace lull

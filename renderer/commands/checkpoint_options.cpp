@@ -1,20 +1,74 @@
 #include "renderer/commands/checkpoint_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "renderer/base/error.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
+
+namespace {
+
+// Returns a word as one has to type it.
+std::string ForShell(const std::string& word) {
+    const auto isPlain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=./:,@%", c);
+    };
+    if (!word.empty() && std::ranges::all_of(word, isPlain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+}  // namespace
+
+CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options) {
+    return app
+        .add_option("--checkpoint-interval", options->interval, "Seconds between checkpoints")
+        ->check(CLI::Range(0.1, 1e6))
+        ->type_name("S")
+        ->capture_default_str();
+}
 
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options) {
     auto* file = app.add_option("--checkpoint", options->file,
                                 "Keep what is needed to go on after an interruption")
                      ->type_name("F.h5");
-    app.add_option("--checkpoint-interval", options->interval, "Seconds between checkpoints")
-        ->check(CLI::Range(0.1, 1e6))
-        ->type_name("S")
-        ->needs(file)
-        ->capture_default_str();
+    AddCheckpointInterval(app, options)->needs(file);
     app.add_flag("--resume", options->resume, "Go on from the checkpoint, if it is there")
         ->needs(file);
+}
+
+CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
+    return {.file = file,
+            .interval = interval,
+            .resume = std::filesystem::exists(file),
+            .isImplied = true};
+}
+
+void CheckCheckpoint(const CheckpointOptions& options) {
+    if (options.file.empty()) return;
+    CheckWritable(options.file);
+    if (!options.resume && std::filesystem::exists(options.file))
+        throw Error(options.file +
+                    ": is there already; give --resume to go on from it, or remove it");
+}
+
+std::string HowToGoOn(const CheckpointOptions& checkpoint) {
+    if (checkpoint.file.empty()) return "with --checkpoint F.h5 it could go on from here";
+    std::ifstream file("/proc/self/cmdline");
+    std::string command;
+    bool resumes = checkpoint.isImplied;
+    for (std::string word; std::getline(file, word, '\0');) {
+        command += (command.empty() ? "" : " ") + ForShell(word);
+        resumes |= word == "--resume";
+    }
+    return "to go on: " + command + (resumes ? "" : " --resume");
 }
 
 }  // namespace lull

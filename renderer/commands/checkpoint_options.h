@@ -10,4 +10,17 @@ namespace lull {
 // Adds --checkpoint, --checkpoint-interval and --resume.
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);
 
+// Adds --checkpoint-interval alone, for commands that name the file themselves.
+CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options);
+
+// Returns the options of a render that goes on from the file without being told to.
+CheckpointOptions ResumeIfThere(const std::string& file, double interval);
+
+// Throws Error if the file could not be written, or if it is there and not to be resumed from, as
+// the render would replace it.
+void CheckCheckpoint(const CheckpointOptions&);
+
+// Says how a render goes on that has ended early: by which command, if it has a checkpoint.
+std::string HowToGoOn(const CheckpointOptions&);
+
 }  // namespace lull

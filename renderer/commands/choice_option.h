@@ -2,8 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "renderer/base/enum_names.h"
 
 namespace lull {
 
@@ -13,22 +16,41 @@ CLI::Validator OneOf(const Choices& choices) {
     return CLI::IsMember(choices).description("");
 }
 
-// Adds an option that sets *value, which must outlive the parsing, to what `choices` has for the
-// name that is given. What *value is before is the default that the help shows, and one of them;
-// `names` are the choices in the order in which people read them, "off|auto|on".
+// Returns the names of an enum's values, and the same as the help shows them, "off|auto|on".
 template <typename T>
-CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
-                             const std::map<std::string, T>& choices, const std::string& names,
+std::vector<std::string> ChoicesOf() {
+    std::vector<std::string> names;
+    for (const auto& [value, name] : EnumNames<T>::all) names.push_back(name);
+    return names;
+}
+template <typename T>
+std::string ChoiceText() {
+    std::string text;
+    for (const std::string& name : ChoicesOf<T>()) text += (text.empty() ? "" : "|") + name;
+    return text;
+}
+
+// Adds an option that sets *value, which must outlive the parsing, to the value of an enum that is
+// named (EnumNames). What *value is before is the default that the help shows; a value that may be
+// missing shows none.
+template <typename T>
+CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, std::optional<T>* value,
                              const std::string& help) {
-    std::string original;
-    for (const auto& [name, choice] : choices)
-        if (choice == *value) original = name;
     return app
         .add_option_function<std::string>(
-            option, [=](const std::string& name) { *value = choices.at(name); }, help)
-        ->check(OneOf(choices))
-        ->type_name(names)
-        ->default_str(original);
+            option, [value](const std::string& name) { *value = ValueNamed<T>(name); }, help)
+        ->check(OneOf(ChoicesOf<T>()))
+        ->type_name(ChoiceText<T>());
+}
+template <typename T>
+CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
+                             const std::string& help) {
+    return app
+        .add_option_function<std::string>(
+            option, [value](const std::string& name) { *value = *ValueNamed<T>(name); }, help)
+        ->check(OneOf(ChoicesOf<T>()))
+        ->type_name(ChoiceText<T>())
+        ->default_str(NameOf(*value));
 }
 
 }  // namespace lull

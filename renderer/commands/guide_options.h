@@ -10,4 +10,7 @@ namespace lull {
 // Adds --guide and --guide-memory.
 void AddGuideOptions(CLI::App& app, GuideOptions* options);
 
+// Throws Error where the scene cannot be guided but `--guide on` asks for it.
+void CheckGuide(const GuideOptions&, const Scene&, Estimator);
+
 }  // namespace lull

@@ -11,10 +11,15 @@
 
 namespace lull {
 
+template <>
+struct EnumNames<ToneMap> {
+    static constexpr std::pair<ToneMap, const char*> all[] = {{ToneMap::None, "none"},
+                                                              {ToneMap::Filmic, "filmic"}};
+};
+
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
-    AddChoiceOption<ToneMap>(
+    AddChoiceOption(
         app, "--tone-map", &options->format.toneMap,
-        {{"none", ToneMap::None}, {"filmic", ToneMap::Filmic}}, "none|filmic",
         "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
         "rules judge the picture without it");
     app.add_option("--png-bits", options->format.pngBits, "Bits of each colour of the PNG")

@@ -15,9 +15,8 @@
 namespace lull {
 
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
-    AddChoiceOption<Estimator>(
+    AddChoiceOption(
         app, "--estimator", estimator,
-        {{"combined", Estimator::Combined}, {"pbrt-v3", Estimator::PbrtV3}}, "combined|pbrt-v3",
         "combined: least noise for its time; pbrt-v3: the same noise as pbrt-v3's path");
 }
 
@@ -45,14 +44,9 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         ->type_name("N")
         ->capture_default_str();
 
-    const std::map<std::string, SamplerKind> samplers = {{"random", SamplerKind::Random},
-                                                         {"sobol", SamplerKind::Sobol}};
     if (withSampler)
-        app.add_option_function<std::string>(
-               "--sampler", [s, samplers](const std::string& n) { s->sampler = samplers.at(n); },
-               "Where sample positions come from [as the scene says]")
-            ->check(OneOf(samplers))
-            ->type_name("random|sobol");
+        AddChoiceOption(app, "--sampler", &s->sampler,
+                        "Where sample positions come from [as the scene says]");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Another seed gives other, equally good, samples")
         ->check(CLI::NonNegativeNumber)

@@ -10,6 +10,7 @@
 #include "renderer/commands/choice_option.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
+#include "renderer/render/provenance.h"
 
 namespace lull {
 
@@ -107,10 +108,8 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     app.add_flag("--substitute", options->compile.substitute,
                  "Replace materials, textures and shapes that are not modelled, with a warning,\n"
                  "instead of refusing the scene");
-    AddChoiceOption<TextureFiltering>(
+    AddChoiceOption(
         app, "--filtering", &options->compile.filtering,
-        {{"bilinear", TextureFiltering::Bilinear}, {"pbrt-v3", TextureFiltering::PbrtV3}},
-        "bilinear|pbrt-v3",
         "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
         "sees them: trilinear or EWA, from smaller copies, which need memory");
     app.add_option("--exposure", options->exposure,

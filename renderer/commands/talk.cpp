@@ -3,13 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "renderer/base/error.h"
@@ -17,21 +14,6 @@
 #include "renderer/files/file_io.h"
 
 namespace lull {
-
-namespace {
-
-// Returns a word as one has to type it.
-std::string ForShell(const std::string& word) {
-    const auto isPlain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=./:,@%", c);
-    };
-    if (!word.empty() && std::ranges::all_of(word, isPlain)) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
-}  // namespace
 
 void PrepareStreams() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
@@ -47,18 +29,6 @@ bool HasLostResults() { return std::ferror(stdout) != 0; }
 void FinishResults() {
     if (std::fflush(stdout) == 0 && !HasLostResults()) return;
     throw Error(std::string("cannot write the results to stdout: ") + std::strerror(errno));
-}
-
-std::string HowToGoOn(const std::string& checkpoint) {
-    if (checkpoint.empty()) return "with --checkpoint F.h5 it could go on from here";
-    std::ifstream file("/proc/self/cmdline");
-    std::string command;
-    bool resumes = false;
-    for (std::string word; std::getline(file, word, '\0');) {
-        command += (command.empty() ? "" : " ") + ForShell(word);
-        resumes |= word == "--resume";
-    }
-    return "to go on: " + command + (resumes ? "" : " --resume");
 }
 
 std::string JsonEvent(const std::string& event, const std::string& text, const std::string& key) {

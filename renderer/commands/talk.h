@@ -20,9 +20,6 @@ bool HasLostResults();
 // Prints a message as a line of its own on stderr, after the program's name.
 void PrintTalk(const std::string& message);
 
-// Says how a render goes on that has ended early: the command, if it has a checkpoint.
-std::string HowToGoOn(const std::string& checkpoint);
-
 // Says on stderr what there is to say beside the results: as text or, for programs, as JSON
 // objects, one a line, of which each has an "event".
 struct Talk {

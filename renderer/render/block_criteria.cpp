@@ -29,20 +29,19 @@ double NoiseOf(const BlockView& view) {
     return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
 }
 
-std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderOptions& options,
-                                                     const PixelRect& region,
-                                                     std::span<const Block> blocks,
-                                                     const RenderState* interrupted) {
+std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderContext& context,
+                                                     const RenderOptions& options,
+                                                     std::span<const Block> blocks) {
     std::vector<std::unique_ptr<Criterion>> made(blocks.size());
     const bool follows = options.peers && options.peers->Rank() > 0;
     if (!options.makeCriterion || follows) return made;
-    const double imageArea = double(region.Area());
+    const double imageArea = double(context.film->Region().Area());
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (!blocks[i].votes) continue;
         made[i] = options.makeCriterion(
             {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
-        if (interrupted && !interrupted->criteria.empty() && blocks[i].spp > 0)
-            made[i]->Restore(interrupted->criteria[i]);
+        if (context.interrupted && !context.interrupted->criteria.empty() && blocks[i].spp > 0)
+            made[i]->Restore(context.interrupted->criteria[i]);
     }
     return made;
 }
@@ -57,16 +56,17 @@ int MostSamples(const PixelRect& rect, const Film& film) {
     return int(most);
 }
 
-std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions& options,
-                                 const Film& film) {
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext& context,
+                                 const RenderOptions& options) {
+    const Film& film = *context.film;
     std::vector<BlockStart> starts;
     for (const BlockResult& b : blocks) {
         const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
         BlockStart start{
             .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
-        if (options.secondsLeft && !b.block.stopped)
+        if (context.secondsLeft && !b.block.stopped)
             start.passEnd = EndOfPassBegun(b.block, options.schedule, film);
-        if (options.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {
+        if (context.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {
             FilmView view;
             film.Extract(rect, true, &view);
             start.noise = NoiseOf({view.width, view.height, spp, view.mean, view.halfMean});
@@ -76,19 +76,17 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const Rend
     return starts;
 }
 
-std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOptions& options,
-                                 const Film& film) {
-    if (!interrupted) return {};
-    return StartsOf(interrupted->blocks, options, film);
+std::vector<BlockStart> StartsOf(const RenderContext& context, const RenderOptions& options) {
+    if (!context.interrupted) return {};
+    return StartsOf(context.interrupted->blocks, context, options);
 }
 
-BlockCriteria::BlockCriteria(const RenderOptions& options, const Film& film,
-                             std::span<const Block> blocks, const RenderState* interrupted)
-    : film(film),
-      learner(options.learner),
+BlockCriteria::BlockCriteria(const RenderContext& context, const RenderOptions& options,
+                             std::span<const Block> blocks)
+    : context(context),
       schedule(options.schedule),
-      hasClock(options.secondsLeft),
-      criteria(MakeCriteria(options, film.Region(), blocks, interrupted)) {}
+      hasClock(context.secondsLeft),
+      criteria(MakeCriteria(context, options, blocks)) {}
 
 ViewNeed BlockCriteria::NeedAt(int block, int spp) const {
     if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
@@ -105,7 +103,7 @@ BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double s
     BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
     view.spp = spp;
     view.seconds = seconds;
-    if (learner) view.variance = learner->Variance(film, block.pixels);
+    if (context.learner) view.variance = context.learner->Variance(*context.film, block.pixels);
     BlockCheck check;
     check.variance = view.variance;
     if (criterion) {
@@ -126,7 +124,7 @@ BlockView BlockCriteria::ViewOf(int index, const Block& block, ViewNeed need,
     if (need == ViewNeed::Nothing) return blockView;
     const double start = ThreadSeconds();
     FilmView& view = views.local();
-    film.Extract(block.pixels, need >= ViewNeed::MeanAndHalf, &view);
+    context.film->Extract(block.pixels, need >= ViewNeed::MeanAndHalf, &view);
     if (complete) complete(index, &view);
     blockView.mean = view.mean;
     blockView.halfMean = view.halfMean;

@@ -20,10 +20,9 @@ struct BlockCheck {
 // checked at the same time without locks.
 class BlockCriteria {
   public:
-    // Makes the criteria of the blocks that vote, as an interrupted render has left them. Film and
-    // options must outlive it.
-    BlockCriteria(const RenderOptions&, const Film&, std::span<const Block> blocks,
-                  const RenderState* interrupted);
+    // Makes the criteria of the blocks that vote, as an interrupted render has left them. The
+    // context must outlive it.
+    BlockCriteria(const RenderContext&, const RenderOptions&, std::span<const Block> blocks);
 
     // Returns what criterion and clock have to see of a block.
     ViewNeed NeedAt(int block, int spp) const;
@@ -38,8 +37,7 @@ class BlockCriteria {
     BlockView ViewOf(int index, const Block&, ViewNeed,
                      const std::function<void(int block, FilmView*)>& complete);
 
-    const Film& film;
-    const GuideLearner* learner;  // null: paths are not guided
+    const RenderContext& context;
     const ScheduleOptions schedule;
     const bool hasClock;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
@@ -49,10 +47,10 @@ class BlockCriteria {
 // Returns the most samples that a pixel has.
 int MostSamples(const PixelRect&, const Film&);
 
-// Says where blocks are that an interrupted render has left, null if there is none; with a clock,
-// also how noisy.
-std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions&,
-                                 const Film&);
-std::vector<BlockStart> StartsOf(const RenderState* interrupted, const RenderOptions&, const Film&);
+// Return where blocks are, those given or those that an interrupted render has left, none if there
+// is none; with a clock, also how noisy.
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext&,
+                                 const RenderOptions&);
+std::vector<BlockStart> StartsOf(const RenderContext&, const RenderOptions&);
 
 }  // namespace lull

@@ -91,7 +91,7 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film, const
     if (film->HasHalf() && !group.HasArray("half_sums"))
         throw Error(
             "it was written without the sums of the half of the samples, which are needed here; "
-            "begin anew, with --half-buffer on");
+            "begin anew");
     ForEachPlane(*film, layers, rect, [&](const char* name, auto& plane, const PixelRect& part) {
         const auto bytes = group.Array<std::byte>(name, std::array{plane.Bytes(part)});
         StateReader reader(bytes);
@@ -171,36 +171,6 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
 }
 
 }  // namespace
-
-RenderIdentity IdentityOf(const Provenance& p, const std::string& sceneHash) {
-    const PixelRect& crop = p.crop;
-    RenderIdentity identity{
-        {"version", p.version},
-        {"scene", sceneHash},
-        {"resolution", fmt::format("{}x{}", p.resolution.x(), p.resolution.y())},
-        {"crop",
-         fmt::format("{},{},{},{}", crop.min.x(), crop.max.x(), crop.min.y(), crop.max.y())},
-        {"sampler", NameOf(p.sampler)},
-        {"estimator", NameOf(p.estimator)},
-        {"seed", fmt::to_string(p.seed)},
-        {"maxdepth", fmt::to_string(p.maxDepth)},
-        {"substitute", p.substitute ? "yes" : "no"},
-        {"stop", p.criterion},
-        {"model", p.checksum.empty() ? "none" : p.checksum},
-        {"block", fmt::to_string(p.schedule.blockSize)},
-        {"pass", fmt::to_string(p.schedule.passLength)},
-        {"cap", fmt::to_string(p.schedule.cap)}};
-    if (p.filtering != TextureFiltering::Bilinear) identity["filtering"] = NameOf(p.filtering);
-    if (p.guide != GuideMode::Off)
-        identity["guide"] = fmt::format("{} of {} MB", NameOf(p.guide), p.guideMegabytes);
-    return identity;
-}
-
-std::string TextOf(const RenderIdentity& identity) {
-    std::string text;
-    for (const std::string& line : Lines(identity)) text += line + "\n";
-    return text;
-}
 
 void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
                      const RenderState& state, const Film& film, const Layers& layers,

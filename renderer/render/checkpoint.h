@@ -1,24 +1,13 @@
 // Keeps interrupted renders: a file with everything that is needed to go on to the same bits.
 #pragma once
 
-#include <map>
+#include <span>
 #include <string>
 
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 
 namespace lull {
-
-// Names everything that decides the pixels and what the criteria see, beside the samples
-// themselves: scene, seed, rule, ... A render goes on only if all of it is the same.
-using RenderIdentity = std::map<std::string, std::string>;
-
-// Returns what decides the pixels: everything in `provenance` but names of files and the threads,
-// and the hash of the scene (SceneHash()).
-RenderIdentity IdentityOf(const Provenance& provenance, const std::string& sceneHash);
-
-// Returns the same as a text, a line each.
-std::string TextOf(const RenderIdentity&);
 
 // Writes film, layers and state to an HDF5 file, whole or not at all, and what was learned, if
 // anything (GuideLearner::Save()). Throws Error.

@@ -53,16 +53,14 @@ bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptio
            (state.criteria.empty() || state.criteria.size() == count);
 }
 
-Executor::Executor(const SampleSource& source, const RenderOptions& options, Film* film,
-                   const RenderState* interrupted, std::span<const BlockStart> starts,
-                   TileShare share, RankHooks given)
-    : schedule(options, film, starts, std::move(share)),
-      ledger(options, interrupted, schedule.Unlocked().Blocks().size(), film->SampleCount()),
-      criteria(options, *film, schedule.Unlocked().Blocks(), interrupted),
+Executor::Executor(const RenderContext& context, const RenderOptions& options,
+                   std::span<const BlockStart> starts, TileShare share, RankHooks given)
+    : schedule(context, options, starts, std::move(share)),
+      ledger(context, options, schedule.Unlocked().Blocks().size()),
+      criteria(context, options, schedule.Unlocked().Blocks()),
       tasks([this] { RunTile(); }, given.onException),
-      source(source),
+      context(context),
       options(options),
-      film(film),
       hooks(std::move(given)) {}
 
 RenderResult Executor::Run() {
@@ -82,19 +80,20 @@ RenderResult Executor::Run() {
 }
 
 void Executor::RestartIntervals() {
-    nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
-    nextPreview = ledger.Seconds() + options.previewInterval;
+    nextCheckpoint = ledger.Seconds() + context.checkpoints.interval;
+    nextPreview = ledger.Seconds() + options.events.previewInterval;
 }
 
 bool Executor::IsPauseDue() const {
-    return (options.onCheckpoint && ledger.Seconds() >= nextCheckpoint) ||
-           (options.onPreview && ledger.Seconds() >= nextPreview);
+    return (context.checkpoints.write && ledger.Seconds() >= nextCheckpoint) ||
+           (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
 bool Executor::EndRound() {
-    if (!options.learner || IsCancelled() || !schedule.IsRoundOver()) return false;
-    options.learner->EndRound(*film);
-    schedule.BeginRound(options.learner->RoundEnd());
+    GuideLearner* learner = context.learner;
+    if (!learner || IsCancelled() || !schedule.IsRoundOver()) return false;
+    learner->EndRound(*context.film);
+    schedule.BeginRound(learner->RoundEnd());
     return true;
 }
 
@@ -109,7 +108,7 @@ void Executor::RunTile() {
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();
     const int64_t taken = TakeSamples(*tile);
-    if (options.display) options.display->Show(tile->pixels, *film);
+    if (options.display) options.display->Show(tile->pixels, *context.film);
     ledger.AddTile(tile->block, ThreadSeconds() - tileStart, {taken, ledger.Seconds() - wallStart});
     if (schedule.Finish(*tile)) {
         if (hooks.onPassEnd)
@@ -123,19 +122,20 @@ void Executor::RunTile() {
 
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
+    Film* film = context.film;
     SampleSpread* spread =
-        options.learner ? options.learner->SpreadOf(*film, tile.pixels) : nullptr;
-    if (!options.layers) {
+        context.learner ? context.learner->SpreadOf(*film, tile.pixels) : nullptr;
+    if (!context.layers) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-            return source(s, pixel, index, nullptr);
+            return context.source(s, pixel, index, nullptr);
         };
         return RenderTile(alone, tile, sampler, film, spread);
     }
-    const auto withLayers = [&, asks = options.layers.NeedFirstHits()](
+    const auto withLayers = [&, asks = context.layers.NeedFirstHits()](
                                 Sampler& s, const Vec2i& pixel, uint32_t index) {
         FirstHit firstHit;
-        const PathSample sample = source(s, pixel, index, asks ? &firstHit : nullptr);
-        options.layers.Add(pixel, index, firstHit, sample.radiance);
+        const PathSample sample = context.source(s, pixel, index, asks ? &firstHit : nullptr);
+        context.layers.Add(pixel, index, firstHit, sample.radiance);
         return sample;
     };
     return RenderTile(withLayers, tile, sampler, film, spread);
@@ -157,21 +157,22 @@ int Executor::DecideBlock(int i) {
 
 std::vector<int> Executor::Undo() {
     std::vector<int> blocks = schedule.Undo();
-    ledger.SetSamples(film->SampleCount());
+    ledger.SetSamples(context.film->SampleCount());
     return blocks;
 }
 
 void Executor::WriteCheckpoint() {
-    if (options.onCheckpoint && !(schedule.Unlocked().Done() && !options.checkpointAtEnd))
-        options.onCheckpoint(
-            {ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()});
-    nextCheckpoint = ledger.Seconds() + options.checkpointInterval;
+    const Checkpointing& checkpoints = context.checkpoints;
+    if (checkpoints.write && !(schedule.Unlocked().Done() && !checkpoints.atEnd))
+        checkpoints.write({ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()});
+    nextCheckpoint = ledger.Seconds() + checkpoints.interval;
 }
 
 void Executor::ShowPreview() {
-    if (!options.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done()) return;
-    options.onPreview(Result());
-    nextPreview = ledger.Seconds() + options.previewInterval;
+    if (!options.events.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done())
+        return;
+    options.events.onPreview(Result());
+    nextPreview = ledger.Seconds() + options.events.previewInterval;
 }
 
 RenderResult Executor::Result() {

@@ -23,8 +23,9 @@ struct RankHooks {
 class Executor {
   public:
     // `starts` is where blocks are, which an interrupted render has left or another rank has said.
-    Executor(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-             std::span<const BlockStart> starts, TileShare = {}, RankHooks = {});
+    // Context and options must outlive it.
+    Executor(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
+             TileShare = {}, RankHooks = {});
 
     // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();
@@ -45,8 +46,8 @@ class Executor {
 
     // Says whether it is time for a pause, to write a checkpoint or to show a preview.
     bool IsPauseDue() const;
-    // With no task at work: show options.onCheckpoint the state, and options.onPreview how far it
-    // is, if it is time; and return the result.
+    // With no task at work: write the state, show how far it is, if it is time; and return the
+    // result.
     void WriteCheckpoint();
     void ShowPreview();
     RenderResult Result();
@@ -65,9 +66,8 @@ class Executor {
     void RunTile();
     int64_t TakeSamples(const Tile&);
 
-    const SampleSource& source;
+    const RenderContext& context;
     const RenderOptions& options;
-    Film* film;
     const RankHooks hooks;
 };
 

@@ -1,12 +1,9 @@
-// Shows the denoiser what a film has of a picture, and files what it needs to go on elsewhere.
+// Shows the denoiser what a film has of a picture.
 #pragma once
-
-#include <string>
 
 #include "renderer/denoise/denoise.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/film/film.h"
-#include "renderer/image/image_io.h"
 
 namespace lull {
 
@@ -23,19 +20,9 @@ NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
 NoisyPicture FeaturesOf(const Film&, const FeatureFilm&, const PixelRect&);
 Halves ColoursOf(const Film&, const PixelRect&);
 
-// Returns the channels of an EXR from which ReadPicture() makes the same picture: halfA.R .G .B,
-// halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), the same with halfB,
-// and variance.Y.
-std::vector<ExrChannel> MakeHalfChannels(const Film&, const FeatureFilm&, const PixelRect&);
-
-// Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is
-// missing.
-NoisyPicture ReadPicture(const ExrImage&, const std::string& name);
-
-// Makes a picture of two EXRs that hold different samples of the same, for instance renders with
-// other seeds: R, G, B and, where both have them, albedo.R .G .B, N.X .Y .Z and Z. Throws Error if
-// their sizes differ or R, G, B are missing.
-NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const ExrImage& b,
-                         const std::string& nameOfB);
+// Return the features of both halves of the samples, not filtered, and the variance of the mean
+// luminance.
+Halves FeatureHalvesOf(const Film&, const FeatureFilm&, const PixelRect&);
+Planes VarianceOf(const Film&, const FeatureFilm&, const PixelRect&);
 
 }  // namespace lull

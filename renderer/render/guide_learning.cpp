@@ -59,23 +59,12 @@ class Stopwatch {
 
 }  // namespace
 
-std::string NameOf(GuideMode mode) {
-    return mode == GuideMode::Off ? "off" : mode == GuideMode::Auto ? "auto" : "on";
-}
-
 std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator) {
     if (estimator != Estimator::Combined) return "the estimator is pbrt-v3's";
     if (!CanBeGuided(scene.integrator)) return "the integrator takes no guide";
     if (MaxDepth(scene.integrator) < 2) return "paths have one bounce at most";
     if (scene.lights.Count() == 0) return "the scene has no light";
     return {};
-}
-
-void CheckGuide(const GuideOptions& options, const Scene& scene, Estimator estimator) {
-    if (options.mode != GuideMode::On) return;
-    if (const auto why = WhyNotGuided(scene, estimator))
-        throw Error(fmt::format(
-            "--guide on: {}, and paths are not guided there; give --guide auto or off", *why));
 }
 
 std::string TextOf(const GuideFigures& f, GuideMode mode) {

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/guiding/guide_refine.h"
 #include "renderer/render/guide_tally.h"
 #include "renderer/render/schedule.h"
@@ -27,7 +28,11 @@ namespace lull {
 // Whether paths are guided: never; where that was seen to pay; always.
 enum class GuideMode { Off, Auto, On };
 
-std::string NameOf(GuideMode);
+template <>
+struct EnumNames<GuideMode> {
+    static constexpr std::pair<GuideMode, const char*> all[] = {
+        {GuideMode::Off, "off"}, {GuideMode::Auto, "auto"}, {GuideMode::On, "on"}};
+};
 
 // Says what was learned and decided, for reports.
 struct GuideFigures {
@@ -74,9 +79,6 @@ struct Learning {
 
 // Says whether paths of the scene can be guided; if not, why.
 std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
-
-// Throws Error where the scene cannot be guided but `--guide on` asks for it.
-void CheckGuide(const GuideOptions&, const Scene&, Estimator);
 
 // Says what came of learning, in a line.
 std::string TextOf(const GuideFigures&, GuideMode);

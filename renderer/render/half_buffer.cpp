@@ -1,7 +1,5 @@
 #include "renderer/render/half_buffer.h"
 
-#include "renderer/base/error.h"
-
 namespace lull {
 
 bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
@@ -11,18 +9,6 @@ bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
         if (criterion->Need(spp) >= ViewNeed::MeanAndHalf) return true;
     }
     return false;
-}
-
-bool KeepsHalf(HalfBuffer choice, const HalfUse& use) {
-    const std::string user = !use.rule.empty() ? "the rule " + use.rule
-                             : use.clock       ? "a clock"
-                             : use.page        ? "a page with curves"
-                             : use.denoiser    ? "a denoiser"
-                                               : "";
-    if (choice == HalfBuffer::Off && !user.empty())
-        throw Error("--half-buffer off: " + user + " needs the mean of half of the samples");
-    if (choice == HalfBuffer::Auto) return !user.empty() || use.checkpoint;
-    return choice == HalfBuffer::On;
 }
 
 }  // namespace lull

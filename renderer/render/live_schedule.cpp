@@ -8,41 +8,41 @@ namespace lull {
 
 namespace {
 
-ScheduleOptions ScheduleFor(const RenderOptions& options) {
+ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
-    schedule.worstFirst = bool(options.secondsLeft);
-    schedule.inSteps |= options.display || options.onPreview;
-    if (options.learner) schedule.roundEnd = options.learner->RoundEnd();
+    schedule.worstFirst = bool(context.secondsLeft);
+    schedule.inSteps |= options.display || options.events.onPreview;
+    if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
     return schedule;
 }
 
 }  // namespace
 
-LiveSchedule::LiveSchedule(const RenderOptions& options, Film* film,
+LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
                            std::span<const BlockStart> starts, TileShare given)
-    : options(options),
-      film(film),
+    : context(context),
+      options(options),
       share(std::move(given)),
-      hasClock(options.secondsLeft),
-      schedule(film->Region(), ScheduleFor(options), starts, share) {
+      hasClock(context.secondsLeft),
+      schedule(context.film->Region(), ScheduleFor(context, options), starts, share) {
     ShowStops();
 }
 
 void LiveSchedule::Restart(std::span<const BlockStart> starts, TileShare given) {
     std::lock_guard lock(mutex);
     share = std::move(given);
-    schedule = Schedule(film->Region(), ScheduleFor(options), starts, share);
+    schedule = Schedule(context.film->Region(), ScheduleFor(context, options), starts, share);
     if (timeCalled) schedule.CallTime();
     undo = {};
 }
 
 // Of several ranks, the first has the clock, and looks at it by itself.
 std::optional<Tile> LiveSchedule::Next() {
-    if (hasClock && !options.peers && !(options.secondsLeft() > 0)) CallTime();
+    if (hasClock && !options.peers && !(context.secondsLeft() > 0)) CallTime();
     std::lock_guard lock(mutex);
     const std::optional<Tile> tile = schedule.Next();
     if (tile && hasClock && !undo.Has(tile->block))
-        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *film, options.layers);
+        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film, context.layers);
     return tile;
 }
 
@@ -86,7 +86,7 @@ void LiveSchedule::BeginRound(int end) {
     schedule.BeginRound(end);
 }
 
-std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(film, options.layers); }
+std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film, context.layers); }
 
 std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
     return TilesOf(BlockAt(block).pixels, block, options.schedule.tileSize, {rank, share.deal});
@@ -98,7 +98,7 @@ void LiveSchedule::ShowStops() {
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (!blocks[i].stopped || std::exchange(shownStops[i], true)) continue;
         if (options.display) options.display->ShowStop(blocks[i].pixels);
-        if (options.onStop) options.onStop(int(i), blocks[i]);
+        if (options.events.onStop) options.events.onStop(int(i), blocks[i]);
     }
 }
 

@@ -18,8 +18,10 @@ struct BlockAnswer {
 // Costs a lock a call, a few for each tile.
 class LiveSchedule {
   public:
-    // Begins where blocks are, `starts`; empty: from nothing. The options must outlive it.
-    LiveSchedule(const RenderOptions&, Film*, std::span<const BlockStart> starts, TileShare);
+    // Begins where blocks are, `starts`; empty: from nothing. Context and options
+    // must outlive it.
+    LiveSchedule(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
+                 TileShare);
 
     // Gives out a tile; nothing if none is ready, or if the time is up. There are never more tasks
     // than tiles, but when time has been called.
@@ -64,8 +66,8 @@ class LiveSchedule {
   private:
     void ShowStops();
 
+    const RenderContext& context;
     const RenderOptions& options;
-    Film* film;
     TileShare share;
     const bool hasClock;
 

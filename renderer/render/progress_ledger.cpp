@@ -11,7 +11,7 @@ namespace {
 // Follows the decisions so far. Of several ranks, none knows what all blocks have cost.
 std::vector<StopTrend> MakeTrends(const RenderOptions& options,
                                   const std::vector<BlockResult>& results) {
-    if (!options.trend || !options.onProgress || options.peers) return {};
+    if (!options.trend || !options.events.onProgress || options.peers) return {};
     std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
     for (size_t i = 0; i < results.size(); ++i)
         for (const DecisionRecord& record : results[i].decisions)
@@ -21,13 +21,14 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
 
 }  // namespace
 
-ProgressLedger::ProgressLedger(const RenderOptions& options, const RenderState* interrupted,
-                               size_t blocks, int64_t samples)
-    : options(options),
-      secondsBefore(interrupted ? interrupted->seconds : 0),
-      results(interrupted ? interrupted->blocks : std::vector<BlockResult>(blocks)),
+ProgressLedger::ProgressLedger(const RenderContext& context, const RenderOptions& options,
+                               size_t blocks)
+    : context(context),
+      options(options),
+      secondsBefore(context.interrupted ? context.interrupted->seconds : 0),
+      results(context.interrupted ? context.interrupted->blocks : std::vector<BlockResult>(blocks)),
       trends(MakeTrends(options, results)),
-      samples(samples) {}
+      samples(context.film->SampleCount()) {}
 
 double ProgressLedger::Seconds() const { return secondsBefore + SecondsSince(start); }
 
@@ -93,16 +94,16 @@ RenderResult ProgressLedger::Result(const Schedule& schedule) {
     RenderResult result;
     result.blocks = Blocks(schedule);
     result.progress = Progress(schedule);
-    if (options.onProgress) options.onProgress(result.progress);
+    if (options.events.onProgress) options.events.onProgress(result.progress);
     return result;
 }
 
 void ProgressLedger::Report(LiveSchedule* schedule) {
-    if (!options.onProgress) return;
+    if (!options.events.onProgress) return;
     std::unique_lock reporting(reportMutex, std::try_to_lock);
     if (!reporting || Seconds() < nextReport) return;
-    nextReport = Seconds() + options.progressInterval;
-    options.onProgress(schedule->Locked([&](const Schedule& s) { return Progress(s); }));
+    nextReport = Seconds() + options.events.progressInterval;
+    options.events.onProgress(schedule->Locked([&](const Schedule& s) { return Progress(s); }));
 }
 
 RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
@@ -114,7 +115,7 @@ RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
                             .samples = samples,
                             .samplesToCap = schedule.SamplesToCap(),
                             .seconds = Seconds()};
-    if (options.secondsLeft) progress.secondsLeft = options.secondsLeft();
+    if (context.secondsLeft) progress.secondsLeft = context.secondsLeft();
     if (!trends.empty()) Predict(schedule, &progress);
     return progress;
 }

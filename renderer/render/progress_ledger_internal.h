@@ -18,9 +18,9 @@ struct TileEffort {
 // Costs a lock a tile.
 class ProgressLedger {
   public:
-    // Goes on with the books of an interrupted render. The options must outlive it.
-    ProgressLedger(const RenderOptions&, const RenderState* interrupted, size_t blocks,
-                   int64_t samples);
+    // Goes on with the books of an interrupted render, with the samples that the film has. Context
+    // and options must outlive it.
+    ProgressLedger(const RenderContext&, const RenderOptions&, size_t blocks);
 
     // Returns the seconds since the start, of the runs before this one as well.
     double Seconds() const;
@@ -41,7 +41,7 @@ class ProgressLedger {
     // With no task at work, sets the samples to those that the film has after all.
     void SetSamples(int64_t);
 
-    // Tells options.onProgress how far the render is, if that is due, from one thread at a time.
+    // Tells onProgress how far the render is, if that is due, from one thread at a time.
     void Report(LiveSchedule*);
     // With no task at work, return what there is of each block, and the result so far.
     const std::vector<BlockResult>& Blocks(const Schedule&);
@@ -53,6 +53,7 @@ class ProgressLedger {
     RenderProgress Progress(const Schedule&);
     void Predict(const Schedule&, RenderProgress*) const;
 
+    const RenderContext& context;
     const RenderOptions& options;
     const Clock::time_point start = Clock::now();
     const double secondsBefore;  // of the runs before this one

@@ -1,9 +1,13 @@
-// Says from what an image was made, for headers, reports and checkpoints.
+// From what an image was made, as checkpoints, headers and reports tell it.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
@@ -37,8 +41,45 @@ struct Provenance {
 // the file is called scene.pbrt. Not empty, without what the format has no room for.
 std::string SceneName(const std::string& file);
 
-std::string NameOf(SamplerKind);
-std::string NameOf(Estimator);
-std::string NameOf(TextureFiltering);
+// A part of the provenance, by its name in each of the places that tell it; null: not told there.
+struct NamedProvenance {
+    const char* identity;  // of checkpoints and ranks
+    const char* exr;       // an attribute of the header, a text
+    const char* json;      // a member of reports
+    std::variant<bool, int, uint64_t, std::string, Vec2i, PixelRect> value;
+};
+
+// Returns all parts, in the order of reports: the one list of what is told of an image beside its
+// results. Not in it: the hash of the scene, and of guides what came of them.
+std::vector<NamedProvenance> PartsOf(const Provenance&);
+
+// Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".
+std::string TextOf(const NamedProvenance&);
+
+// What decides the pixels and what the criteria see, beside the samples themselves: scene, seed,
+// rule, ... A render goes on only if all of it is the same.
+using RenderIdentity = std::map<std::string, std::string>;
+
+// Returns the parts that have a name there, and the hash of the scene (SceneHash()).
+RenderIdentity IdentityOf(const Provenance&, const std::string& sceneHash);
+
+// Returns the same as a text, a line each.
+std::string TextOf(const RenderIdentity&);
+
+template <>
+struct EnumNames<SamplerKind> {
+    static constexpr std::pair<SamplerKind, const char*> all[] = {{SamplerKind::Random, "random"},
+                                                                  {SamplerKind::Sobol, "sobol"}};
+};
+template <>
+struct EnumNames<Estimator> {
+    static constexpr std::pair<Estimator, const char*> all[] = {{Estimator::Combined, "combined"},
+                                                                {Estimator::PbrtV3, "pbrt-v3"}};
+};
+template <>
+struct EnumNames<TextureFiltering> {
+    static constexpr std::pair<TextureFiltering, const char*> all[] = {
+        {TextureFiltering::Bilinear, "bilinear"}, {TextureFiltering::PbrtV3, "pbrt-v3"}};
+};
 
 }  // namespace lull

@@ -15,35 +15,32 @@ namespace lull {
 namespace {
 
 // This thread speaks with the other ranks, so the arena has none of its places for it.
-RenderResult RenderWithPeers(const SampleSource& source, const RenderOptions& options, Film* film,
-                             const RenderState* interrupted, int threads) {
+RenderResult RenderWithPeers(const RenderContext& context, const RenderOptions& options,
+                             int threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads) + 1);
     tbb::task_arena arena(threads, 0);
-    RenderResult result = options.peers->Rank() == 0
-                              ? LeadRanks(source, options, film, interrupted, &arena)
-                              : FollowRanks(source, options, film, &arena);
+    RenderResult result = options.peers->Rank() == 0 ? LeadRanks(context, options, &arena)
+                                                     : FollowRanks(context, options, &arena);
     result.threads = threads * options.peers->Count();
     return result;
 }
 
 }  // namespace
 
-RenderResult Render(const SampleSource& source, const RenderOptions& options, Film* film,
-                    const RenderState* interrupted) {
-    if (interrupted && !Fits(*interrupted, film->Region(), options.schedule))
+RenderResult Render(const RenderContext& context, const RenderOptions& options) {
+    const PixelRect& region = context.film->Region();
+    if (context.interrupted && !Fits(*context.interrupted, region, options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = ThreadCount(options.threads);
-    if (!options.layers.AreOf(film->Region()))
+    if (!context.layers.AreOf(region))
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
-    if (!alone) return RenderWithPeers(source, options, film, interrupted, threads);
+    if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
-    RenderResult result = arena.execute([&] {
-        return Executor(source, options, film, interrupted, StartsOf(interrupted, options, *film))
-            .Run();
-    });
+    RenderResult result =
+        arena.execute([&] { return Executor(context, options, StartsOf(context, options)).Run(); });
     result.threads = threads;
     return result;
 }

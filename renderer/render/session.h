@@ -13,26 +13,19 @@ namespace lull {
 
 // Says where a render keeps what it takes to go on after an interruption.
 struct CheckpointOptions {
-    std::string file;      // empty: none
-    double interval = 60;  // seconds
-    bool resume = false;   // goes on from the file, if it is there
-    bool isKept = false;   // also when every block has stopped
+    std::string file;        // empty: none
+    double interval = 60;    // seconds
+    bool resume = false;     // goes on from the file, if it is there
+    bool isKept = false;     // also when every block has stopped
+    bool isImplied = false;  // named by the command, which resumes without being told to
     MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
-// Throws Error if the file could not be written, or if it is there and not to be resumed from, as
-// the render would replace it.
-void CheckCheckpoint(const CheckpointOptions&);
-
-// Returns the options of a render that goes on from the file without being told to.
-CheckpointOptions ResumeIfThere(const std::string& file, double interval);
-
-// Throws Error where the memory cannot hold such layers, or features.
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
+// Returns the bytes a pixel that such layers, and features, take beside the film, with what is made
+// of them in the end.
+int64_t BytesOfLayers(const AovSet& wanted, bool features);
 
 struct SessionOptions {
-    // The session itself sets `layers`, `learner`, `secondsLeft`, `onCheckpoint` and
-    // `checkpointInterval`.
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
@@ -48,18 +41,14 @@ struct SessionOptions {
     // Waits until all ranks are about to render the same, of which `what` is a text that says it
     // all. Can be empty.
     std::function<void(const std::string& what)> agree;
-    // Get lines on what was resumed, on learning, and on checkpoints that could not be written. Can
-    // be empty.
-    std::function<void(const std::string&)> onResume, onLearning, onWarning;
 };
 
 // As Render(), or what prepares it and calls it.
-using RenderFunction = std::function<RenderResult(const SampleSource&, const RenderOptions&, Film*,
-                                                  const RenderState* interrupted)>;
+using RenderFunction = std::function<RenderResult(const RenderContext&, const RenderOptions&)>;
 
 class Session {
   public:
-    // The scene must outlive it. Throws as CheckGuide().
+    // The scene must outlive it. Where it cannot be guided it is not, see Guidance().
     Session(const Scene&, const PixelRect& region, SessionOptions);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -83,14 +72,14 @@ class Session {
     // Returns what was learned so far, or why nothing is; nothing where no guide was asked for.
     GuideFigures Guidance() const;
     // Return what was rendered, and how.
-    const SampleSource& Source() const { return source; }
+    const RenderContext& Context() const { return context; }
     const RenderOptions& Options() const { return options.render; }
 
   private:
     void SetSource();
+    void SetClock();
     void KeepCheckpoints();
     std::string TryToWrite(const RenderState&, const std::string& said);
-    bool HasCheckpoint() const { return !options.checkpoint.file.empty(); }
 
     const Scene& scene;
     const PixelRect region;
@@ -101,7 +90,7 @@ class Session {
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
-    SampleSource source;
+    RenderContext context;
 };
 
 }  // namespace lull

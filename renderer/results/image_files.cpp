@@ -33,23 +33,13 @@ ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t s
         exr.channels.push_back({.name = name, .values = {}});
 
     // Counts go in as text, since an EXR's integers end at 2^31.
-    exr.attributes = {{"renderer", "lull"},
-                      {"version", provenance.version},
-                      {"seed", std::to_string(provenance.seed)},
-                      {"sampler", NameOf(provenance.sampler)},
-                      {"estimator", NameOf(provenance.estimator)},
-                      {"samples", std::to_string(samples)},
-                      {"criterion", provenance.criterion},
+    exr.attributes = {{"samples", std::to_string(samples)},
                       {"seconds", float(seconds)},
                       {"worldToCamera", WorldToCamera(scene.camera)}};
+    for (const NamedProvenance& part : PartsOf(provenance))
+        if (part.exr) exr.attributes[part.exr] = TextOf(part);
     if (const auto ndc = WorldToNdc(scene.camera, scene.film)) exr.attributes["worldToNDC"] = *ndc;
     if (scene.film.exposure != 0) exr.attributes["exposure"] = scene.film.exposure;
-    if (!provenance.checksum.empty()) exr.attributes["modelChecksum"] = provenance.checksum;
-    if (provenance.filtering != TextureFiltering::Bilinear)
-        exr.attributes["filtering"] = NameOf(provenance.filtering);
-    if (provenance.guide != GuideMode::Off)
-        exr.attributes["guide"] = fmt::format("{}: {}", NameOf(provenance.guide),
-                                              provenance.guideFigures.isUsed ? "used" : "not used");
     return exr;
 }
 
@@ -63,7 +53,6 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     exr.attributes["blocksAtCap"] = std::to_string(atCap);
     if (result.cancelled)
         exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
-    if (!provenance.clock.empty()) exr.attributes["clock"] = provenance.clock;
     if (result.timeUp)
         exr.attributes["note"] = fmt::format(
             "the time was up when {} of {} blocks had stopped and {} were at the cap: the samples "

@@ -113,24 +113,17 @@ Json RectJson(const PixelRect& r) {
 }
 
 Json ProvenanceJson(const Provenance& p) {
-    Json json = {{"renderer", "lull"},
-                 {"version", p.version},
-                 {"scene", p.scene},
-                 {"seed", p.seed},
-                 {"sampler", NameOf(p.sampler)},
-                 {"estimator", NameOf(p.estimator)},
-                 {"criterion", p.criterion},
-                 {"modelChecksum", p.checksum},
-                 {"cap", p.schedule.cap},
-                 {"pass", p.schedule.passLength},
-                 {"blockSize", p.schedule.blockSize},
-                 {"maxDepth", p.maxDepth},
-                 {"threads", p.threads},
-                 {"substitute", p.substitute},
-                 {"resolution", {p.resolution.x(), p.resolution.y()}},
-                 {"crop", RectJson(p.crop)}};
-    if (!p.clock.empty()) json["clock"] = p.clock;
-    if (p.filtering != TextureFiltering::Bilinear) json["filtering"] = NameOf(p.filtering);
+    struct Values {
+        template <typename T>
+        Json operator()(const T& value) const {
+            return value;
+        }
+        Json operator()(const Vec2i& v) const { return {v.x(), v.y()}; }
+        Json operator()(const PixelRect& r) const { return RectJson(r); }
+    };
+    Json json;
+    for (const NamedProvenance& part : PartsOf(p))
+        if (part.json) json[part.json] = std::visit(Values(), part.value);
     if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
     return json;
 }

@@ -28,7 +28,7 @@ void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, F
     options.sampler = SamplerKind::Random;
     options.makeCriterion = CriteriaOf(factory);
     Film film({{0, 0}, size}, {.grid = GridOf(options.schedule)});
-    const RenderResult result = Render(Noise, options, &film);
+    const RenderResult result = Render({.source = Noise, .film = &film}, options);
 
     const std::vector<float> counts = film.SppImage();
     std::vector<int> expected(counts.size(), 0), blocks(counts.size(), 0);

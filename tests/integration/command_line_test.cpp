@@ -214,30 +214,6 @@ TEST(CommandLine, StopsBlocksAsARuleSays) {
     EXPECT_EQ(exr.Find("spp")->values.back(), 60);
 }
 
-// Whoever needs the half of the samples says so, and nobody else pays for it.
-TEST(CommandLine, KeepsTheHalfWhereItIsNeeded) {
-    const SceneDirectory directory;
-    const std::string render = "render scene.pbrt --resolution 50x50 --cap 60 --quiet ";
-    const auto refuses = [&](const std::string& options, const std::string& part) {
-        const Outcome outcome = RunLull(directory, render + "--half-buffer off " + options);
-        EXPECT_EQ(outcome.exitCode, 1) << options;
-        EXPECT_TRUE(Contains(outcome.err, part)) << outcome.err;
-    };
-    refuses("--stop dammertz:0.01", "rule dammertz:0.01 needs");
-    refuses("--stop luxtile:0.01", "rule luxtile:0.01 needs");
-    refuses("--stop entropy --time 9s", "a clock needs");
-    refuses("--stop entropy --report r.html", "a page with curves needs");
-
-    const std::string entropy = render + "--stop entropy:0.1 ";
-    for (const char* choice : {"auto", "on", "off"})
-        ASSERT_EQ(RunLull(directory, fmt::format("{}--half-buffer {} -o {}.exr --report {}.json",
-                                                 entropy, choice, choice, choice))
-                      .exitCode,
-                  0);
-    EXPECT_EQ(ReadBytes(directory.File("on.png")), ReadBytes(directory.File("off.png")));
-    EXPECT_EQ(ReadBytes(directory.File("on.png")), ReadBytes(directory.File("auto.png")));
-}
-
 // Whoever gives less time than a sample for each pixel takes hears of it long before the end.
 TEST(CommandLine, WarnsOfFirstSamplesThatTakeLongerThanTheClock) {
     const SceneDirectory directory;

@@ -50,7 +50,8 @@ TEST(Judge, GoesOnWhereItWasInterrupted) {
     const Outcome interrupted =
         RunAndSignal(directory, command + "a.html", SIGINT, "a.html.checkpoint");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    EXPECT_TRUE(Contains(interrupted.err, "goes on from a.html.checkpoint"));
+    EXPECT_TRUE(Contains(interrupted.err, "interrupted; to go on: ")) << interrupted.err;
+    EXPECT_FALSE(Contains(interrupted.err, "--resume")) << interrupted.err;
     EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
     const Outcome resumed = RunShell(directory, command + "a.html");
     EXPECT_EQ(resumed.exitCode, 0) << resumed.err;

@@ -98,7 +98,7 @@ TEST(Outputs, OfOtherCommandsAreNoInputs) {
          "--reference"},
         {"compare scene.pbrt --snapshots --cap 40 --block 8 --checkpoint c.reference.exr -o c "
          "--quiet",
-         "-o", "--checkpoint"},
+         "--checkpoint", "-o"},
         {"judge scene.pbrt -o s.html --record mesh.ply --cap 100", "--record",
          "a file of the scene"},
         {"judge --collect p.csv -o p.csv", "-o", "--collect"},

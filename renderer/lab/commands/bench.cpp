@@ -7,17 +7,16 @@
 #include <filesystem>
 
 #include "renderer/base/seconds_since.h"
-#include "renderer/commands/command.h"
+#include "renderer/commands/aov_options.h"
+#include "renderer/commands/choice_option.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
-#include "renderer/commands/interrupt.h"
-#include "renderer/commands/session_options.h"
+#include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/lab/comparison/bench.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/lab/pages/bench_page.h"
-#include "renderer/mpi/job.h"
 #include "renderer/render/block_denoiser.h"
 #include "stopping/rules/denoised.h"
 
@@ -65,7 +64,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddRenderSettings(app, &o->render, false);
     app.add_option("--samplers", o->samplers, "Where sample positions come from [sobol,random]")
         ->delimiter(',')
-        ->check(CLI::IsMember({"random", "sobol"}))
+        ->check(CLI::IsMember(ChoicesOf<SamplerKind>()))
         ->type_name("S,S");
     AddGuideOptions(app, &o->guide);
     app.add_option("--rule", o->rules, "Another stopping rule to measure; can be given again")
@@ -84,10 +83,7 @@ void AddOptions(CLI::App& app, Options* o) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })
         ->type_name("R.html");
-    app.add_option("--checkpoint-interval", o->render.checkpoint.interval,
-                   "Seconds between checkpoints")
-        ->check(CLI::Range(0.1, 1e6))
-        ->capture_default_str();
+    AddCheckpointInterval(app, &o->render.checkpoint);
     app.footer(kFooter);
 }
 
@@ -127,8 +123,7 @@ std::vector<Variant> Variants(const Options& options) {
     for (const bool isGuided : {false, true})
         for (const std::string& name : options.samplers)
             if (!isGuided || options.guide.mode != GuideMode::Off)
-                variants.push_back(
-                    {name == "random" ? SamplerKind::Random : SamplerKind::Sobol, isGuided});
+                variants.push_back({*ValueNamed<SamplerKind>(name), isGuided});
     return variants;
 }
 
@@ -136,54 +131,55 @@ std::string CheckpointName(const Options& options, const Variant& variant) {
     return fmt::format("{}.{}.checkpoint", options.output, NameOf(variant));
 }
 
-// Holds a scene that is ready, and all that its renders have in common.
-struct PreparedScene {
-    std::unique_ptr<const Scene> scene;
+// All that the renders of the scene have in common.
+struct Bench {
+    Bench(const Options& options, Job* ranks) : options(options), render(options.render, ranks) {}
+
+    Options options;
+    RenderJob render;
     std::string sceneHash;
-    Provenance provenance;
     std::vector<ObservedRule> rules;
     std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
     std::vector<ExternalImage> external;
     std::vector<RgbImage> externalImages;
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
+    std::vector<BenchPoint> points;
 };
 
-// Throws Error where a result would replace another or an input, or could not be written now.
-void CheckFiles(const Options& options, const Description& description,
-                const std::vector<ExternalImage>& external) {
+void CheckFiles(const Bench& bench) {
+    const Options& options = bench.options;
     std::vector<NamedFile> outputs = {{"-o", options.output + ".csv"},
                                       {"--report", options.report}};
     for (const Variant& variant : Variants(options))
         outputs.push_back({"the checkpoint", CheckpointName(options, variant)});
-    std::vector<NamedFile> inputs = InputsOf(options.render.scene, description);
-    inputs.push_back({"--reference", options.reference});
-    inputs.push_back({"--external", options.external});
-    for (const ExternalImage& image : external)
+    std::vector<NamedFile> inputs = {{"--reference", options.reference},
+                                     {"--external", options.external}};
+    for (const ExternalImage& image : bench.external)
         inputs.push_back({"an image of --external", image.file});
     for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
-    CheckOutputs(outputs, inputs);
+    bench.render.CheckFiles(std::move(outputs), std::move(inputs));
 }
 
-PreparedScene Prepare(const Options& options, const Job& job) {
-    const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
-    PreparedScene prepared;
+// Checks all that can be wrong before the work begins.
+std::unique_ptr<Bench> Prepare(const Options& options, Job* ranks) {
+    auto bench = std::make_unique<Bench>(options, ranks);
+    RenderJob& render = bench->render;
+    const PixelRect& region = render.input.region;
     if (options.denoise) {
-        CheckLayersFit({}, true, input.region);
-        prepared.denoiser =
-            std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
+        CheckLayersFit({}, true, region);
+        bench->denoiser =
+            std::make_shared<BlockDenoiser>(MakeBlocks(region, render.settings.schedule));
     }
-    prepared.rules = MakeRules(options, input.region, prepared.denoiser);
-    if (!options.external.empty()) prepared.external = ReadExternalImages(options.external);
-    if (job.Rank() == 0) CheckFiles(options, input.description, prepared.external);
-    if (!options.reference.empty())
-        prepared.reference = ReadImageOfSize(options.reference, input.region);
-    for (const ExternalImage& external : prepared.external)
-        prepared.externalImages.push_back(ReadImageOfSize(external.file, input.region));
-    prepared.scene = CompileScene(settings, &input);
-    prepared.sceneHash = SceneHash(input.description);
-    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
-    return prepared;
+    bench->rules = MakeRules(options, region, bench->denoiser);
+    if (!options.external.empty()) bench->external = ReadExternalImages(options.external);
+    CheckFiles(*bench);
+    if (!options.reference.empty()) bench->reference = ReadImageOfSize(options.reference, region);
+    for (const ExternalImage& external : bench->external)
+        bench->externalImages.push_back(ReadImageOfSize(external.file, region));
+    render.Compile();
+    CheckGuide(options.guide, *render.scene, options.render.estimator);
+    bench->sceneHash = SceneHash(render.input.description);
+    return bench;
 }
 
 // Says how far the comparisons are, at most once a second.
@@ -209,68 +205,64 @@ class PointCounter {
 };
 
 // Returns how to render a variant.
-SessionOptions MakeOptions(const Options& options, const Variant& variant,
-                           const PreparedScene& prepared, ProgressPrinter* printer, Job* job) {
-    Provenance provenance = prepared.provenance;
+SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
+    const Options& options = bench.options;
+    Provenance provenance = bench.render.provenance;
     provenance.sampler = variant.sampler;
     if (variant.isGuided) {
         provenance.guide = options.guide.mode;
         provenance.guideMegabytes = options.guide.megabytes;
     }
-    for (const ObservedRule& rule : prepared.rules) provenance.criterion += rule.text + " ";
-    SessionOptions how = MakeSessionOptions(options.render, variant.sampler, printer, job);
+    for (const ObservedRule& rule : bench.rules) provenance.criterion += rule.text + " ";
+    SessionOptions how = bench.render.MakeSessionOptions(false);
+    how.render.sampler = variant.sampler;
     if (variant.isGuided) how.guide = options.guide;
-    how.checkpoint =
-        ResumeIfThere(CheckpointName(options, variant), options.render.checkpoint.interval);
-    how.identity = IdentityOf(provenance, prepared.sceneHash);
-    how.render.checkpointAtEnd = true;
+    how.checkpoint.isKept = true;
+    how.identity = IdentityOf(provenance, bench.sceneHash);
     how.features = options.denoise;
     return how;
 }
 
 // Adds the points of a variant, of which the first render's whole image is the reference, unless
 // another was given.
-void AddPoints(const Options& options, const Variant& variant, const ObservedRender& observed,
-               const GuideFigures& guidance, PreparedScene* prepared,
-               std::vector<BenchPoint>* points) {
-    const bool makesReference = !prepared->reference;
+void AddPoints(const Variant& variant, const ObservedRender& observed, const GuideFigures& guidance,
+               Bench* bench) {
+    const bool makesReference = !bench->reference;
     const int threads = observed.result.threads;
-    if (makesReference) prepared->reference = TakeWholeImage(observed).image;
-    PointCounter counter(prepared->rules.size(), options.render);
-    for (BenchPoint point : MeasurePoints(observed, prepared->rules, *prepared->reference, threads,
+    if (makesReference) bench->reference = TakeWholeImage(observed).image;
+    PointCounter counter(bench->rules.size(), bench->options.render);
+    for (BenchPoint point : MeasurePoints(observed, bench->rules, *bench->reference, threads,
                                           [&] { counter.Add(); })) {
         point.sampler = NameOf(variant);
         point.sharesReference = makesReference;
         point.seconds += guidance.seconds;
         point.threadSeconds += guidance.seconds * threads;
-        points->push_back(std::move(point));
+        bench->points.push_back(std::move(point));
     }
 }
 
 // Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
-// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render, and
-// the first measures.
-bool BenchVariant(const Options& options, const Variant& variant, PreparedScene* prepared, Job* job,
-                  std::vector<BenchPoint>* points) {
-    const RenderSettings& settings = options.render;
-    const PixelRect& region = prepared->provenance.crop;
-    ProgressPrinter printer = MakePrinter(settings, false);
+// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render,
+// and the first measures.
+bool BenchVariant(const Variant& variant, Bench* bench) {
+    RenderJob& render = bench->render;
+    RenderSettings& settings = render.settings;
+    const PixelRect& region = render.input.region;
+    settings.checkpoint = ResumeIfThere(CheckpointName(bench->options, variant),
+                                        bench->options.render.checkpoint.interval);
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
-    SessionOptions how = MakeOptions(options, variant, *prepared, &printer, job);
-    how.render.makeCriterion = MakeObservers(prepared->rules, region, settings.schedule,
+    SessionOptions how = MakeOptions(*bench, variant);
+    how.render.makeCriterion = MakeObservers(bench->rules, region, settings.schedule,
                                              {.snapshots = true, .goesOn = true}, &histories);
-    Session session(*prepared->scene, region, how);
-    if (options.denoise) prepared->denoiser->Show(&session.TheFilm(), session.Features());
-    session.Resume();
+    Session session(*render.scene, region, how);
+    if (bench->denoiser) bench->denoiser->Show(&session.TheFilm(), session.Features());
     if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
-    const RenderResult result = session.Run();
-    printer.Finish(result.progress);
+    const RenderResult result = render.Run(&session);
     if (result.cancelled) return false;
     if (variant.isGuided && !session.Guidance().isUsed) return true;
     if (session.Leads())
-        AddPoints(options, variant,
-                  {session.Source(), session.Options(), session.TheFilm(), result, histories},
-                  session.Guidance(), prepared, points);
+        AddPoints(variant, {session.Context(), session.Options(), result, histories},
+                  session.Guidance(), bench);
     return true;
 }
 
@@ -291,36 +283,36 @@ std::vector<std::string> Notes(const Options& options) {
     return notes;
 }
 
-ExitCode RunBench(Options options, Job* job) {
+// Writes the points, and the page.
+void WriteBench(const Bench& bench, const std::vector<std::string>& names) {
+    const Options& options = bench.options;
+    WriteFileAtomically(options.output + ".csv", BenchCsv(bench.points));
+    fmt::print("{}.csv\n", options.output);
+    if (options.report.empty()) return;
+    WriteFileAtomically(options.report,
+                        MakeBenchPage(SceneName(options.render.scene.file), bench.render.provenance,
+                                      bench.points, names, *bench.reference, Notes(options)));
+    fmt::print("{}\n", options.report);
+}
+
+ExitCode RunBench(Options options, Job* ranks) {
     RenderSettings& settings = options.render;
-    SetWording(settings, job);
+    SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
-    PreparedScene prepared = Prepare(options, *job);
-    CheckGuide(options.guide, *prepared.scene, settings.estimator);
-    CatchInterrupts();
-    std::vector<BenchPoint> points;
+    const std::unique_ptr<Bench> bench = Prepare(options, ranks);
     const std::vector<Variant> variants = Variants(options);
+    bool isInterrupted = false;
     std::vector<std::string> names;
     for (const Variant& variant : variants) {
         names.push_back(NameOf(variant));
-        if (!BenchVariant(options, variant, &prepared, job, &points))
-            return SayInterrupted(options.render, CheckpointName(options, variant));
+        if ((isInterrupted = !BenchVariant(variant, bench.get()))) break;
     }
-    job->End();
-    if (job->Rank() > 0) return kDone;
-    for (size_t i = 0; i < prepared.external.size(); ++i)
-        points.push_back(
-            MeasureExternal(prepared.external[i], prepared.externalImages[i], *prepared.reference));
-
-    WriteFileAtomically(options.output + ".csv", BenchCsv(points));
-    fmt::print("{}.csv\n", options.output);
-    if (!options.report.empty()) {
-        WriteFileAtomically(options.report,
-                            MakeBenchPage(SceneName(settings.scene.file), prepared.provenance,
-                                          points, names, *prepared.reference, Notes(options)));
-        fmt::print("{}\n", options.report);
-    }
+    if (const auto code = bench->render.End(isInterrupted)) return *code;
+    for (size_t i = 0; i < bench->external.size(); ++i)
+        bench->points.push_back(
+            MeasureExternal(bench->external[i], bench->externalImages[i], *bench->reference));
+    WriteBench(*bench, names);
     for (const Variant& variant : variants)
         std::filesystem::remove(CheckpointName(options, variant));
     return kDone;

@@ -4,12 +4,10 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
-#include "renderer/commands/command.h"
+#include "renderer/commands/aov_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/session_options.h"
-#include "renderer/commands/talk.h"
-#include "renderer/input/scene_hash.h"
+#include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/comparison_table.h"
 #include "renderer/lab/comparison/compared_files.h"
@@ -37,23 +35,26 @@ void WriteReport(const CompareOptions& options, ComparisonReport report, ResultF
     results.Check();
 }
 
-// Throws Error where a result would replace another or an input, or could not be written now;
-// `rendered` are the images that come from the scene, if there is one.
-void CheckFiles(const CompareOptions& options, const std::vector<std::string>& rendered,
-                std::vector<NamedFile> inputs) {
+// Returns the results; `rendered` are the images that come from the scene, if there is one.
+std::vector<NamedFile> OutputsOf(const CompareOptions& options,
+                                 const std::vector<std::string>& rendered) {
     std::vector<NamedFile> outputs = {{"-o", options.output + ".compare.json"},
-                                      {"--report", options.report},
-                                      {"--checkpoint", options.render.checkpoint.file}};
+                                      {"--report", options.report}};
     for (const std::string& image : rendered)
         for (const char* extension : {".exr", ".png"})
             outputs.push_back({"-o", fmt::format("{}.{}{}", options.output, image, extension)});
     if (!rendered.empty()) outputs.push_back({"-o", options.output + ".thresholds.csv"});
-    inputs.push_back({"--automatic", options.automatic});
-    inputs.push_back({"--human", options.human});
-    inputs.push_back({"--reference", options.reference});
+    return outputs;
+}
+
+// Returns what is read, but for the scene.
+std::vector<NamedFile> InputsOf(const CompareOptions& options) {
+    std::vector<NamedFile> inputs = {{"--automatic", options.automatic},
+                                     {"--human", options.human},
+                                     {"--reference", options.reference}};
     AddFileOfRule("thresholds:" + options.human, &inputs);
     AddFileOfRule(options.rule, &inputs);
-    CheckOutputs(outputs, inputs);
+    return inputs;
 }
 
 // Compares images from files.
@@ -65,7 +66,7 @@ ExitCode CompareFiles(CompareOptions options) {
         throw Error("--human " + options.human +
                     ": thresholds need a scene; without one, an image");
     options.output = BeginningOfNames(options.output, "lull");
-    CheckFiles(options, {}, {});
+    CheckOutputs(OutputsOf(options, {}), InputsOf(options));
 
     std::vector<ComparedFile> files;
     if (!options.automatic.empty())
@@ -81,112 +82,6 @@ ExitCode CompareFiles(CompareOptions options) {
     return kDone;
 }
 
-// Holds a scene that is ready, and the rules to be compared on it.
-struct PreparedScene {
-    std::unique_ptr<const Scene> scene;
-    Provenance provenance;
-    std::vector<ObservedRule> rules;
-    RenderIdentity identity;
-    std::map<std::string, int> warnings;
-    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
-};
-
-ObservedRule MakeRule(const std::string& name, const Rule& rule) {
-    return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
-}
-
-// Loads the scene and checks all that can be wrong before the work begins.
-PreparedScene Prepare(const CompareOptions& options, const Job& job) {
-    const RenderSettings& settings = options.render;
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
-
-    PreparedScene prepared;
-    const Rule automatic = ReadRule("--stop", options.rule, settings, input.region);
-    prepared.rules.push_back(MakeRule("automatic", automatic));
-    std::string humanChecksum = "none";
-    if (!options.human.empty() && !IsImageFile(options.human)) {
-        RenderSettings plain = settings;
-        plain.caution = 1;
-        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, input.region);
-        prepared.rules.push_back(MakeRule("human", human));
-        humanChecksum = human.checksum;
-    }
-    if (options.denoise) {
-        CheckLayersFit({}, true, input.region);
-        prepared.denoiser =
-            std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
-        ObservedRule& rule = prepared.rules.emplace_back(
-            MakeRule("denoised", ReadRule("--denoise", kDenoisedRuleName, settings, input.region,
-                                          {{kDenoisedRuleName, MeasureOf(prepared.denoiser)}})));
-        rule.isDenoised = true;
-    }
-    if (job.Rank() == 0) {
-        std::vector<std::string> rendered;
-        for (const ObservedRule& rule : prepared.rules) rendered.push_back(rule.name);
-        if (options.snapshots) rendered.push_back("reference");
-        CheckFiles(options, rendered, InputsOf(settings.scene, input.description));
-        CheckCheckpoint(settings.checkpoint);
-    }
-    prepared.scene = CompileScene(settings, &input);
-    prepared.warnings = input.warnings.Counts();
-    prepared.provenance = MakeProvenance(settings, *prepared.scene, input.film);
-    prepared.provenance.criterion = automatic.text;
-    prepared.provenance.checksum = automatic.checksum;
-    prepared.identity = IdentityOf(prepared.provenance, SceneHash(input.description));
-    prepared.identity["human"] = humanChecksum;
-    prepared.identity["snapshots"] = options.snapshots ? "yes" : "no";
-    prepared.identity["curves"] = options.report.empty() ? "no" : "yes";
-    return prepared;
-}
-
-// Renders the automatic image by itself.
-Verification Verify(const PreparedScene& prepared, const RenderSettings& settings, int threads,
-                    const ComparedImage& expected) {
-    ProgressPrinter printer = MakePrinter(settings, true);
-    SessionOptions how =
-        MakeSessionOptions(settings, prepared.provenance.sampler, &printer, nullptr);
-    how.render.schedule.smallestSide = prepared.rules.front().smallestSide;
-    how.render.threads = threads;
-    how.render.makeCriterion = prepared.rules.front().make;
-    if (!settings.quiet) TalkOf(settings).Note("the automatic image by itself");
-    Session session(*prepared.scene, prepared.provenance.crop, how);
-    const RenderResult result = session.Run();
-    printer.Finish(result.progress);
-
-    return VerificationOf(result, session.TheFilm(), expected);
-}
-
-ResultFiles WriteImages(const CompareOptions& options, const PreparedScene& prepared,
-                        const Comparison& comparison) {
-    ResultFiles results;
-    const std::vector<Block> blocks = MakeBlocks(comparison.region, options.render.schedule);
-    for (const ComparedImage& image : comparison.images) {
-        if (image.wallSeconds) continue;  // is a file already
-        const std::string base = options.output + "." + image.name;
-        std::vector<int> spp;
-        for (const BlockCost& cost : image.costs) spp.push_back(cost.spp);
-        Provenance provenance = prepared.provenance;
-        provenance.criterion =
-            image.rule.empty() ? fmt::format("fixed:{}", comparison.cap) : image.rule;
-        if (image.name != "automatic") provenance.checksum.clear();
-        WriteImage({base + ".exr", base + ".png"}, {*prepared.scene, provenance},
-                   {image.image, blocks, spp, SumCosts(comparison, image).seconds}, &results);
-    }
-    std::vector<int> thresholds;
-    for (const BlockCost& cost : comparison.images.front().costs) thresholds.push_back(cost.spp);
-    results.Write(options.output + ".thresholds.csv", [&](const std::string& file) {
-        WriteThresholdsOf(file, options.render.scene.file, thresholds);
-    });
-    return results;
-}
-
-// Returns a comparison to which images are to be added.
-Comparison Begin(const RenderSettings& settings, const PixelRect& region) {
-    Comparison comparison = BeginComparison(region, settings.schedule);
-    comparison.cap = settings.schedule.cap;
-    return comparison;
-}
-
 std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
                                             const Comparison& comparison) {
     std::vector<ComparedImage> images;
@@ -197,15 +92,134 @@ std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
     return images;
 }
 
+// A scene that is ready, and the rules to be compared on it.
+struct Compared {
+    Compared(const CompareOptions& options, Job* ranks)
+        : options(options), render(options.render, ranks) {}
+
+    CompareOptions options;
+    RenderJob render;
+    std::vector<ObservedRule> rules;
+    std::string humanChecksum = "none";
+    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
+    ComparisonReport report;
+    std::vector<ComparedImage> fromFiles;
+};
+
+ObservedRule MakeRule(const std::string& name, const Rule& rule) {
+    return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
+}
+
+// Adds the rule of people, and that of denoised images, where they are asked for.
+void AddOtherRules(Compared* compared) {
+    const CompareOptions& options = compared->options;
+    const PixelRect& region = compared->render.input.region;
+    if (!options.human.empty() && !IsImageFile(options.human)) {
+        RenderSettings plain = options.render;
+        plain.caution = 1;
+        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, region);
+        compared->rules.push_back(MakeRule("human", human));
+        compared->humanChecksum = human.checksum;
+    }
+    if (!options.denoise) return;
+    CheckLayersFit({}, true, region);
+    compared->denoiser =
+        std::make_shared<BlockDenoiser>(MakeBlocks(region, options.render.schedule));
+    compared->rules.push_back(
+        MakeRule("denoised", ReadRule("--denoise", kDenoisedRuleName, options.render, region,
+                                      {{kDenoisedRuleName, MeasureOf(compared->denoiser)}})));
+    compared->rules.back().isDenoised = true;
+}
+
+// Checks all that can be wrong before the work begins.
+std::unique_ptr<Compared> Prepare(const CompareOptions& options, Job* ranks) {
+    auto compared = std::make_unique<Compared>(options, ranks);
+    RenderJob& render = compared->render;
+    const PixelRect& region = render.input.region;
+    const Rule automatic = ReadRule("--stop", options.rule, options.render, region);
+    compared->rules.push_back(MakeRule("automatic", automatic));
+    AddOtherRules(compared.get());
+    std::vector<std::string> rendered;
+    for (const ObservedRule& rule : compared->rules) rendered.push_back(rule.name);
+    if (options.snapshots) rendered.push_back("reference");
+    render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
+    render.Compile();
+    render.provenance.criterion = automatic.text;
+    render.provenance.checksum = automatic.checksum;
+    Comparison& comparison = compared->report.comparison;
+    comparison = BeginComparison(region, options.render.schedule);
+    comparison.cap = options.render.schedule.cap;
+    compared->fromFiles = ReadImagesBeside(options, comparison);
+    compared->report.histories.resize(comparison.blocks.size());
+    return compared;
+}
+
+// Returns how to render, once for all images.
+SessionOptions MakeOptions(Compared* compared) {
+    const CompareOptions& options = compared->options;
+    const bool hasPage = !options.report.empty();
+    SessionOptions how = compared->render.MakeSessionOptions(!options.snapshots);
+    how.render.makeCriterion = MakeObservers(
+        compared->rules, compared->render.input.region, options.render.schedule,
+        {.snapshots = true, .noise = true, .curves = hasPage, .goesOn = options.snapshots},
+        &compared->report.histories);
+    how.features = options.denoise;
+    how.identity = compared->render.Identity();
+    how.identity["human"] = compared->humanChecksum;
+    how.identity["snapshots"] = options.snapshots ? "yes" : "no";
+    how.identity["curves"] = hasPage ? "yes" : "no";
+    return how;
+}
+
+// Renders the automatic image by itself.
+Verification Verify(const Compared& compared, int threads, const ComparedImage& expected) {
+    const RenderJob& render = compared.render;
+    SessionOptions how =
+        MakeSessionOptions(render.settings, render.provenance.sampler, true, nullptr);
+    how.render.schedule.smallestSide = compared.rules.front().smallestSide;
+    how.render.threads = threads;
+    how.render.makeCriterion = compared.rules.front().make;
+    if (!render.settings.quiet) TalkOf(render.settings).Note("the automatic image by itself");
+    Session session(*render.scene, render.input.region, how);
+    const RenderResult result = session.Run();
+    return VerificationOf(result, session.TheFilm(), expected);
+}
+
+ResultFiles WriteImages(const Compared& compared) {
+    const CompareOptions& options = compared.options;
+    const RenderJob& render = compared.render;
+    const Comparison& comparison = compared.report.comparison;
+    ResultFiles results;
+    const std::vector<Block> blocks = MakeBlocks(comparison.region, options.render.schedule);
+    for (const ComparedImage& image : comparison.images) {
+        if (image.wallSeconds) continue;  // is a file already
+        const std::string base = options.output + "." + image.name;
+        std::vector<int> spp;
+        for (const BlockCost& cost : image.costs) spp.push_back(cost.spp);
+        Provenance provenance = render.provenance;
+        provenance.criterion =
+            image.rule.empty() ? fmt::format("fixed:{}", comparison.cap) : image.rule;
+        if (image.name != "automatic") provenance.checksum.clear();
+        WriteImage({base + ".exr", base + ".png"}, {*render.scene, provenance},
+                   {image.image, blocks, spp, SumCosts(comparison, image).seconds}, &results);
+    }
+    std::vector<int> thresholds;
+    for (const BlockCost& cost : comparison.images.front().costs) thresholds.push_back(cost.spp);
+    results.Write(options.output + ".thresholds.csv", [&](const std::string& file) {
+        WriteThresholdsOf(file, options.render.scene.file, thresholds);
+    });
+    return results;
+}
+
 // Takes all images from a render, adds those that were read, and measures them.
-void AddImages(const CompareOptions& options, const std::vector<ObservedRule>& rules,
-               const ObservedRender& observed, std::vector<ComparedImage> fromFiles,
-               ComparisonReport* report) {
+void AddImages(const ObservedRender& observed, Compared* compared) {
+    const CompareOptions& options = compared->options;
+    ComparisonReport* report = &compared->report;
     Comparison& comparison = report->comparison;
-    for (size_t i = 0; i < rules.size(); ++i)
-        comparison.images.push_back(TakeImage(observed, rules, i));
+    for (size_t i = 0; i < compared->rules.size(); ++i)
+        comparison.images.push_back(TakeImage(observed, compared->rules, i));
     if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
-    for (ComparedImage& image : fromFiles) comparison.images.push_back(std::move(image));
+    for (ComparedImage& image : compared->fromFiles) comparison.images.push_back(std::move(image));
     if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
         std::swap(comparison.images.back(), *(comparison.images.end() - 2));
     Measure(&comparison);
@@ -213,72 +227,54 @@ void AddImages(const CompareOptions& options, const std::vector<ObservedRule>& r
         report->estimates = CompareEstimates(comparison.images.front(), comparison.images.back());
 }
 
-ExitCode SayInterrupted(const RenderSettings& settings) {
-    const std::string& file = settings.checkpoint.file;
-    TalkOf(settings).Note("interrupted; " +
-                          (file.empty() ? "nothing was written, as there is no --checkpoint"
-                                        : "--resume goes on from " + file));
-    return kInterrupted;
+// Renders the automatic image by itself on as many threads as asked for, until it is interrupted.
+void VerifyAll(Compared* compared) {
+    ComparisonReport& report = compared->report;
+    for (const int threads : compared->options.verify) {
+        const Verification v = Verify(*compared, threads, report.comparison.images.front());
+        if (Interrupted()) break;
+        report.verifications.push_back(v);
+    }
+}
+
+// Completes the report, and writes all files.
+void WriteResults(const RenderResult& result, Compared* compared) {
+    const CompareOptions& options = compared->options;
+    const RenderJob& render = compared->render;
+    ComparisonReport& report = compared->report;
+    report.provenance = render.provenance;
+    report.decisions = result.blocks;
+    report.warnings = render.input.warnings.Counts();
+    report.title = SceneName(render.settings.scene.file);
+    if (options.snapshots)
+        report.notes.push_back(
+            "The reference holds the samples of the other images, so that errors near the cap are "
+            "understated.");
+    WriteReport(options, report, WriteImages(*compared));
 }
 
 // The ranks share the render that all images come from; the first does the rest.
-ExitCode CompareRenders(CompareOptions options, Job* job) {
+ExitCode CompareRenders(CompareOptions options, Job* ranks) {
     RenderSettings& settings = options.render;
-    SetWording(settings, job);
+    SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (!options.snapshots && options.reference.empty())
         throw Error(
             "compare: a reference is missing: --snapshots renders one, to the cap; "
             "--reference R.exr takes one rendered before");
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file));
-    const PreparedScene prepared = Prepare(options, *job);
-    const PixelRect& region = prepared.provenance.crop;
-    ComparisonReport report;
-    report.comparison = Begin(settings, region);
-    std::vector<ComparedImage> fromFiles = ReadImagesBeside(options, report.comparison);
+    const std::unique_ptr<Compared> compared = Prepare(options, ranks);
+    const RenderJob& render = compared->render;
+    Session session(*render.scene, render.input.region, MakeOptions(compared.get()));
+    if (compared->denoiser) compared->denoiser->Show(&session.TheFilm(), session.Features());
+    const RenderResult result = render.Run(&session);
+    if (const auto code = render.End(result.cancelled)) return *code;
 
-    report.histories.resize(report.comparison.blocks.size());
-    ProgressPrinter printer = MakePrinter(settings, !options.snapshots);
-    SessionOptions how = MakeSessionOptions(settings, prepared.provenance.sampler, &printer, job);
-    how.render.makeCriterion = MakeObservers(prepared.rules, region, settings.schedule,
-                                             {.snapshots = true,
-                                              .noise = true,
-                                              .curves = !options.report.empty(),
-                                              .goesOn = options.snapshots},
-                                             &report.histories);
-    how.features = options.denoise;
-    how.checkpoint = settings.checkpoint;
-    how.identity = prepared.identity;
-    Session session(*prepared.scene, region, how);
-    if (options.denoise) prepared.denoiser->Show(&session.TheFilm(), session.Features());
-    session.Resume();
-    CatchInterrupts();
-    const RenderResult result = session.Run();
-    job->End();
-    if (!session.Leads()) return kDone;
-    printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(settings);
-
-    AddImages(options, prepared.rules,
-              {session.Source(), session.Options(), session.TheFilm(), result, report.histories},
-              std::move(fromFiles), &report);
-    for (const int threads : options.verify) {
-        const Verification v =
-            Verify(prepared, settings, threads, report.comparison.images.front());
-        if (Interrupted()) break;
-        report.verifications.push_back(v);
-    }
-
-    report.provenance = prepared.provenance;
-    report.decisions = result.blocks;
-    report.warnings = prepared.warnings;
-    report.title = SceneName(settings.scene.file);
-    if (options.snapshots)
-        report.notes.push_back(
-            "The reference holds the samples of the other images, so that errors near the cap are "
-            "understated.");
-    WriteReport(options, report, WriteImages(options, prepared, report.comparison));
-    if (!settings.checkpoint.file.empty()) std::filesystem::remove(settings.checkpoint.file);
+    AddImages({session.Context(), session.Options(), result, compared->report.histories},
+              compared.get());
+    VerifyAll(compared.get());
+    WriteResults(result, compared.get());
+    render.RemoveCheckpoint();
     return Interrupted() ? kInterrupted : kDone;
 }
 

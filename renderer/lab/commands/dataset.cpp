@@ -3,15 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 
-#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/input_files.h"
-#include "renderer/commands/interrupt.h"
-#include "renderer/commands/session_options.h"
+#include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
-#include "renderer/input/scene_hash.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
 
@@ -70,76 +66,64 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--checkpoint-interval", o->render.checkpoint.interval,
-                   "Seconds between checkpoints")
-        ->check(CLI::Range(0.1, 1e6))
-        ->capture_default_str();
+    AddCheckpointInterval(app, &o->render.checkpoint);
     app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors");
     app.add_flag("--json-progress", o->render.jsonProgress,
                  "Print progress as JSON, an object a line");
     app.footer(kFooter);
 }
 
-std::string CheckpointName(const Options& options) {
-    return fmt::format("{}.{}.checkpoint", options.output, options.name);
-}
-
-ExitCode RunDataset(const Options& options, Job* job) {
-    const bool leads = job->Rank() == 0;  // prints, and writes files
-    const RenderSettings& settings = options.render;
-    SetWording(settings, job);
-    SceneInput input(settings.scene, {.grid = GridOf(settings.schedule)}, TalkOf(settings));
-    const std::vector<Block> blocks = MakeBlocks(input.region, settings.schedule);
-    if (leads) {
-        std::vector<NamedFile> inputs = InputsOf(settings.scene, input.description);
-        inputs.push_back({"--human", options.human});
-        CheckOutputs(std::vector<NamedFile>{{"-o", options.output},
-                                            {"the checkpoint", CheckpointName(options)}},
-                     inputs);
-    }
-    CheckRecordable(blocks, settings.schedule);
-
-    // Leave out what is there already.
-    std::vector<int> limits = RecordingLimits(blocks.size(), options.blocks, settings.schedule.cap);
+// Returns until which spp each block is to be recorded: 0 for those that the data set has already.
+std::vector<int> LimitsOf(const Options& options, size_t blocks,
+                          const std::vector<ViewpointRecording>& dataset) {
+    std::vector<int> limits = RecordingLimits(blocks, options.blocks, options.render.schedule.cap);
     if (options.past > 0) LimitByHuman(options.human, options.name, options.past, &limits);
-    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
     const auto old = std::ranges::find(dataset, options.name, &ViewpointRecording::name);
     if (old != dataset.end())
         for (const auto& [number, block] : old->blocks) limits.at(size_t(number)) = 0;
-    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
-        job->Begin("nothing");
-        job->End();
-        TalkOf(settings).Note(
-            fmt::format("{} has all blocks of '{}' already", options.output, options.name));
-        return kDone;
-    }
+    return limits;
+}
 
-    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
-    Provenance provenance = MakeProvenance(settings, *scene, input.film);
-    provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
-    const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
+// There is no render that the ranks could share.
+ExitCode SayAllIsThere(const Options& options, Job* ranks) {
+    ranks->Begin("nothing");
+    ranks->End();
+    TalkOf(options.render)
+        .Note(fmt::format("{} has all blocks of '{}' already", options.output, options.name));
+    return kDone;
+}
+
+ExitCode RunDataset(Options options, Job* ranks) {
+    SetWording(options.render, ranks);
+    CheckpointOptions& checkpoint = options.render.checkpoint;
+    checkpoint = ResumeIfThere(fmt::format("{}.{}.checkpoint", options.output, options.name),
+                               checkpoint.interval);
+    RenderJob render(options.render, ranks);
+    const ScheduleOptions& schedule = render.settings.schedule;
+    const std::vector<Block> blocks = MakeBlocks(render.input.region, schedule);
+    render.CheckFiles({{"-o", options.output}}, {{"--human", options.human}});
+    CheckRecordable(blocks, schedule);
+    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
+    const std::vector<int> limits = LimitsOf(options, blocks.size(), dataset);
+    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; }))
+        return SayAllIsThere(options, ranks);
+
+    render.Compile();
+    render.provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
+    SessionOptions how = render.MakeSessionOptions(false);
+    how.identity = render.Identity();
     ViewpointRecording viewpoint =
-        MakeViewpoint(options.name, settings.schedule, identity, blocks.size());
+        MakeViewpoint(options.name, schedule, how.identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
-
-    ProgressPrinter printer = MakePrinter(settings, false);
-    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, job);
-    how.checkpoint = ResumeIfThere(CheckpointName(options), settings.checkpoint.interval);
-    how.identity = identity;
-    Session session(*scene, input.region, how);
-    session.Resume();
-    CatchInterrupts();
-    const RenderResult result =
-        session.Run([&](auto&&... render) { return RecordBlocks(render..., limits, &viewpoint); });
-    job->End();
-    if (!leads) return kDone;
-    printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(settings, CheckpointName(options));
+    Session session(*render.scene, render.input.region, how);
+    const RenderResult result = render.Run(
+        &session, [&](const auto&... how) { return RecordBlocks(how..., limits, &viewpoint); });
+    if (const auto code = render.End(result.cancelled)) return *code;
 
     AddToDatasetFile(viewpoint, options.output, [&] {
-        TalkOf(settings).Note("waiting for another process to write " + options.output);
+        TalkOf(options.render).Note("waiting for another process to write " + options.output);
     });
-    std::filesystem::remove(CheckpointName(options));
+    render.RemoveCheckpoint();
     fmt::print("{}\n", options.output);
     return kDone;
 }

@@ -16,6 +16,12 @@
 
 namespace lull {
 
+template <>
+struct EnumNames<ChooseBy> {
+    static constexpr std::pair<ChooseBy, const char*> all[] = {
+        {ChooseBy::AbsoluteError, "error"}, {ChooseBy::CriticalError, "critical"}};
+};
+
 namespace {
 
 struct Options {
@@ -98,10 +104,8 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_flag("--rivals", o->rivals,
                  "Judge the rules that have one setting:\n" +
                      RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
-    AddChoiceOption<ChooseBy>(
+    AddChoiceOption(
         app, "--choose-by", &o->chooseBy,
-        {{"error", ChooseBy::AbsoluteError}, {"critical", ChooseBy::CriticalError}},
-        "error|critical",
         "What the setting of a rival makes least: the error, or the critical error at 2 %");
     app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
         ->expected(1)

@@ -8,11 +8,8 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/input_files.h"
-#include "renderer/commands/interrupt.h"
-#include "renderer/commands/session_options.h"
+#include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
-#include "renderer/input/scene_hash.h"
 #include "renderer/lab/commands/judge_options.h"
 #include "renderer/lab/viewpoints/study_render.h"
 #include "stopping/base/parallel.h"
@@ -48,12 +45,10 @@ ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
     return kDone;
 }
 
-ExitCode MakeStudyOfScene(const JudgeSettings& options) {
-    RenderSettings settings = options.render;
-    ScheduleOptions& schedule = settings.schedule;
-    schedule.cap = settings.cap.value_or(schedule.cap);
-    SceneInput input(settings.scene, {.grid = GridOf(schedule)});
-    const std::vector<Block> blocks = MakeBlocks(input.region, schedule);
+// Returns the levels of the ladder, which ends at the cap. Throws Error where they are too few, or
+// too many for the memory.
+std::vector<int> LevelsOf(const JudgeSettings& options, const ScheduleOptions& schedule,
+                          const PixelRect& region) {
     const std::vector<int> levels =
         options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
                            : LadderByRatio(schedule.passLength, schedule.cap, kLadderRatio);
@@ -61,53 +56,68 @@ ExitCode MakeStudyOfScene(const JudgeSettings& options) {
         throw Error(fmt::format("--cap {}: a ladder needs more than one pass of {} spp",
                                 schedule.cap, schedule.passLength));
     // As pixels, and as the text of the page, of which a part is there twice.
-    CheckMemory(input.region.Area() * int64_t(levels.size()) * 12,
-                fmt::format("a study of {}x{} pixels at {} levels", input.region.Width(),
-                            input.region.Height(), levels.size()),
+    CheckMemory(region.Area() * int64_t(levels.size()) * 12,
+                fmt::format("a study of {}x{} pixels at {} levels", region.Width(), region.Height(),
+                            levels.size()),
                 "make it with fewer --levels, of a part with --crop, or smaller with --resolution");
-    const std::string name = options.name.empty() ? SceneName(settings.scene.file) : options.name;
-    const bool records = !options.record.empty();
-    const std::string file = options.output + ".checkpoint";
-    CheckOutputs(
-        std::vector<NamedFile>{
-            {"-o", options.output}, {"--record", options.record}, {"the checkpoint", file}},
-        InputsOf(settings.scene, input.description));
+    return levels;
+}
+
+// What is recorded beside the study, where that is asked for.
+struct Recording {
+    std::string file;  // empty: nothing
     std::vector<ViewpointRecording> dataset;
-    if (records) {
+    ViewpointRecording viewpoint;
+
+    // Throws Error where the data set cannot take such a viewpoint.
+    Recording(std::string output, const std::vector<Block>& blocks, const ScheduleOptions& schedule)
+        : file(std::move(output)) {
+        if (file.empty()) return;
         CheckRecordable(blocks, schedule);
-        dataset = ReadDatasetIfThere(options.record);
+        dataset = ReadDatasetIfThere(file);
     }
+    void Begin(ViewpointRecording begun) {
+        viewpoint = std::move(begun);
+        if (!file.empty()) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
+    }
+    void Write(const Talk& talk) {
+        if (file.empty()) return;
+        AddToDatasetFile(viewpoint, file,
+                         [&] { talk.Note("waiting for another process to write " + file); });
+        fmt::print("{}\n", file);
+    }
+};
 
-    const std::unique_ptr<const Scene> scene = CompileScene(settings, &input);
-    Provenance provenance = MakeProvenance(settings, *scene, input.film);
-    provenance.criterion =
-        fmt::format("judge:{}{}", fmt::join(levels, ","), records ? ":record" : "");
-    const RenderIdentity identity = IdentityOf(provenance, SceneHash(input.description));
-    ViewpointRecording viewpoint = MakeViewpoint(name, schedule, identity, blocks.size());
-    if (records) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
+ExitCode MakeStudyOfScene(JudgeSettings options) {
+    RenderSettings& settings = options.render;
+    settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
+    settings.checkpoint =
+        ResumeIfThere(options.output + ".checkpoint", settings.checkpoint.interval);
+    RenderJob render(settings, nullptr);
+    const ScheduleOptions& schedule = settings.schedule;
+    const PixelRect& region = render.input.region;
+    const std::vector<Block> blocks = MakeBlocks(region, schedule);
+    const std::vector<int> levels = LevelsOf(options, schedule, region);
+    render.CheckFiles({{"-o", options.output}, {"--record", options.record}});
+    Recording recording(options.record, blocks, schedule);
 
-    Study study = BeginStudy(name, input.region, levels, blocks, identity);
-    ProgressPrinter printer = MakePrinter(settings, false);
-    SessionOptions how = MakeSessionOptions(settings, provenance.sampler, &printer, nullptr);
-    how.checkpoint = ResumeIfThere(file, settings.checkpoint.interval);
-    how.identity = identity;
-    Session session(*scene, input.region, how);
-    session.Resume();
-    CatchInterrupts();
-    const RenderResult result = session.Run([&](auto&&... render) {
-        return RenderStudy(render..., &study, records ? &viewpoint : nullptr);
+    render.Compile();
+    render.provenance.criterion =
+        fmt::format("judge:{}{}", fmt::join(levels, ","), options.record.empty() ? "" : ":record");
+    SessionOptions how = render.MakeSessionOptions(false);
+    how.identity = render.Identity();
+    const std::string name = options.name.empty() ? SceneName(settings.scene.file) : options.name;
+    recording.Begin(MakeViewpoint(name, schedule, how.identity, blocks.size()));
+    Study study = BeginStudy(name, region, levels, blocks, how.identity);
+    Session session(*render.scene, region, how);
+    const RenderResult result = render.Run(&session, [&](const auto&... how) {
+        return RenderStudy(how..., &study, recording.file.empty() ? nullptr : &recording.viewpoint);
     });
-    printer.Finish(result.progress);
-    if (result.cancelled) return SayInterrupted(settings, file);
+    if (const auto code = render.End(result.cancelled)) return *code;
 
     RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
-    if (records) {
-        AddToDatasetFile(viewpoint, options.record, [&] {
-            TalkOf(settings).Note("waiting for another process to write " + options.record);
-        });
-        fmt::print("{}\n", options.record);
-    }
-    std::filesystem::remove(file);
+    recording.Write(TalkOf(settings));
+    render.RemoveCheckpoint();
     return kDone;
 }
 

@@ -46,10 +46,7 @@ Examples:
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
-    AddChoiceOption<StudyProcedure>(
-        app, "--procedure", &s->procedure,
-        {{"adjust", StudyProcedure::Adjust}, {"staircase", StudyProcedure::Staircase}},
-        "adjust|staircase", "How people are asked");
+    AddChoiceOption(app, "--procedure", &s->procedure, "How people are asked");
     app.add_option("--repeats", s->repeats, "Share of the blocks that are asked twice")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("X")
@@ -90,10 +87,7 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     app.add_option("--record", s->record,
                    "Record what rules can learn from, of the same render, in this data set")
         ->type_name("DATA.h5");
-    app.add_option("--checkpoint-interval", s->render.checkpoint.interval,
-                   "Seconds between checkpoints")
-        ->check(CLI::Range(0.1, 1e6))
-        ->capture_default_str();
+    AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
     app.add_option(
            "--text", s->textFile,

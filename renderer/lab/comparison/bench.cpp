@@ -55,7 +55,7 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
                                       const std::function<void()>& onPoint) {
     std::vector<BenchPoint> points(rules.size());
     std::mutex mutex;  // guards onPoint
-    const double pixels = double(render.film.Region().Area());
+    const double pixels = double(render.context.film->Region().Area());
     const auto measure = [&](int index) {
         const ObservedRule& rule = rules[size_t(index)];
         const ComparedImage image = TakeImage(render, rules, size_t(index));

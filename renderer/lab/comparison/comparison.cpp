@@ -46,8 +46,9 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
 void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film,
                   FeatureFilm* features = nullptr) {
     RenderState state;
+    RenderContext context{.source = render.context.source, .film = film, .interrupted = &state};
+    context.layers.features = features;
     RenderOptions options;
-    options.layers.features = features;
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
     options.sampler = render.options.sampler;
@@ -62,7 +63,7 @@ void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Fil
         block.pixels = render.result.blocks[i].block.pixels;
         block.stopped = spp[i] == 0;
     }
-    Render(render.source, options, film, &state);
+    Render(context, options);
 }
 
 // Makes an image of the right size, black, with the noise known.
@@ -89,7 +90,7 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
 // Denoises the image of the samples that its blocks took.
 void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& blocks,
                     ComparedImage* image) {
-    const PixelRect& region = render.film.Region();
+    const PixelRect& region = render.context.film->Region();
     std::vector<int> spp;
     for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
     NoisyPicture picture;
@@ -194,7 +195,7 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
 ComparedImage TakeImage(const ObservedRender& render, const std::vector<ObservedRule>& rules,
                         size_t index) {
     const ObservedRule& rule = rules[index];
-    const PixelRect& region = render.film.Region();
+    const PixelRect& region = render.context.film->Region();
     const int cap = render.options.schedule.cap;
     const std::vector<Block> blocks =
         MakeBlocks(region, ScheduleFor(rule, render.options.schedule));
@@ -221,8 +222,8 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
         if (const auto snapshot = kept.find(cost.spp); snapshot != kept.end())
             PasteSnapshot(snapshot->second, blocks[i].pixels, region, &image);
         else if (whole.block.spp == cost.spp)
-            PasteSnapshot(SnapshotOf(render.film, blocks[i].pixels, cost.spp), blocks[i].pixels,
-                          region, &image);
+            PasteSnapshot(SnapshotOf(*render.context.film, blocks[i].pixels, cost.spp),
+                          blocks[i].pixels, region, &image);
         else
             again[i] = cost.spp;
     }
@@ -238,10 +239,10 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
 }
 
 ComparedImage TakeWholeImage(const ObservedRender& render) {
-    const PixelRect& region = render.film.Region();
+    const PixelRect& region = render.context.film->Region();
     ComparedImage image = EmptyImage(region, "reference", "");
     for (const BlockResult& result : render.result.blocks) {
-        PasteSnapshot(SnapshotOf(render.film, result.block.pixels, result.block.spp),
+        PasteSnapshot(SnapshotOf(*render.context.film, result.block.pixels, result.block.spp),
                       result.block.pixels, region, &image);
         image.costs.push_back({.spp = result.block.spp, .seconds = result.seconds});
     }

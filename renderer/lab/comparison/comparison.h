@@ -80,9 +80,8 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
 
 // Holds an observed render that is complete.
 struct ObservedRender {
-    const SampleSource& source;
+    const RenderContext& context;
     const RenderOptions& options;
-    const Film& film;
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;
 };

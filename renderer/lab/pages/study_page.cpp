@@ -27,20 +27,19 @@ Json BlockJson(const StudyBlock& block) {
 }
 
 Json DescribeStudy(const Study& study, const StudySettings& settings) {
-    Json json = {
-        {"format", kFormat},
-        {"version", kVersion},
-        {"id", StudyId(study)},
-        {"viewpoint", study.viewpoint},
-        {"procedure", settings.procedure == StudyProcedure::Adjust ? "adjust" : "staircase"},
-        {"repeats", settings.repeats},
-        {"catches", settings.catches},
-        {"answers", settings.answers},
-        {"width", study.width},
-        {"height", study.height},
-        {"levels", study.levels},
-        {"provenance", study.provenance},
-        {"blocks", Json::array()}};
+    Json json = {{"format", kFormat},
+                 {"version", kVersion},
+                 {"id", StudyId(study)},
+                 {"viewpoint", study.viewpoint},
+                 {"procedure", NameOf(settings.procedure)},
+                 {"repeats", settings.repeats},
+                 {"catches", settings.catches},
+                 {"answers", settings.answers},
+                 {"width", study.width},
+                 {"height", study.height},
+                 {"levels", study.levels},
+                 {"provenance", study.provenance},
+                 {"blocks", Json::array()}};
     for (const StudyBlock& block : study.blocks) json["blocks"].push_back(BlockJson(block));
     return json;
 }

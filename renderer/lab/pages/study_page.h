@@ -1,6 +1,7 @@
 // Writes the page on which people say where they still see noise.
 #pragma once
 
+#include "renderer/base/enum_names.h"
 #include "renderer/lab/viewpoints/study.h"
 #include "renderer/results/report_json.h"
 
@@ -10,6 +11,12 @@ namespace lull {
 enum class StudyProcedure {
     Adjust,    // the whole image beside the reference: click where they differ, until they match
     Staircase  // a block beside its reference: which of both has the noise? (QUEST)
+};
+
+template <>
+struct EnumNames<StudyProcedure> {
+    static constexpr std::pair<StudyProcedure, const char*> all[] = {
+        {StudyProcedure::Adjust, "adjust"}, {StudyProcedure::Staircase, "staircase"}};
 };
 
 struct StudySettings {

@@ -115,26 +115,26 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
         (*limits)[i] = std::min((*limits)[i], int(std::ceil(past * row->spp[i])));
 }
 
-RenderResult RecordBlocks(const SampleSource& source, RenderOptions render, Film* film,
-                          const RenderState* interrupted, const std::vector<int>& limits,
-                          ViewpointRecording* viewpoint) {
-    const ScheduleOptions& schedule = render.schedule;
-    const std::vector<Block> blocks = MakeBlocks(film->Region(), schedule);
+RenderResult RecordBlocks(RenderContext context, RenderOptions options,
+                          const std::vector<int>& limits, ViewpointRecording* viewpoint) {
+    const ScheduleOptions& schedule = options.schedule;
+    const std::vector<Block> blocks = MakeBlocks(context.film->Region(), schedule);
     std::vector<BlockRecording> recordings(blocks.size());
-    render.makeCriterion = [&](const BlockInfo& info) {
+    options.makeCriterion = [&](const BlockInfo& info) {
         const size_t i = size_t(info.index);
         return std::make_unique<Recorder>(schedule.passLength, schedule.cap, limits[i],
                                           &recordings[i]);
     };
     const int64_t wanted = SamplesUpTo(limits, blocks, schedule);
-    if (render.onProgress)
-        render.onProgress = [wanted, tell = render.onProgress](RenderProgress progress) {
+    if (auto& onProgress = options.events.onProgress)
+        onProgress = [wanted, tell = onProgress](RenderProgress progress) {
             progress.samplesToCap = wanted - progress.samples;
             tell(progress);
         };
     const RenderState beginning = Beginning(blocks, limits);
-    RenderResult result = Render(source, render, film, interrupted ? interrupted : &beginning);
-    if (result.cancelled || (render.peers && render.peers->Rank() > 0)) return result;
+    if (!context.interrupted) context.interrupted = &beginning;
+    RenderResult result = Render(context, options);
+    if (result.cancelled || (options.peers && options.peers->Rank() > 0)) return result;
     for (size_t i = 0; i < blocks.size(); ++i)
         if (limits[i] > 0) AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);
     return result;

@@ -42,11 +42,10 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
 
 // Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
 // where an interrupted recording with the same limits left film and state, and adds what was
-// recorded to the viewpoint; nothing if it was cancelled. `render` has no rule, and is told of
-// progress towards the limits. Of several ranks, the first has the recordings. Throws as Render()
+// recorded to the viewpoint; nothing if it was cancelled. The options have no rule; progress
+// is told towards the limits. Of several ranks, the first has the recordings. Throws as Render()
 // does.
-RenderResult RecordBlocks(const SampleSource&, RenderOptions render, Film*,
-                          const RenderState* interrupted, const std::vector<int>& limits,
+RenderResult RecordBlocks(RenderContext, RenderOptions, const std::vector<int>& limits,
                           ViewpointRecording*);
 
 }  // namespace lull

@@ -16,12 +16,11 @@ Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vec
     return study;
 }
 
-RenderResult RenderStudy(const SampleSource& source, RenderOptions render, Film* film,
-                         const RenderState* interrupted, Study* study,
+RenderResult RenderStudy(const RenderContext& context, RenderOptions options, Study* study,
                          ViewpointRecording* viewpoint) {
-    const ScheduleOptions& schedule = render.schedule;
+    const ScheduleOptions& schedule = options.schedule;
     std::vector<BlockRecording> recordings(study->blocks.size());
-    render.makeCriterion = [&](const BlockInfo& info) {
+    options.makeCriterion = [&](const BlockInfo& info) {
         const size_t i = size_t(info.index);
         std::unique_ptr<Criterion> recorder;
         if (viewpoint)
@@ -30,7 +29,7 @@ RenderResult RenderStudy(const SampleSource& source, RenderOptions render, Film*
         return std::make_unique<PictureLadder>(study->levels, std::move(recorder),
                                                &study->blocks[i].pictures);
     };
-    RenderResult result = Render(source, render, film, interrupted);
+    RenderResult result = Render(context, options);
     if (result.cancelled || !viewpoint) return result;
     for (size_t i = 0; i < recordings.size(); ++i)
         AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);

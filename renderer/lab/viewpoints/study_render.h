@@ -13,9 +13,9 @@ Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vec
 
 // Renders all blocks to the cap, the study's last level, and fills in their pictures; records the
 // same samples for learning in `viewpoint`, unless that is null. Starts from nothing or from where
-// an interrupted render of the same study left film and state. `render` has no rule. If it was
+// an interrupted render of the same study left film and state. The options have no rule. If it was
 // cancelled, the study is not complete. Throws as Render() does.
-RenderResult RenderStudy(const SampleSource&, RenderOptions render, Film*,
-                         const RenderState* interrupted, Study*, ViewpointRecording* viewpoint);
+RenderResult RenderStudy(const RenderContext&, RenderOptions, Study*,
+                         ViewpointRecording* viewpoint);
 
 }  // namespace lull

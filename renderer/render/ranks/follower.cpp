@@ -8,11 +8,9 @@ namespace {
 
 class Follower {
   public:
-    Follower(const SampleSource& source, const RenderOptions& options, Film* film,
-             tbb::task_arena* arena)
-        : options(options),
-          film(film),
-          rank(source, options, film, nullptr, arena,
+    Follower(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena)
+        : context(context),
+          rank(context, options, arena,
                {.onPassEnd = [this](int block) { SendPart(block); },
                 .completeView = {},
                 .onDecided = {},
@@ -47,12 +45,13 @@ class Follower {
             const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
             if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
         } else if (word == RankWord::Guide) {
-            options.learner->Take(GetGuide(reader), *film);
+            context.learner->Take(GetGuide(reader), *context.film);
         } else if (word == RankWord::Start) {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), film, options.layers);
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film,
+                      context.layers);
         } else if (word == RankWord::TimeUp) {
             schedule.CallTime();
         } else if (word == RankWord::Pause) {
@@ -92,10 +91,10 @@ class Follower {
         const std::vector<PixelRect> tiles = schedule.TilesOfRank(block, channel.Rank());
         const TileEffort taken = rank.TakeEffort();
         const PartMessage part{block, taken.samples, executor.ledger.TakeSeconds(block),
-                               taken.seconds, MeansOf(tiles, needs[size_t(block)], *film)};
+                               taken.seconds, MeansOf(tiles, needs[size_t(block)], *context.film)};
         touched[size_t(block)] = true;
         if (needs[size_t(block)] == ViewNeed::Measured)
-            channel.Post(0, PackPixels(block, tiles, *film, options.layers));
+            channel.Post(0, PackPixels(block, tiles, *context.film, context.layers));
         channel.Post(0, Pack(part));
     }
 
@@ -106,13 +105,13 @@ class Follower {
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
             const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
-            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *film, options.layers));
+            if (!tiles.empty())
+                channel.Post(0, PackPixels(i, tiles, *context.film, context.layers));
         }
         channel.Post(0, Pack(RankWord::Collected));
     }
 
-    const RenderOptions& options;
-    Film* film;
+    const RenderContext& context;
     Rank rank;
     Executor& executor = rank.executor;
     LiveSchedule& schedule = executor.schedule;
@@ -126,16 +125,17 @@ class Follower {
 
 }  // namespace
 
-RenderResult FollowRanks(const SampleSource& source, const RenderOptions& given, Film* film,
+RenderResult FollowRanks(const RenderContext& given, const RenderOptions& asked,
                          tbb::task_arena* arena) {
-    RenderOptions options = given;
+    RenderContext context = given;
+    context.interrupted = nullptr;
+    context.checkpoints = {};
+    RenderOptions options = asked;
     options.makeCriterion = nullptr;
-    options.onProgress = nullptr;
-    options.onStop = nullptr;
-    options.onCheckpoint = nullptr;
-    options.schedule.inSteps |= bool(options.onPreview);
-    options.onPreview = nullptr;
-    return Follower(source, options, film, arena).Follow();
+    options.schedule.inSteps |= bool(asked.events.onPreview);
+    options.events = {};
+    options.events.onSilence = asked.events.onSilence;
+    return Follower(context, options, arena).Follow();
 }
 
 }  // namespace lull

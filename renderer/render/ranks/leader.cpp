@@ -16,11 +16,11 @@ constexpr double leastRun = 20;    // until the next pause: times what the last 
 
 class Leader {
   public:
-    Leader(const SampleSource& source, const RenderOptions& options, Film* film,
-           const RenderState* interrupted, tbb::task_arena* arena)
-        : options(options),
-          film(film),
-          rank(source, options, film, interrupted, arena,
+    Leader(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena)
+        : context(context),
+          options(options),
+          film(context.film),
+          rank(context, options, arena,
                {.onPassEnd = [this](int block) { EndPass(block); },
                 .completeView = [this](int block, FilmView* view) { CompleteView(block, view); },
                 .onDecided = [this](int block, const BlockAnswer& a) { TellAnswer(block, a); },
@@ -78,17 +78,17 @@ class Leader {
     void EndRound() {
         executor.Quiesce();
         executor.EndRound();
-        if (IsLearning(options)) return;
+        if (IsLearning(context)) return;
         TellGuide();
-        deal = FirstDeal(options);
+        deal = FirstDeal(context, options);
         std::erase_if(deal, [&](int other) { return channel.HasGivenUp(other); });
         Deal();
     }
 
     // The learner of the others, who have no tiles before that, is to know what this one does.
     void TellGuide() {
-        if (options.learner && !IsLearning(options))
-            channel.PostToAll(PackGuide(options.learner->Save()));
+        if (context.learner && !IsLearning(context))
+            channel.PostToAll(PackGuide(context.learner->Save()));
     }
 
     double Seconds() const { return executor.ledger.Seconds(); }
@@ -102,7 +102,7 @@ class Leader {
         if (!channel.HasGivenUpAny() || (answers.empty() && !AreBehind()))
             executor.WriteCheckpoint();
         else
-            executor.nextCheckpoint = Seconds() + options.checkpointInterval;
+            executor.nextCheckpoint = Seconds() + context.checkpoints.interval;
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
@@ -110,7 +110,7 @@ class Leader {
 
     void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
-        schedule.Restart(StartsOf(blocks, options, *film), {0, std::exchange(deal, {})});
+        schedule.Restart(StartsOf(blocks, context, options), {0, std::exchange(deal, {})});
         executor.ledger.TakeEffort();
         ForgetParts();
         SendStart(before);
@@ -185,7 +185,7 @@ class Leader {
         for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
             for (int i = 0; i < int(blocks.size()); ++i) {
                 const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
-                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, options.layers));
+                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, context.layers));
             }
         channel.PostToAll(Pack(RankWord::Begin));
     }
@@ -212,7 +212,7 @@ class Leader {
         while (!executor.pausing && !IsOver() && !schedule.IsRoundOver()) {
             Exchange();
             WatchOthers();
-            if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
+            if (schedule.HasClock() && !schedule.TimeCalled() && !(context.secondsLeft() > 0)) {
                 schedule.CallTime();
                 channel.PostToAll(Pack(RankWord::TimeUp));
             }
@@ -261,11 +261,11 @@ class Leader {
     void WatchOthers() {
         const double least = options.rankPatience / 12;
         double patience = executor.IsCancelled() ? least : options.rankPatience;
-        if (schedule.HasClock()) patience = std::clamp(options.secondsLeft() / 10, least, patience);
+        if (schedule.HasClock()) patience = std::clamp(context.secondsLeft() / 10, least, patience);
         for (const int silent : channel.FindSilent(least / 5, patience)) {
             channel.GiveUp(silent);
             hasGivenUp = executor.pausing = true;
-            if (options.onGivenUp) options.onGivenUp(silent, patience);
+            if (options.events.onGivenUp) options.events.onGivenUp(silent, patience);
         }
     }
 
@@ -274,7 +274,7 @@ class Leader {
             TakePart(from, GetPart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
-            GetPixels(reader, schedule.TilesOfRank(block, from), film, options.layers);
+            GetPixels(reader, schedule.TilesOfRank(block, from), film, context.layers);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);
         } else if (word == RankWord::Collected) {
@@ -333,7 +333,7 @@ class Leader {
     }
 
     void TellAnswer(int block, const BlockAnswer& answer) {
-        if (IsLearning(options)) return;  // by Start, where there are tiles for others
+        if (IsLearning(context)) return;  // by Start, where there are tiles for others
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
         const ViewNeed need =
@@ -341,6 +341,7 @@ class Leader {
         channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 
+    const RenderContext& context;
     const RenderOptions& options;
     Film* film;
     Rank rank;
@@ -367,9 +368,9 @@ class Leader {
 
 }  // namespace
 
-RenderResult LeadRanks(const SampleSource& source, const RenderOptions& options, Film* film,
-                       const RenderState* interrupted, tbb::task_arena* arena) {
-    return Leader(source, options, film, interrupted, arena).Lead();
+RenderResult LeadRanks(const RenderContext& context, const RenderOptions& options,
+                       tbb::task_arena* arena) {
+    return Leader(context, options, arena).Lead();
 }
 
 }  // namespace lull

@@ -23,19 +23,20 @@ RankHooks WithFailures(RankHooks hooks, Rank* rank) {
 
 }  // namespace
 
-bool IsLearning(const RenderOptions& options) {
-    return options.learner && !options.learner->IsDone();
+bool IsLearning(const RenderContext& context) {
+    return context.learner && !context.learner->IsDone();
 }
 
-std::vector<int> FirstDeal(const RenderOptions& options) {
-    return IsLearning(options) ? std::vector{0} : EvenDeal(options.peers->Count());
+std::vector<int> FirstDeal(const RenderContext& context, const RenderOptions& options) {
+    return IsLearning(context) ? std::vector{0} : EvenDeal(options.peers->Count());
 }
 
-Rank::Rank(const SampleSource& source, const RenderOptions& options, Film* film,
-           const RenderState* interrupted, tbb::task_arena* arena, RankHooks hooks)
-    : executor(source, options, film, interrupted, StartsOf(interrupted, options, *film),
-               {options.peers->Rank(), FirstDeal(options)}, WithFailures(std::move(hooks), this)),
-      channel(options.peers, options.onSilence),
+Rank::Rank(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena,
+           RankHooks hooks)
+    : executor(context, options, StartsOf(context, options),
+               {options.peers->Rank(), FirstDeal(context, options)},
+               WithFailures(std::move(hooks), this)),
+      channel(options.peers, options.events.onSilence),
       tileSize(options.schedule.tileSize),
       arena(arena) {}
 

@@ -10,8 +10,7 @@ namespace lull {
 // calling thread speaks with the other ranks.
 class Rank {
   public:
-    Rank(const SampleSource&, const RenderOptions&, Film*, const RenderState* interrupted,
-         tbb::task_arena*, RankHooks);
+    Rank(const RenderContext&, const RenderOptions&, tbb::task_arena*, RankHooks);
 
     // Runs `body`; what it throws leaves no task at work.
     template <typename Body>
@@ -42,15 +41,14 @@ class Rank {
 };
 
 // Says whether a guide is being learned: rank 0 then has all tiles.
-bool IsLearning(const RenderOptions&);
+bool IsLearning(const RenderContext&);
 
 // Returns how tiles are dealt out as long as nobody knows how fast ranks are.
-std::vector<int> FirstDeal(const RenderOptions&);
+std::vector<int> FirstDeal(const RenderContext&, const RenderOptions&);
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
 // There is no display.
-RenderResult LeadRanks(const SampleSource&, const RenderOptions&, Film*,
-                       const RenderState* interrupted, tbb::task_arena*);
-RenderResult FollowRanks(const SampleSource&, const RenderOptions&, Film*, tbb::task_arena*);
+RenderResult LeadRanks(const RenderContext&, const RenderOptions&, tbb::task_arena*);
+RenderResult FollowRanks(const RenderContext&, const RenderOptions&, tbb::task_arena*);
 
 }  // namespace lull

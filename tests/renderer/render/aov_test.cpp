@@ -15,7 +15,7 @@ const PixelRect kRegion = {{5, 3}, {75, 63}};
 struct Rendered {
     Film film;
     AovFilm aovs;
-    RenderOptions options;
+    RenderSetup options;
     RenderResult result;
 
     Rendered()
@@ -27,11 +27,13 @@ struct Rendered {
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
         };
+        options.source = SyntheticSample;
+        options.film = &film;
         options.layers = {.aovs = &aovs};
     }
-    void Run(const RenderState* interrupted = nullptr,
-             const SampleSource& source = SyntheticSample) {
-        result = Render(source, options, &film, interrupted);
+    void Run(const RenderState* interrupted = nullptr) {
+        options.interrupted = interrupted;
+        result = Render(options, options);
     }
 };
 
@@ -57,8 +59,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
         EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
         EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
         Film without(kRegion);
-        render.options.layers = {};
-        Render(SyntheticSample, render.options, &without);
+        Render({.source = SyntheticSample, .film = &without}, render.options);
         EXPECT_TRUE(SamePixels(render.film, without));
     }
 }
@@ -105,15 +106,16 @@ TEST(Aovs, GoOnFromCheckpoints) {
     {
         Rendered first;
         std::atomic<int> taken = 0;
+        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+            ++taken;
+            return SyntheticSample(s, pixel, k, hit);
+        };
         first.options.isCancelled = [&] { return taken > 50001; };
-        first.options.onCheckpoint = [&](const RenderState& s) {
+        first.options.checkpoints.write = [&](const RenderState& s) {
             WriteCheckpoint(path, identity, s, first.film, first.options.layers);
         };
-        first.options.checkpointInterval = 1e6;
-        first.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
-            ++taken;
-            return SyntheticSample(sampler, pixel, k, hit);
-        });
+        first.options.checkpoints.interval = 1e6;
+        first.Run();
         EXPECT_TRUE(first.result.cancelled);
     }
     Rendered second;

@@ -75,7 +75,8 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
     const TemporaryDirectory directory;
     const std::string path = directory.File("render.checkpoint");
     Film reference(kRegion);
-    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
+    const RenderResult expected =
+        Render({.source = SyntheticSample, .film = &reference}, SmallRender(2));
     EXPECT_LT(reference.SampleCount(), kRegion.Area() * 60);
 
     for (const int samplesARun : {5000, 12345, 100000, 300000}) {
@@ -93,10 +94,14 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
                 return SyntheticSample(sampler, pixel, index, hit);
             };
             options.isCancelled = [&] { return samples >= samplesARun; };
-            options.onCheckpoint = [&](const RenderState& s) {
+            const auto write = [&](const RenderState& s) {
                 WriteCheckpoint(path, kIdentity, s, film);
             };
-            result = Render(source, options, &film, begun ? &state : nullptr);
+            result = Render({.source = source,
+                             .film = &film,
+                             .interrupted = begun ? &state : nullptr,
+                             .checkpoints = {write}},
+                            options);
             if (!result.cancelled) break;
             begun = true;
             film = Film(kRegion);
@@ -111,13 +116,14 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
 
 TEST(Checkpoint, IsTakenAgainAndAgainWithoutAnEffect) {
     Film reference(kRegion);
-    const RenderResult expected = Render(SyntheticSample, SmallRender(2), &reference);
-    RenderOptions options = SmallRender(4);
-    options.checkpointInterval = 0;
+    const RenderResult expected =
+        Render({.source = SyntheticSample, .film = &reference}, SmallRender(2));
     int checkpoints = 0;
-    options.onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+    const auto count = [&](const RenderState&) { ++checkpoints; };
     Film film(kRegion);
-    ExpectSame(Render(SyntheticSample, options, &film), expected);
+    ExpectSame(Render({.source = SyntheticSample, .film = &film, .checkpoints = {count, 0}},
+                      SmallRender(4)),
+               expected);
     EXPECT_TRUE(SamePixels(film, reference));
     EXPECT_GT(checkpoints, 50);
 }
@@ -125,14 +131,15 @@ TEST(Checkpoint, IsTakenAgainAndAgainWithoutAnEffect) {
 TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     Film whole(kRegion), part(kRegion);
     const RenderOptions options = SmallRender(2);
-    const RenderResult expected = Render(SyntheticSample, options, &whole);
+    const RenderResult expected = Render({.source = SyntheticSample, .film = &whole}, options);
     RenderState state;
     for (const Block& block : MakeBlocks(kRegion, options.schedule)) {
         state.blocks.push_back({.block = block, .decisions = {}});
         state.blocks.back().block.stopped = state.blocks.size() != 3;
     }
     state.criteria.resize(state.blocks.size());
-    const RenderResult result = Render(SyntheticSample, options, &part, &state);
+    const RenderContext rest{.source = SyntheticSample, .film = &part, .interrupted = &state};
+    const RenderResult result = Render(rest, options);
     EXPECT_FALSE(result.cancelled);
     for (size_t i = 0; i < result.blocks.size(); ++i)
         EXPECT_EQ(result.blocks[i].block.spp, i == 2 ? expected.blocks[i].block.spp : 0);
@@ -140,7 +147,7 @@ TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     EXPECT_EQ(part.At({20, 20}).count, 0u);
 
     state.criteria.pop_back();
-    EXPECT_THROW(Render(SyntheticSample, options, &part, &state), std::invalid_argument);
+    EXPECT_THROW(Render(rest, options), std::invalid_argument);
 }
 
 // Writes the checkpoint of a render that has just begun.
@@ -149,8 +156,8 @@ void WriteSmallCheckpoint(const std::string& path) {
     RenderOptions options = SmallRender(1);
     std::atomic<int> tiles = 0;
     options.isCancelled = [&] { return tiles++ >= 50; };
-    options.onCheckpoint = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
-    Render(SyntheticSample, options, &film);
+    const auto write = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
+    Render({.source = SyntheticSample, .film = &film, .checkpoints = {write}}, options);
 }
 
 TEST(Checkpoint, SaysWhatIsNotTheSame) {
@@ -184,8 +191,8 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
     Film again(kRegion, {.withHalf = false});
     EXPECT_NO_THROW(ReadCheckpoint(path, kIdentity, &again));
     EXPECT_EQ(again.MeanImage(), whole.MeanImage());
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }), "--half-buffer on"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }),
+                         "without the sums of the half"));
 }
 
 TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {

@@ -25,27 +25,28 @@ PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, Fi
 struct Clocked {
     Film film{{{0, 0}, {80, 20}}};
     std::atomic<int64_t> taken = 0;
-    RenderOptions options;
+    RenderSetup setup;
     RenderResult result;
 
     // `samples` is how many fit in the time; 0: all.
     explicit Clocked(int64_t samples, int threads = 1, const RenderState* state = nullptr,
-                     const std::function<void(RenderOptions*)>& change = {}) {
-        options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
-        options.sampler = SamplerKind::Random;
-        options.threads = threads;
+                     const std::function<void(RenderSetup*)>& change = {}) {
+        setup.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
+        setup.sampler = SamplerKind::Random;
+        setup.threads = threads;
+        setup.film = &film;
+        setup.interrupted = state;
         if (samples > 0)
-            options.secondsLeft = [this, samples] { return double(samples - taken) / 1e6; };
-        options.makeCriterion = [](const BlockInfo&) {
+            setup.secondsLeft = [this, samples] { return double(samples - taken) / 1e6; };
+        setup.makeCriterion = [](const BlockInfo&) {
             return MakeCriterion(LightnessNoiseRule(0.07));
         };
-        if (change) change(&options);
-        const auto source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                   FirstHit* hit) {
+        if (change) change(&setup);
+        setup.source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
             ++taken;
             return UnevenSample(sampler, pixel, index, hit);
         };
-        result = Render(source, options, &film, state);
+        result = Render(setup, setup);
     }
 
     int Spp(int block) const { return result.blocks[size_t(block)].block.spp; }
@@ -81,7 +82,7 @@ TEST(Clock, MakesTheWorstBlockAsGoodAsItCanBe) {
     for (int i = 0; i < 3; ++i) EXPECT_LE(render.Spp(i), render.Spp(i + 1)) << i;
     EXPECT_GT(render.Spp(3), 2 * render.Spp(2));
     // At equal samples the worst is a good deal noisier.
-    const Clocked even(0, 1, nullptr, [](RenderOptions* o) {
+    const Clocked even(0, 1, nullptr, [](RenderSetup* o) {
         o->schedule.cap = 60 / 4 * 20;
         o->makeCriterion = nullptr;
         o->secondsLeft = [] { return 1.0; };
@@ -113,7 +114,7 @@ TEST(Clock, LeavesTheStopsOfTheRule) {
 TEST(Clock, CanBeRepeatedFromTheSamplesOfEachBlock) {
     const Clocked render(Pixels(45) + 1234, 2);
     ASSERT_TRUE(render.result.timeUp);
-    const Clocked again(0, 2, nullptr, [&](RenderOptions* o) {
+    const Clocked again(0, 2, nullptr, [&](RenderSetup* o) {
         o->makeCriterion = [&](const BlockInfo& info) {
             return std::make_unique<ScriptedCriterion>(render.Spp(info.index));
         };
@@ -135,8 +136,8 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
     for (const auto& [time, threads] :
          {std::pair(times[0], 1), {times[1], 1}, {times[2], 1}, {times[1], 2}}) {
         RenderState state;
-        Clocked render(time, threads, nullptr, [&](RenderOptions* o) {
-            o->onCheckpoint = [&](const RenderState& s) { state = s; };
+        Clocked render(time, threads, nullptr, [&](RenderSetup* o) {
+            o->checkpoints.write = [&](const RenderState& s) { state = s; };
         });
         EXPECT_TRUE(render.result.timeUp);
         EXPECT_LT(render.taken, time + 2 * 8 * 8 * 20);
@@ -149,10 +150,8 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
         for (const BlockResult& b : render.result.blocks)
             for (const DecisionRecord& decision : b.decisions) EXPECT_EQ(decision.spp, 20);
 
-        RenderOptions options = render.options;
-        options.secondsLeft = nullptr;
-        options.onCheckpoint = nullptr;
-        const RenderResult whole = Render(UnevenSample, options, &render.film, &state);
+        const RenderResult whole = Render(
+            {.source = UnevenSample, .film = &render.film, .interrupted = &state}, render.setup);
         const Clocked reference(0);
         EXPECT_TRUE(SamePixels(render.film, reference.film));
         for (size_t i = 0; i < 4; ++i)
@@ -166,14 +165,14 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     RenderState state;
     std::unique_ptr<Film> film;
     {
-        Clocked first(0, 1, nullptr, [&](RenderOptions* o) {
-            o->onCheckpoint = [&](const RenderState& s) { state = s; };
+        Clocked first(0, 1, nullptr, [&](RenderSetup* o) {
+            o->checkpoints.write = [&](const RenderState& s) { state = s; };
             o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 50; };
         });
         EXPECT_TRUE(first.result.cancelled);
         film = std::make_unique<Film>(first.film);
     }
-    RenderOptions options;
+    RenderSetup options;
     options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
     options.sampler = SamplerKind::Random;
     options.threads = 2;
@@ -182,13 +181,15 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
-    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
         --left;
         return UnevenSample(sampler, pixel, index, hit);
     };
     RenderState ended;
-    options.onCheckpoint = [&](const RenderState& s) { ended = s; };
-    const RenderResult result = Render(source, options, film.get(), &state);
+    options.checkpoints.write = [&](const RenderState& s) { ended = s; };
+    options.film = film.get();
+    options.interrupted = &state;
+    const RenderResult result = Render(options, options);
     EXPECT_TRUE(result.timeUp);
     for (const BlockResult& b : result.blocks) {
         EXPECT_GE(b.block.spp, 20);
@@ -197,13 +198,14 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     }
     // And what the clock has ended goes on to the same bits without.
     options.secondsLeft = nullptr;
-    Render(source, options, film.get(), &ended);
+    const RenderState before = ended;
+    options.interrupted = &before;
+    Render(options, options);
     EXPECT_TRUE(SamePixels(*film, Clocked(0).film));
 }
 
 TEST(Clock, TakesBlocksOfAnySize) {
-    const Clocked render(Pixels(6), 1, nullptr,
-                         [](RenderOptions* o) { o->schedule.blockSize = 7; });
+    const Clocked render(Pixels(6), 1, nullptr, [](RenderSetup* o) { o->schedule.blockSize = 7; });
     EXPECT_TRUE(render.result.timeUp);
     for (const BlockResult& b : render.result.blocks) EXPECT_TRUE(std::isfinite(b.block.noise));
 }

@@ -4,30 +4,18 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/render/checkpoint.h"
-#include "tests/renderer/files/test_files.h"
-#include "tests/renderer/render/synthetic_samples.h"
+#include "renderer/film/layers.h"
+#include "tests/renderer/render/feature_render.h"
 
 namespace lull {
 namespace {
 
-const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
-
-struct FeatureRender {
-    Film film{kPictureRegion};
-    FeatureFilm features{kPictureRegion};
-
-    explicit FeatureRender(int threads, int spp = 36) {
-        RenderOptions options;
-        options.schedule = {.blockSize = 30, .passLength = 6, .cap = spp};
-        options.threads = threads;
-        options.makeCriterion = [](const BlockInfo&) {
-            return std::make_unique<ScriptedCriterion>(1000);
-        };
-        options.layers = {.features = &features};
-        Render(SyntheticSample, options, &film);
-    }
-};
+bool SameFeatures(const FeatureFilm& a, const FeatureFilm& b) {
+    for (int y = kPictureRegion.min.y(); y < kPictureRegion.max.y(); ++y)
+        for (int x = kPictureRegion.min.x(); x < kPictureRegion.max.x(); ++x)
+            if (!(a.At({x, y}) == b.At({x, y}))) return false;
+    return true;
+}
 
 TEST(FeatureFilm, IsTheSameForAnyThreads) {
     const FeatureRender one(1), three(3);
@@ -39,7 +27,7 @@ TEST(FeatureFilm, IsTheSameForAnyThreads) {
     options.makeCriterion = [](const BlockInfo&) {
         return std::make_unique<ScriptedCriterion>(1000);
     };
-    Render(SyntheticSample, options, &film);
+    Render({.source = SyntheticSample, .film = &film}, options);
     EXPECT_TRUE(SamePixels(one.film, film));
 }
 
@@ -83,21 +71,6 @@ TEST(PictureOf, LeavesPixelsAloneThatHaveNoHalves) {
     const FeatureRender render(1, 2);
     const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
     EXPECT_EQ(picture.colour.a.values, picture.colour.b.values);
-}
-
-TEST(HalfChannels, AreReadAsTheyWere) {
-    const FeatureRender render(1);
-    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
-    ExrImage exr;
-    exr.width = 60;
-    exr.height = 40;
-    exr.channels = MakeHalfChannels(render.film, render.features, kPictureRegion);
-    const NoisyPicture again = ReadPicture(exr, "a.exr");
-    EXPECT_EQ(again.colour.a.values, picture.colour.a.values);
-    EXPECT_EQ(again.features.values, picture.features.values);
-    EXPECT_EQ(again.variance.values, picture.variance.values);
-    exr.channels.erase(exr.channels.begin());
-    EXPECT_THROW(ReadPicture(exr, "a.exr"), Error);
 }
 
 }  // namespace

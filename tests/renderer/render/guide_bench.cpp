@@ -74,9 +74,8 @@ void BenchGuide(benchmark::State& state, const std::string& file) {
         RenderOptions render;
         render.schedule.cap = FromEnvironment("LULL_BENCH_SPP", 252);
         render.sampler = SamplerKind::Random;
-        render.learner = &learner;
         Film film(region, {.grid = GridOf(render.schedule)});
-        Render(SamplesOf(*scene, learner), render, &film);
+        Render({.source = SamplesOf(*scene, learner), .film = &film, .learner = &learner}, render);
         Images plain, guided, recorded;
         const PathOptions records = learner.Paths();
         for (uint64_t i = 0; i < kImages; ++i) {

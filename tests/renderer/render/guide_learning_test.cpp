@@ -82,11 +82,14 @@ struct LearningRender {
         : scene(scene),
           options(std::move(given)),
           learner(scene, how, RegionOf(scene).Area()),
-          film(RegionOf(scene), {.grid = GridOf(options.schedule)}) {
-        options.learner = &learner;
-    }
+          film(RegionOf(scene), {.grid = GridOf(options.schedule)}) {}
     RenderResult Run(const RenderState* interrupted = nullptr) {
-        return Render(SamplesOf(scene, learner), options, &film, interrupted);
+        return Render({.source = SamplesOf(scene, learner),
+                       .film = &film,
+                       .interrupted = interrupted,
+                       .learner = &learner,
+                       .checkpoints = checkpoints},
+                      options);
     }
     const Guide& TheGuide() const { return *learner.Paths().guide; }
     double Mean() const {
@@ -98,6 +101,7 @@ struct LearningRender {
 
     const Scene& scene;
     RenderOptions options;
+    Checkpointing checkpoints;
     GuideLearner learner;
     Film film;
 };
@@ -365,7 +369,7 @@ TEST(Learning, GoesOnToTheSameBits) {
             }
             std::atomic<int> asked = 0;
             part.options.isCancelled = [&] { return ++asked > 23; };
-            part.options.onCheckpoint = [&](const RenderState& s) { state = s; };
+            part.checkpoints.write = [&](const RenderState& s) { state = s; };
             isDone = !part.Run(film ? &state : nullptr).cancelled;
             film = part.film;
             kept = part.learner.Save();
@@ -472,7 +476,7 @@ TEST(Learning, AutoGuidesWhereThatPays) {
     EXPECT_FALSE(few.learner.Figures().isUsed);
     EXPECT_EQ(few.learner.Figures().samples, 0);
     Film without(RegionOf(*room), {.grid = GridOf(few.options.schedule)});
-    Render(SamplesOf(*room, Estimator::Combined), RenderFor(200), &without);
+    Render({.source = SamplesOf(*room, Estimator::Combined), .film = &without}, RenderFor(200));
     EXPECT_TRUE(SamePixels(few.film, without));
 }
 

@@ -26,7 +26,7 @@ RenderOptions SmallRender() {
 
 Film Rendered(const RenderOptions& options, const PixelRect& region = kRegion) {
     Film film(region, {.grid = GridOf(options.schedule)});
-    Render(SyntheticSample, options, &film);
+    Render({.source = SyntheticSample, .film = &film}, options);
     return film;
 }
 
@@ -75,7 +75,7 @@ TEST(Render, StopsEachBlockWhenItsCriterionSaysSo) {
             return std::make_unique<ScriptedCriterion>(40 * (block.index + 1));
         };
         Film film(kRegion);
-        const RenderResult result = Render(SyntheticSample, options, &film);
+        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
         ASSERT_EQ(result.blocks.size(), 6u);
         EXPECT_FALSE(result.cancelled);
         for (int i = 0; i < 6; ++i) {
@@ -115,7 +115,7 @@ TEST(Render, ShowsCriteriaTheBlockAfterEachPass) {
         return witness;
     };
     Film film({{5, 5}, {65, 35}});
-    const RenderResult result = Render(SyntheticSample, options, &film);
+    const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
     EXPECT_EQ(spp, (std::vector<int>{20, 40, 60, 70}));
     EXPECT_TRUE(result.blocks[0].decisions.empty());  // it never judged
 }
@@ -138,7 +138,7 @@ TEST(Render, SpreadsASingleBlockOverAllThreads) {
     options.threads = 4;
     options.schedule = {.blockSize = 200, .passLength = 4, .cap = 4};
     Film film({{0, 0}, {200, 200}});
-    Render(meet, options, &film);
+    Render({.source = meet, .film = &film}, options);
     EXPECT_EQ(inside.size(), 4u);
 }
 
@@ -149,12 +149,11 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.schedule = {.blockSize = 50, .passLength = 20, .cap = 10000};
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
-    const RenderResult result = Render(
-        [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
-            ++taken;
-            return SyntheticSample(sampler, pixel, index, hit);
-        },
-        options, &film);
+    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+        ++taken;
+        return SyntheticSample(sampler, pixel, index, hit);
+    };
+    const RenderResult result = Render({.source = source, .film = &film}, options);
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(film.SampleCount(), taken);
     EXPECT_EQ(result.progress.samples, taken);
@@ -172,19 +171,19 @@ TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
     options.threads = 4;
     options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
     Film film(kRegion);
-    EXPECT_THROW(Render(SyntheticSample, options, &film), std::runtime_error);
-    EXPECT_THROW(
-        Render([](Sampler&, const Vec2i&, uint32_t) -> PathSample { throw std::bad_alloc(); },
-               SmallRender(), &film),
-        std::bad_alloc);
+    EXPECT_THROW(Render({.source = SyntheticSample, .film = &film}, options), std::runtime_error);
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t) -> PathSample {
+        throw std::bad_alloc();
+    };
+    EXPECT_THROW(Render({.source = broken, .film = &film}, SmallRender()), std::bad_alloc);
 }
 
 TEST(Render, ReportsProgressInOrderAndTheEnd) {
     std::vector<RenderProgress> reports;
     RenderOptions options = SmallRender();
     options.threads = 4;
-    options.progressInterval = 0;
-    options.onProgress = [&](const RenderProgress& p) { reports.push_back(p); };
+    options.events.progressInterval = 0;
+    options.events.onProgress = [&](const RenderProgress& p) { reports.push_back(p); };
     Rendered(options);
     ASSERT_GT(reports.size(), 2u);
     for (size_t i = 1; i < reports.size(); ++i)
@@ -199,15 +198,15 @@ TEST(Render, ShowsPreviews) {
     for (const int threads : {1, 4}) {
         RenderOptions options = SmallRender();
         options.threads = threads;
-        options.previewInterval = 0;
+        options.events.previewInterval = 0;
         Film film(kRegion, {.grid = GridOf(options.schedule)});
         std::vector<int64_t> samples;
-        options.onPreview = [&](const RenderResult& result) {
+        options.events.onPreview = [&](const RenderResult& result) {
             EXPECT_TRUE(result.cancelled);
             EXPECT_EQ(result.progress.samples, film.SampleCount());
             samples.push_back(film.SampleCount());
         };
-        const RenderResult result = Render(SyntheticSample, options, &film);
+        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
         EXPECT_FALSE(result.cancelled);
         EXPECT_TRUE(SamePixels(film, Rendered(SmallRender())));
         EXPECT_GT(samples.size(), 20u);
@@ -218,19 +217,24 @@ TEST(Render, ShowsPreviews) {
 
 // Whoever waits for either does not get both.
 TEST(Render, WritesCheckpointsAndPreviewsEachInTheirTime) {
-    RenderOptions options = SmallRender();
-    options.previewInterval = 0;
-    options.checkpointInterval = 1e6;
-    int previews = 0, checkpoints = 0;
-    options.onPreview = [&](const RenderResult&) { ++previews; };
-    options.onCheckpoint = [&](const RenderState&) { ++checkpoints; };
-    Rendered(options);
+    const auto countAt = [](double previewInterval, double checkpointInterval) {
+        int previews = 0, checkpoints = 0;
+        RenderOptions options = SmallRender();
+        options.events.previewInterval = previewInterval;
+        options.events.onPreview = [&](const RenderResult&) { ++previews; };
+        Film film(kRegion, {.grid = GridOf(options.schedule)});
+        Render({.source = SyntheticSample,
+                .film = &film,
+                .checkpoints = {.write = [&](const RenderState&) { ++checkpoints; },
+                                .interval = checkpointInterval}},
+               options);
+        return std::pair(previews, checkpoints);
+    };
+    const auto [previews, none] = countAt(0, 1e6);
     EXPECT_GT(previews, 20);
-    EXPECT_EQ(checkpoints, 0);
-    std::swap(options.previewInterval, options.checkpointInterval);
-    previews = 0;
-    Rendered(options);
-    EXPECT_EQ(previews, 0);
+    EXPECT_EQ(none, 0);
+    const auto [no, checkpoints] = countAt(1e6, 0);
+    EXPECT_EQ(no, 0);
     EXPECT_GT(checkpoints, 20);
 }
 

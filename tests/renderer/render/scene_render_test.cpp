@@ -83,7 +83,7 @@ Film Rendered(const Scene& scene, const Settings& s) {
     options.seed = s.seed;
     options.threads = s.threads;
     Film film(RegionOf(scene));
-    Render(SamplesOf(scene, s.estimator), options, &film);
+    Render({.source = SamplesOf(scene, s.estimator), .film = &film}, options);
     return film;
 }
 
@@ -146,7 +146,7 @@ TEST(SceneRender, ShowsNoBordersOfBlocks) {
         return std::make_unique<ScriptedCriterion>(20 + 60 * (block.index % 3));
     };
     Film film(RegionOf(*scene));
-    Render(SamplesOf(*scene, Estimator::Combined), options, &film);
+    Render({.source = SamplesOf(*scene, Estimator::Combined), .film = &film}, options);
 
     double atBorders = 0, elsewhere = 0, squares = 0;
     int borderPairs = 0, otherPairs = 0;

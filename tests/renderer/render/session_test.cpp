@@ -61,9 +61,10 @@ struct Said {
     std::vector<std::string> resume, learning, warnings;
 
     void Hear(SessionOptions* options) {
-        options->onResume = [this](const std::string& line) { resume.push_back(line); };
-        options->onLearning = [this](const std::string& line) { learning.push_back(line); };
-        options->onWarning = [this](const std::string& line) { warnings.push_back(line); };
+        RenderEvents& events = options->render.events;
+        events.onResume = [this](const std::string& line) { resume.push_back(line); };
+        events.onLearning = [this](const std::string& line) { learning.push_back(line); };
+        events.onWarning = [this](const std::string& line) { warnings.push_back(line); };
     }
 };
 
@@ -103,7 +104,7 @@ TEST(Session, RefusesCheckpointsOfOtherLayers) {
     const TemporaryDirectory directory;
     SessionOptions options = OptionsFor(directory.File("c.h5"));
     options.guide.mode = GuideMode::Off;
-    options.render.checkpointAtEnd = true;
+    options.checkpoint.isKept = true;
     Session(*scene, kBoxRegion, options).Run();
     Session same(*scene, kBoxRegion, options);
     EXPECT_NO_THROW(same.Resume());
@@ -130,18 +131,6 @@ TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     EXPECT_TRUE(said.warnings[0].starts_with("no checkpoint: "));
 }
 
-TEST(Session, LeavesCheckpointsOfOthersAlone) {
-    const TemporaryDirectory directory;
-    const std::string file = directory.File("c.h5");
-    EXPECT_NO_THROW(CheckCheckpoint({}));
-    EXPECT_NO_THROW(CheckCheckpoint({.file = file}));
-    EXPECT_FALSE(ResumeIfThere(file, 1).resume);
-    directory.Write("c.h5", "x");
-    EXPECT_THROW(CheckCheckpoint({.file = file}), Error);
-    EXPECT_NO_THROW(CheckCheckpoint({.file = file, .resume = true}));
-    EXPECT_TRUE(ResumeIfThere(file, 1).resume);
-}
-
 // Learning ends early, and the files of the image take a part of the time.
 TEST(Session, HeedsTheClock) {
     const auto scene = MakeBox();
@@ -152,8 +141,8 @@ TEST(Session, HeedsTheClock) {
     Session session(*scene, kBoxRegion, options);
     const RenderResult result = session.Run();
     EXPECT_EQ(session.Guidance().samples, 60);
-    ASSERT_TRUE(session.Options().secondsLeft);
-    EXPECT_LT(session.Options().secondsLeft(), options.clock());
+    ASSERT_TRUE(session.Context().secondsLeft);
+    EXPECT_LT(session.Context().secondsLeft(), options.clock());
     EXPECT_FALSE(result.timeUp);
     asked = 100000;
     Session late(*scene, kBoxRegion, options);

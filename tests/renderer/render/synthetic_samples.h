@@ -31,6 +31,8 @@ inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t
     const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
     return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
 }
+// Context and options of a render, where a test changes either.
+struct RenderSetup : RenderContext, RenderOptions {};
 
 // Says whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {

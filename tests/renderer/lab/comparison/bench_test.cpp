@@ -38,9 +38,9 @@ TEST(MeasurePoints, GivesAPointForEachRule) {
     std::vector<BlockHistory> histories(4);
     options.makeCriterion = MakeObservers(rules, region, options.schedule,
                                           {.snapshots = true, .goesOn = true}, &histories);
-    const SampleSource source = SyntheticSample;
-    const RenderResult result = Render(source, options, &film);
-    const ObservedRender observed{source, options, film, result, histories};
+    const RenderContext context{.source = SyntheticSample, .film = &film};
+    const RenderResult result = Render(context, options);
+    const ObservedRender observed{context, options, result, histories};
     int calls = 0;
     const std::vector<BenchPoint> points =
         MeasurePoints(observed, rules, TakeWholeImage(observed).image, 2, [&] { ++calls; });

@@ -43,7 +43,7 @@ std::pair<RgbImage, std::vector<int>> RenderAlone(const ObservedRule& rule) {
     RenderOptions options = Options();
     options.schedule.smallestSide = rule.smallestSide;
     options.makeCriterion = rule.make;
-    const RenderResult result = Render(SyntheticSample, options, &film);
+    const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
     std::vector<int> spp;
     for (const BlockResult& block : result.blocks) spp.push_back(block.block.spp);
     return {{kRegion.Width(), kRegion.Height(), film.MeanImage()}, spp};
@@ -51,9 +51,9 @@ std::pair<RgbImage, std::vector<int>> RenderAlone(const ObservedRule& rule) {
 
 struct Observed {
     std::vector<ObservedRule> rules = Rules();
-    SampleSource source = SyntheticSample;
-    RenderOptions options = Options();
     Film film{kRegion};
+    RenderContext context{.source = SyntheticSample, .film = &film};
+    RenderOptions options = Options();
     std::vector<BlockHistory> histories;
     RenderResult result;
 
@@ -62,9 +62,9 @@ struct Observed {
         options.makeCriterion =
             MakeObservers(rules, kRegion, options.schedule,
                           {.snapshots = true, .noise = true, .goesOn = goesOn}, &histories);
-        result = Render(source, options, &film);
+        result = Render(context, options);
     }
-    ObservedRender Get() const { return {source, options, film, result, histories}; }
+    ObservedRender Get() const { return {context, options, result, histories}; }
 };
 
 // What the whole design rests on: one render holds the images of all rules, to the last bit.
@@ -106,7 +106,7 @@ TEST(VerificationOf, ComparesPixelsAndAddsUpSeconds) {
         RenderOptions options = Options();
         options.schedule.smallestSide = observed.rules[rule].smallestSide;
         options.makeCriterion = observed.rules[rule].make;
-        const RenderResult result = Render(SyntheticSample, options, &film);
+        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
         const Verification verification = VerificationOf(result, film, taken);
         EXPECT_EQ(verification.samePixels, rule == 1);
         EXPECT_EQ(verification.threads, 2);

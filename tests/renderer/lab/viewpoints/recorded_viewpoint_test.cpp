@@ -27,7 +27,7 @@ ViewpointRecording Record(const std::vector<int>& limits) {
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
     const RenderResult result =
-        RecordBlocks(SyntheticSample, RoomOptions(), &film, nullptr, limits, &viewpoint);
+        RecordBlocks({.source = SyntheticSample, .film = &film}, RoomOptions(), limits, &viewpoint);
     EXPECT_FALSE(result.cancelled);
     return viewpoint;
 }
@@ -76,8 +76,8 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
     ViewpointRecording viewpoint = Frame();
     RenderOptions options = RoomOptions();
     RenderProgress last;
-    options.onProgress = [&](const RenderProgress& progress) { last = progress; };
-    RecordBlocks(SyntheticSample, options, &film, nullptr, {0, 6}, &viewpoint);
+    options.events.onProgress = [&](const RenderProgress& progress) { last = progress; };
+    RecordBlocks({.source = SyntheticSample, .film = &film}, options, {0, 6}, &viewpoint);
     EXPECT_EQ(last.samples, 8 * 45 * 44);
     EXPECT_EQ(last.samplesToCap, 0);
 }
@@ -90,12 +90,15 @@ TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
     std::optional<RenderState> state;
     int tiles = 0;
     options.isCancelled = [&] { return ++tiles > 9; };
-    options.onCheckpoint = [&](const RenderState& s) { state = s; };
-    EXPECT_TRUE(
-        RecordBlocks(SyntheticSample, options, &film, nullptr, {16, 6}, &viewpoint).cancelled);
+    RenderContext context{.source = SyntheticSample,
+                          .film = &film,
+                          .checkpoints = {[&](const RenderState& s) { state = s; }}};
+    EXPECT_TRUE(RecordBlocks(context, options, {16, 6}, &viewpoint).cancelled);
     EXPECT_TRUE(viewpoint.blocks.empty());
     ASSERT_TRUE(state);
-    RecordBlocks(SyntheticSample, RoomOptions(), &film, &*state, {16, 6}, &viewpoint);
+    const RenderState before = *state;
+    context.interrupted = &before;
+    RecordBlocks(context, RoomOptions(), {16, 6}, &viewpoint);
     const ViewpointRecording whole = Record({16, 6});
     for (const int i : {0, 1}) {
         EXPECT_EQ(viewpoint.blocks.at(i).spp, whole.blocks.at(i).spp);
@@ -110,7 +113,7 @@ TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
     EXPECT_EQ(study.blocks[1].pixels, (PixelRect{{45, 0}, {90, 44}}));
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderStudy(SyntheticSample, RoomOptions(), &film, nullptr, &study, &viewpoint);
+    RenderStudy({.source = SyntheticSample, .film = &film}, RoomOptions(), &study, &viewpoint);
     for (const StudyBlock& block : study.blocks) {
         ASSERT_EQ(block.pictures.size(), 3u);
         for (const DisplayPixels& picture : block.pictures) EXPECT_EQ(picture.size(), 45u * 44 * 3);
@@ -120,7 +123,7 @@ TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
 
     Film again(kRoom);
     Study alone = BeginStudy("room", kRoom, {4, 8, 16}, blocks, {{"scene", "a"}});
-    RenderStudy(SyntheticSample, RoomOptions(), &again, nullptr, &alone, nullptr);
+    RenderStudy({.source = SyntheticSample, .film = &again}, RoomOptions(), &alone, nullptr);
     EXPECT_EQ(StudyId(alone), StudyId(study));
 }
 

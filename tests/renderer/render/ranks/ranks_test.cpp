@@ -98,7 +98,7 @@ RenderOptions SharedOptions() {
     return options;
 }
 
-using Change = std::function<void(RenderOptions*, int rank)>;
+using Change = std::function<void(RenderSetup*, int rank)>;
 using SourceOfRank = std::function<SampleSource(int rank)>;
 
 SampleSource SameForAll(int) { return SyntheticSample; }
@@ -113,23 +113,23 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
     mail.boxes.resize(size_t(std::max(1, ranks)));
     const auto runRank = [&](int rank) {
         QueuePeers peers(&mail, rank);
-        RenderOptions options = SharedOptions();
+        RenderSetup options{{}, SharedOptions()};
         if (ranks > 0) options.peers = &peers;
         // The least that any of them allows is what this process has for all.
         options.threads = ranks + 1;
-        if (rank == 0) options.onCheckpoint = [&](const RenderState& s) { shared.state = s; };
+        if (rank == 0) options.checkpoints.write = [&](const RenderState& s) { shared.state = s; };
         if (change) change(&options, rank);
         auto film = std::make_unique<Film>(kImage, FilmOptions{.grid = GridOf(options.schedule)});
         auto layers = std::make_unique<AovFilm>(kImage, AovSet{.depth = true});
-        const RenderState* state = nullptr;
         if (before && rank == 0) {
             *film = *before->film;
             *layers = *before->layers;
-            state = &before->state;
+            options.interrupted = &before->state;
         }
-        const SampleSource source = sourceOf(rank);
+        options.source = sourceOf(rank);
+        options.film = film.get();
         if (withLayers) options.layers = {.aovs = layers.get()};
-        RenderResult result = Render(source, options, film.get(), state);
+        RenderResult result = Render(options, options);
         if (rank > 0) return;
         shared.film = std::move(film);
         shared.layers = std::move(layers);
@@ -158,8 +158,8 @@ TEST(Ranks, ComeToTheSameBits) {
     const Shared reference = RenderShared(0);
     ASSERT_EQ(reference.result.blocks.size(), 9u);
     for (const auto& [ranks, threads] : {std::pair(1, 1), {2, 3}, {3, 4}, {4, 5}}) {
-        const Shared shared = RenderShared(
-            ranks, [threads = threads](RenderOptions* o, int) { o->threads = threads; });
+        const Shared shared =
+            RenderShared(ranks, [threads = threads](RenderSetup* o, int) { o->threads = threads; });
         EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks << " " << threads;
         EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
         EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
@@ -172,7 +172,7 @@ TEST(Ranks, ComeToTheSameBits) {
 
 // There are ranks without a tile, and rules that look at nothing.
 TEST(Ranks, CanBeMoreThanTiles) {
-    const auto change = [](RenderOptions* o, int) {
+    const auto change = [](RenderSetup* o, int) {
         o->schedule = {.blockSize = 10, .cap = 20, .tileSize = 8};
         o->makeCriterion = nullptr;
     };
@@ -181,7 +181,7 @@ TEST(Ranks, CanBeMoreThanTiles) {
 
 // What criteria are shown is the same numbers.
 TEST(Ranks, ShowCriteriaTheSame) {
-    const auto change = [](RenderOptions* o, int) {
+    const auto change = [](RenderSetup* o, int) {
         o->makeCriterion = [](const BlockInfo&) { return MakeCriterion(LightnessNoiseRule(12)); };
     };
     const Shared one = RenderShared(0, change), three = RenderShared(3, change);
@@ -197,7 +197,7 @@ TEST(Ranks, ShowCriteriaTheSame) {
 
 // Returns what cancels the last of the ranks after a while.
 auto SignalToLast(int ranks) {
-    return [ranks](RenderOptions* o, int rank) {
+    return [ranks](RenderSetup* o, int rank) {
         if (rank != ranks - 1) return;
         o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), ranks] {
             return ++*calls > 150 / ranks;
@@ -221,10 +221,10 @@ TEST(Ranks, GoOnFromCheckpointsOfOthers) {
 TEST(Ranks, PauseForCheckpoints) {
     const Shared reference = RenderShared(0);
     std::atomic<int> checkpoints = 0;
-    const auto change = [&](RenderOptions* o, int rank) {
+    const auto change = [&](RenderSetup* o, int rank) {
         if (rank > 0) return;
-        o->checkpointInterval = 0.002;
-        o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+        o->checkpoints.interval = 0.002;
+        o->checkpoints.write = [&](const RenderState&) { ++checkpoints; };
     };
     // Takes many times the interval, however fast the machine is.
     const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index,
@@ -241,7 +241,7 @@ TEST(Ranks, PauseForCheckpoints) {
 
 // Others are quiet, and say so, before rank 0 has looked for messages.
 TEST(Ranks, MayAnswerAtOnce) {
-    const auto change = [](RenderOptions* o, int) { o->makeCriterion = nullptr; };
+    const auto change = [](RenderSetup* o, int) { o->makeCriterion = nullptr; };
     const auto nap = std::chrono::milliseconds(20);
     EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, {.nap = nap}).film,
                            *RenderShared(0, change).film));
@@ -258,7 +258,7 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
         };
         const Shared shared = RenderShared(
             3,
-            [&](RenderOptions* o, int rank) {
+            [&](RenderSetup* o, int rank) {
                 o->makeCriterion = nullptr;
                 o->secondsLeft = [&taken, time, rank] {
                     return rank > 0 ? 1 : double(time - taken);
@@ -266,7 +266,7 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
             },
             nullptr, [&](int) { return source; });
         EXPECT_TRUE(shared.result.timeUp);
-        const Shared again = RenderShared(2, [&](RenderOptions* o, int) {
+        const Shared again = RenderShared(2, [&](RenderSetup* o, int) {
             o->schedule.smallestSide = 0;
             o->schedule.passLength = 1;  // the time may have ended within the first pass
             o->makeCriterion = [&](const BlockInfo& block) {
@@ -290,7 +290,7 @@ TEST(Ranks, PassOnWhatTasksThrow) {
     const auto broken = [](Sampler&, const Vec2i&, uint32_t) -> PathSample {
         throw std::bad_alloc();
     };
-    EXPECT_THROW(Render(broken, options, &film), std::bad_alloc);
+    EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
 }
 
 TEST(Ranks, DealOutEveryTileOnce) {
@@ -328,7 +328,7 @@ SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSl
 
 TEST(Ranks, MoveTilesToWhereThereIsTime) {
     const Shared reference = RenderShared(0);
-    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0.02; };
+    const auto change = [](RenderSetup* o, int) { o->dealInterval = 0.02; };
     for (const int ranks : {2, 3, 4}) {
         const Shared shared =
             RenderShared(ranks, change, nullptr,
@@ -348,12 +348,12 @@ TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
     int checkpoints = 0;
     const Shared moved = RenderShared(
         3,
-        [&](RenderOptions* o, int rank) {
+        [&](RenderSetup* o, int rank) {
             o->dealInterval = 0;
             o->secondsLeft = [] { return 1000.0; };
             if (rank > 0) return;
-            o->checkpointInterval = 0.02;
-            o->onCheckpoint = [&](const RenderState&) { ++checkpoints; };
+            o->checkpoints.interval = 0.02;
+            o->checkpoints.write = [&](const RenderState&) { ++checkpoints; };
         },
         nullptr, source);
     EXPECT_TRUE(SamePixels(*moved.film, *reference.film));
@@ -377,8 +377,8 @@ TEST(Ranks, ShareLayers) {
     EXPECT_TRUE(SamePixels(*reference.film, *RenderShared(0).film));
     for (const auto& [ranks, threads] : {std::pair(1, 2), {2, 3}, {3, 4}, {3, 7}})
         ExpectSameLayers(
-            RenderLayers(ranks, [n = threads](RenderOptions* o, int) { o->threads = n; }),
-            reference, ranks);
+            RenderLayers(ranks, [n = threads](RenderSetup* o, int) { o->threads = n; }), reference,
+            ranks);
 }
 
 TEST(Ranks, GoOnWithTheLayersOfOthers) {
@@ -393,7 +393,7 @@ TEST(Ranks, GoOnWithTheLayersOfOthers) {
 TEST(Ranks, MoveLayersWithTheirTiles) {
     const auto source =
         SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
-    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0; };
+    const auto change = [](RenderSetup* o, int) { o->dealInterval = 0; };
     ExpectSameLayers(RenderLayers(3, change, nullptr, source), RenderLayers(0), 3);
 }
 
@@ -402,9 +402,9 @@ struct GivenUp {
 
     // Returns what has ranks given up soon.
     Change Soon(const Change& change = {}) {
-        return [this, change](RenderOptions* o, int rank) {
+        return [this, change](RenderSetup* o, int rank) {
             o->rankPatience = 2;
-            o->onGivenUp = [this](int given, double) { ranks.push_back(given); };
+            o->events.onGivenUp = [this](int given, double) { ranks.push_back(given); };
             if (change) change(o, rank);
         };
     }
@@ -418,8 +418,8 @@ TEST(Ranks, GoOnWithoutOneThatSleeps) {
          {std::pair(0, 60.0), {3, 0.002}, {12, 60.0}, {25, 0.002}}) {
         GivenUp givenUp;
         const Shared shared =
-            RenderShared(3, givenUp.Soon([seconds = interval](RenderOptions* o, int) {
-                o->checkpointInterval = seconds;
+            RenderShared(3, givenUp.Soon([seconds = interval](RenderSetup* o, int) {
+                o->checkpoints.interval = seconds;
             }),
                          nullptr, SameForAll, {.sleeper = 2, .messagesBefore = messages}, true);
         ExpectSameLayers(shared, reference, messages);
@@ -439,7 +439,7 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
             return SyntheticSample(sampler, pixel, index, hit);
         };
         GivenUp givenUp;
-        const Shared shared = RenderShared(3, givenUp.Soon([&](RenderOptions* o, int rank) {
+        const Shared shared = RenderShared(3, givenUp.Soon([&](RenderSetup* o, int rank) {
             o->makeCriterion = nullptr;
             o->secondsLeft = [&taken, rank] {
                 return rank > 0 ? 1 : double(kImage.Area() * 35 - taken);
@@ -472,14 +472,14 @@ TEST(Ranks, UndoLayers) {
         };
         const Shared timed = RenderLayers(
             3,
-            [&](RenderOptions* o, int rank) {
+            [&](RenderSetup* o, int rank) {
                 o->schedule.tileSize = 4;
                 o->makeCriterion = nullptr;
                 o->secondsLeft = [&, rank] { return rank > 0 ? 1 : double(time - taken); };
             },
             nullptr, source);
         undone = timed.film->SampleCount() < taken;
-        const Shared again = RenderLayers(0, [&](RenderOptions* o, int) {
+        const Shared again = RenderLayers(0, [&](RenderSetup* o, int) {
             o->schedule.smallestSide = 0;
             o->schedule.passLength = 1;  // the time may have ended within the first pass
             o->makeCriterion = [&](const BlockInfo& block) {
@@ -528,7 +528,7 @@ TEST(Ranks, LearnTheSame) {
                 *scene, LearningOptions{.isShort = true}, kImage.Area()));
         if (before) learners[0]->Take(*learned, *before->film);
         std::atomic<int64_t> left = tilesOfFirst;
-        const auto change = [&](RenderOptions* o, int rank) {
+        const auto change = [&](RenderSetup* o, int rank) {
             o->learner = learners[size_t(rank)].get();
             o->rankPatience = 1;
             o->schedule.cap = 120;

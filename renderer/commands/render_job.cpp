@@ -1,0 +1,122 @@
+#include "renderer/commands/render_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "renderer/commands/checkpoint_options.h"
+#include "renderer/commands/input_files.h"
+#include "renderer/commands/interrupt.h"
+#include "renderer/input/scene_hash.h"
+#include "renderer/mpi/job.h"
+
+namespace lull {
+
+namespace {
+
+// Lets all ranks share a render, of which a warning says so if one does not answer.
+void ShareAmongRanks(Job* ranks, SessionOptions* options) {
+    options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
+    options->render.peers = ranks->ThePeers();
+    options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
+        ranks->Warn(
+            fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
+                        "last checkpoint, with any number of ranks",
+                        fmt::join(silent, ", ")));
+    };
+    options->render.events.onGivenUp = [ranks](int rank, double seconds) {
+        ranks->GiveUp(rank);
+        ranks->Warn(
+            fmt::format("rank {} has given no sign of life for {}: going on without it, and taking "
+                        "its samples again",
+                        rank, FormatDuration(seconds)));
+    };
+}
+
+}  // namespace
+
+RenderJob::RenderJob(const RenderSettings& given, Job* ranks, bool withHalf)
+    : settings(given),
+      ranks(ranks),
+      input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = withHalf},
+            TalkOf(settings)) {}
+
+bool RenderJob::Leads() const { return !ranks || ranks->Rank() == 0; }
+
+void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs) const {
+    if (!Leads()) return;
+    const CheckpointOptions& checkpoint = settings.checkpoint;
+    outputs.push_back({checkpoint.isImplied ? "the checkpoint" : "--checkpoint", checkpoint.file});
+    for (const NamedFile& file : InputsOf(settings.scene, input.description))
+        inputs.push_back(file);
+    CheckOutputs(outputs, inputs);
+    CheckCheckpoint(checkpoint);
+}
+
+void RenderJob::Compile() {
+    scene = CompileScene(settings, &input);
+    provenance = MakeProvenance(settings, *scene, input.film);
+}
+
+RenderIdentity RenderJob::Identity() const {
+    return IdentityOf(provenance, SceneHash(input.description));
+}
+
+SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
+    SessionOptions options =
+        lull::MakeSessionOptions(settings, provenance.sampler, adaptive, ranks);
+    options.checkpoint = settings.checkpoint;
+    return options;
+}
+
+RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
+    session->Resume();
+    CatchInterrupts();
+    return session->Run(render);
+}
+
+std::optional<ExitCode> RenderJob::End(bool isInterrupted) const {
+    if (ranks) ranks->End();
+    if (!Leads()) return kDone;
+    if (!isInterrupted) return {};
+    TalkOf(settings).Note("interrupted; " + HowToGoOn(settings.checkpoint));
+    return kInterrupted;
+}
+
+void RenderJob::RemoveCheckpoint() const {
+    const CheckpointOptions& checkpoint = settings.checkpoint;
+    if (!checkpoint.file.empty() && !checkpoint.isKept) std::filesystem::remove(checkpoint.file);
+}
+
+void SetWording(const RenderSettings& settings, Job* ranks) {
+    if (!settings.jsonProgress) return;
+    ranks->SetWording([](const std::string& kind, const std::string& message) {
+        return JsonEvent(kind, message);
+    });
+}
+
+SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sampler,
+                                  bool adaptive, Job* ranks) {
+    SessionOptions options;
+    RenderOptions& render = options.render;
+    render.schedule = settings.schedule;
+    render.sampler = sampler;
+    render.seed = settings.seed;
+    render.threads = settings.scene.compile.threads;
+    render.isCancelled = Interrupted;
+    RenderEvents& events = render.events;
+    const auto printer = std::make_shared<ProgressPrinter>(MakePrinter(settings, adaptive));
+    events.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
+    events.onFinish = [printer](const RenderProgress& p) { printer->Finish(p); };
+    const Talk talk = TalkOf(settings);
+    events.onResume = [talk](const std::string& message) { talk.Note(message); };
+    if (!settings.quiet) events.onLearning = events.onResume;
+    events.onWarning = [talk](const std::string& message) { talk.Warn(message); };
+    options.estimator = settings.estimator;
+    options.film.grid = GridOf(settings.schedule);
+    if (ranks) ShareAmongRanks(ranks, &options);
+    return options;
+}
+
+}  // namespace lull

@@ -1,0 +1,36 @@
+// What `lull render` is asked for.
+#pragma once
+
+#include "renderer/commands/clock_options.h"
+#include "renderer/commands/path_printer.h"
+#include "renderer/commands/picture_options.h"
+#include "renderer/commands/render_settings.h"
+
+namespace lull {
+
+struct RenderRequest {
+    RenderSettings render;
+    ClockOptions clock;
+    GuideOptions guide;
+    std::string output, report;  // empty: as the scene says; none
+    std::optional<std::string> stop;
+    int spp = 0;  // 0: as the rule says
+    AovSet aovs;
+    bool denoise = false, denoiseLayers = false;
+    PictureOptions pictures;
+    PathOfSample path;  // to print, instead
+
+    // Returns what --stop, --spp and --denoise come to.
+    std::string Rule() const;
+    // Says whether the report is a page, with curves.
+    bool HasPage() const { return report.ends_with(".html"); }
+    // Says whether what a denoiser is shown is collected.
+    bool CollectsFeatures() const { return denoise || denoiseLayers; }
+};
+
+void AddRenderOptions(CLI::App& app, RenderRequest* request);
+
+// Throws UsageError for options that do not fit together.
+void CheckRequest(const RenderRequest&);
+
+}  // namespace lull

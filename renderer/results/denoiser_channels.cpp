@@ -1,0 +1,124 @@
+#include "renderer/results/denoiser_channels.h"
+
+#include <fmt/format.h>
+
+#include "renderer/base/error.h"
+#include "renderer/render/film_picture.h"
+
+namespace lull {
+
+namespace {
+
+constexpr std::array<const char*, kColours> kColourNames = {"R", "G", "B"};
+constexpr std::array<const char*, kFeatures> kFeatureNames = {
+    "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "disparity"};
+constexpr const char* kVarianceName = "variance.Y";
+
+Halves MakeHalves(int width, int height, int count) {
+    return {Planes(width, height, count), Planes(width, height, count)};
+}
+
+template <size_t N>
+void AddChannels(const std::string& layer, const Planes& planes,
+                 const std::array<const char*, N>& names, std::vector<ExrChannel>* channels) {
+    for (size_t c = 0; c < N; ++c)
+        channels->push_back(
+            {layer + names[c], {planes.Plane(int(c)), planes.Plane(int(c)) + planes.Area()}});
+}
+
+// The values of channels; null where there are none.
+template <size_t N>
+using ChannelsOf = std::array<const float*, N>;
+
+// Returns channels that must be there.
+template <size_t N>
+ChannelsOf<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
+                       const std::array<const char*, N>& names) {
+    ChannelsOf<N> channels;
+    for (size_t c = 0; c < N; ++c) {
+        const ExrChannel* found = image.Find(layer + names[c]);
+        if (!found)
+            throw Error(
+                fmt::format("{}: it has no channel '{}'; `lull render --denoise-layers` writes "
+                            "all that is needed to denoise a picture later",
+                            file, layer + names[c]));
+        channels[c] = found->values.data();
+    }
+    return channels;
+}
+
+void Copy(const ChannelsOf<kColours>& channels, Planes* to) {
+    for (int c = 0; c < kColours; ++c) std::copy_n(channels[size_t(c)], to->Area(), to->Plane(c));
+}
+
+// Filters the features of an image, of which the last becomes what `disparityOf` makes of it.
+Planes ReadFeatures(
+    const ExrImage& image, const ChannelsOf<kFeatures>& a, const ChannelsOf<kFeatures>& b,
+    float (*disparityOf)(float) = [](float d) { return d; }) {
+    const size_t width = size_t(image.width);
+    return FilterFeatures(image.width, image.height, [&](int y0, int y1) {
+        Halves rows = MakeHalves(image.width, y1 - y0, kFeatures);
+        const auto copy = [&](const ChannelsOf<kFeatures>& from, Planes* to) {
+            for (int f = 0; f < kFeatures; ++f)
+                if (const float* values = from[size_t(f)])
+                    std::copy_n(values + size_t(y0) * width, to->Area(), to->Plane(f));
+            float* disparity = to->Plane(kFeatures - 1);
+            std::transform(disparity, disparity + to->Area(), disparity, disparityOf);
+        };
+        copy(a, &rows.a);
+        copy(b, &rows.b);
+        return rows;
+    });
+}
+
+}  // namespace
+
+std::vector<ExrChannel> MakeHalfChannels(const Film& film, const FeatureFilm& features,
+                                         const PixelRect& rect) {
+    std::vector<ExrChannel> channels;
+    const auto add = [&](const Halves& halves, const auto& names) {
+        AddChannels("halfA.", halves.a, names, &channels);
+        AddChannels("halfB.", halves.b, names, &channels);
+    };
+    add(ColoursOf(film, rect), kColourNames);
+    add(FeatureHalvesOf(film, features, rect), kFeatureNames);
+    channels.push_back({kVarianceName, VarianceOf(film, features, rect).values});
+    return channels;
+}
+
+NoisyPicture ReadPicture(const ExrImage& image, const std::string& name) {
+    NoisyPicture picture{MakeHalves(image.width, image.height, kColours),
+                         ReadFeatures(image, Channels(image, name, "halfA.", kFeatureNames),
+                                      Channels(image, name, "halfB.", kFeatureNames)),
+                         {}};
+    Copy(Channels(image, name, "halfA.", kColourNames), &picture.colour.a);
+    Copy(Channels(image, name, "halfB.", kColourNames), &picture.colour.b);
+    if (const ExrChannel* variance = image.Find(kVarianceName)) {
+        picture.variance = Planes(image.width, image.height, 1);
+        picture.variance.values = variance->values;
+    }
+    return picture;
+}
+
+NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const ExrImage& b,
+                         const std::string& nameOfB) {
+    if (a.width != b.width || a.height != b.height)
+        throw Error(
+            fmt::format("{} has {}x{} pixels and {} has {}x{}: they are to be of the same "
+                        "picture",
+                        nameOfA, a.width, a.height, nameOfB, b.width, b.height));
+    NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}};
+    Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
+    Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);
+    ChannelsOf<kFeatures> featuresOfA = {}, featuresOfB = {};
+    for (size_t f = 0; f < kFeatures; ++f) {
+        const std::string name = f == kFeatures - 1 ? "Z" : kFeatureNames[f];
+        if (!a.Find(name) || !b.Find(name)) continue;
+        featuresOfA[f] = a.Find(name)->values.data();
+        featuresOfB[f] = b.Find(name)->values.data();
+    }
+    picture.features = ReadFeatures(a, featuresOfA, featuresOfB, DisparityOf);
+    return picture;
+}
+
+}  // namespace lull

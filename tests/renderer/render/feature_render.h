@@ -1,0 +1,36 @@
+// A render without a scene that keeps what a denoiser is shown.
+#pragma once
+
+#include "renderer/film/layers.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull {
+
+inline const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
+
+inline PathSample SampleWithFeatures(Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                     FirstHit* hit) {
+    const PathSample sample = SyntheticSample(sampler, pixel, index);
+    *hit = SyntheticHit(sampler, pixel, index);
+    return sample;
+}
+
+struct FeatureRender {
+    Film film{kPictureRegion};
+    FeatureFilm features{kPictureRegion};
+
+    explicit FeatureRender(int threads, int spp = 36) {
+        RenderOptions options;
+        options.schedule = {.blockSize = 30, .passLength = 6, .cap = spp};
+        options.threads = threads;
+        options.makeCriterion = [](const BlockInfo&) {
+            return std::make_unique<ScriptedCriterion>(1000);
+        };
+        Render({.source = SyntheticSample,
+                .film = &film,
+                .layers = {.features = &features, .source = SampleWithFeatures}},
+               options);
+    }
+};
+
+}  // namespace lull
