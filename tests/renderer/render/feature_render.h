@@ -8,13 +8,6 @@ namespace lull {
 
 inline const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
 
-inline PathSample SampleWithFeatures(Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                     FirstHit* hit) {
-    const PathSample sample = SyntheticSample(sampler, pixel, index);
-    *hit = SyntheticHit(sampler, pixel, index);
-    return sample;
-}
-
 struct FeatureRender {
     Film film{kPictureRegion};
     FeatureFilm features{kPictureRegion};
@@ -26,9 +19,7 @@ struct FeatureRender {
         options.makeCriterion = [](const BlockInfo&) {
             return std::make_unique<ScriptedCriterion>(1000);
         };
-        Render({.source = SyntheticSample,
-                .film = &film,
-                .layers = {.features = &features, .source = SampleWithFeatures}},
+        Render({.source = SyntheticSample, .film = &film, .layers = {.features = &features}},
                options);
     }
 };

@@ -172,7 +172,7 @@ TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
     options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
     Film film(kRegion);
     EXPECT_THROW(Render({.source = SyntheticSample, .film = &film}, options), std::runtime_error);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, FirstHit*) -> PathSample {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, SmallRender()), std::bad_alloc);

@@ -287,7 +287,7 @@ TEST(Ranks, PassOnWhatTasksThrow) {
     RenderOptions options = SharedOptions();
     options.peers = &peers;
     Film film(kImage);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, FirstHit*) -> PathSample {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
