@@ -1,4 +1,4 @@
-// Holds the lobes that Bsdfs are made of: plain structs in the local frame, the shading normal
+// The lobes that Bsdfs are made of: plain structs in the local frame, the shading normal
 // along +z. All directions are unit and point away from the surface.
 //
 // A lobe that spreads light has (pbrt-v3's values and densities throughout)
@@ -14,6 +14,7 @@
 
 #include <variant>
 
+#include "renderer/base/visit.h"
 #include "renderer/bsdf/disney_lobes.h"
 #include "renderer/bsdf/fourier_lobe.h"
 #include "renderer/bsdf/hair_lobe.h"
@@ -200,40 +201,10 @@ float EstimatedAlbedo(const Lobe& lobe, const Vec3f& wo);
 // probability of at least `least`; leaves other lobes alone.
 void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe);
 
-// Calls f with the lobe inside; f must accept every kind and return the same type for all. A
-// switch, since for this many kinds std::visit uses a table of functions, which are not inlined.
+// Calls f with the lobe inside; f must accept every kind and return the same type for all.
 template <typename F>
-auto VisitLobe(const Lobe& lobe, F&& f) {
-    switch (lobe.index()) {
-        // clang-format off
-        case 1: return f(*std::get_if<1>(&lobe));
-        case 2: return f(*std::get_if<2>(&lobe));
-        case 3: return f(*std::get_if<3>(&lobe));
-        case 4: return f(*std::get_if<4>(&lobe));
-        case 5: return f(*std::get_if<5>(&lobe));
-        case 6: return f(*std::get_if<6>(&lobe));
-        case 7: return f(*std::get_if<7>(&lobe));
-        case 8: return f(*std::get_if<8>(&lobe));
-        case 9: return f(*std::get_if<9>(&lobe));
-        case 10: return f(*std::get_if<10>(&lobe));
-        case 11: return f(*std::get_if<11>(&lobe));
-        case 12: return f(*std::get_if<12>(&lobe));
-        case 13: return f(*std::get_if<13>(&lobe));
-        case 14: return f(*std::get_if<14>(&lobe));
-        case 15: return f(*std::get_if<15>(&lobe));
-        case 16: return f(*std::get_if<16>(&lobe));
-        case 17: return f(*std::get_if<17>(&lobe));
-        case 18: return f(*std::get_if<18>(&lobe));
-        case 19: return f(*std::get_if<19>(&lobe));
-        case 20: return f(*std::get_if<20>(&lobe));
-        case 21: return f(*std::get_if<21>(&lobe));
-        case 22: return f(*std::get_if<22>(&lobe));
-        case 23: return f(*std::get_if<23>(&lobe));
-        case 24: return f(*std::get_if<24>(&lobe));
-        default: return f(*std::get_if<25>(&lobe));
-            // clang-format on
-    }
-    static_assert(std::variant_size_v<Lobe> == 26, "one case a kind");
+[[gnu::always_inline]] inline auto VisitLobe(const Lobe& lobe, F&& f) {
+    return Visit<1>(lobe, f);
 }
 
 inline bool IsSpecular(const Lobe& lobe) {
