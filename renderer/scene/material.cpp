@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/bump_map.h"
 #include "renderer/scene/materials/disney.h"
 #include "renderer/scene/materials/fourier.h"
@@ -23,34 +24,55 @@
 namespace lull {
 namespace {
 
-// Lists every kind; what a kind has to provide is in materials/material_inputs.h.
+// What a kind has to provide is in materials/material_inputs.h.
 using MaterialKind =
     std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
                  Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface>;
 
+// Adapts constructors to the table of kinds.
+template <typename K>
+MaterialKind Make(const MaterialReader& in) {
+    return K(in);
+}
+
+constexpr Kind<MaterialKind(const MaterialReader&)> kMaterials[] = {
+    {"matte", Make<Matte>},
+    {"plastic", Make<Plastic>},
+    {"metal", Make<Metal>},
+    {"glass", Make<Glass>},
+    {"mirror", Make<Mirror>},
+    {"uber", Make<Uber>},
+    {"substrate", Make<Substrate>},
+    {"translucent", Make<Translucent>},
+    {"mix", Make<Mix>},
+    {"none", Make<Interface>},
+    {"", Make<Interface>},
+    {"disney", Make<Disney>},
+    {"hair", Make<Hair>},
+    {"fourier", Make<Fourier>},
+    {"metallicroughness", Make<MetallicRoughness>},
+    {"subsurface", Make<Subsurface>},
+    {"kdsubsurface", Make<KdSubsurface>},
+};
+
 }  // namespace
 
 struct Material {
-    explicit Material(const MaterialKind& kind) : kind(kind) {}
-
     MaterialKind kind;
-    std::optional<FloatTexture> bump;
-    std::optional<NormalMap> normalMap;
-    bool tilts = false;                      // has one of both
-    SurfaceNeeds lobeNeeds = kNeedsNothing;  // of the lobes alone
-    SurfaceNeeds needs = kNeedsNothing;      // with the bump map
-    int maxLobes = 0;
+    MaterialTraits traits;  // of the lobes
+    SurfaceTilt tilt;
+    bool isTilted = false;
+    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of what tilts
 
-    // Holds the lobes where no texture varies, so that a hit costs no more than their copy.
-    bool isConstant = false;
-    std::vector<Lobe> constantLobes;
+    // The lobes where they are constant, so that a hit costs no more than their copy.
+    std::vector<Lobe> constantLobes{};
     float constantEta = 1;
 };
 
 namespace {
 
 void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
-    if (material.isConstant) {
+    if (material.traits.isConstant) {
         for (const Lobe& lobe : material.constantLobes) bsdf->Add(lobe);
         bsdf->SetEta(material.constantEta);
     } else {
@@ -58,121 +80,35 @@ void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
     }
 }
 
-// Makes the kind called `name`; nothing where there is none.
-template <size_t I = 0>
-std::optional<MaterialKind> MakeKind(const std::string& name, const MaterialReader& in) {
-    if constexpr (I == std::variant_size_v<MaterialKind>) {
-        return {};
-    } else {
-        using Kind = std::variant_alternative_t<I, MaterialKind>;
-        if (name == Kind::kName) return Kind(in);
-        return MakeKind<I + 1>(name, in);
-    }
+MaterialTraits TraitsOf(const MaterialKind& kind, const MaterialReader& in) {
+    return std::visit([&](const auto& k) { return k.Traits(in); }, kind);
 }
 
-// Works out what a material needs and whether it is constant, from its textures and operands.
-void Analyse(const TextureTable& textures, std::span<const Material> made, Material* m) {
-    m->isConstant = true;
-    std::visit(
-        [&]<typename Kind>(const Kind& kind) {
-            kind.VisitTextures([&](const auto& texture) {
-                if (texture.IsConstant()) return;
-                m->isConstant = false;
-                m->lobeNeeds = m->lobeNeeds | textures.Needs(texture);
-            });
-            if constexpr (requires { kind.roughness; })
-                if (!kind.roughness.IsIsotropic()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
-            if constexpr (requires { kind.NeedsTangents(); })
-                if (kind.NeedsTangents()) m->lobeNeeds = m->lobeNeeds | kNeedsTangents;
-            if constexpr (requires { kind.VariesWithHit(); })
-                if (kind.VariesWithHit()) m->isConstant = false;
-            if constexpr (requires { kind.NeedsUv(); }) {
-                m->lobeNeeds = m->lobeNeeds | kNeedsUv;
-                m->isConstant = false;
-            }
-            if constexpr (requires { kind.ExtraNeeds(); }) {
-                const SurfaceNeeds extra = kind.ExtraNeeds();
-                m->lobeNeeds = m->lobeNeeds | extra;
-                if (extra != kNeedsNothing) m->isConstant = false;
-            }
-            if constexpr (std::is_same_v<Kind, Mix>) {
-                for (int operand : kind.operands) {
-                    const Material& o = made[operand];
-                    m->isConstant &= o.isConstant;
-                    m->lobeNeeds = m->lobeNeeds | o.lobeNeeds;
-                    m->maxLobes += o.maxLobes;
-                }
-                // pbrt-v3 shades a mix in the frame of the first material, so its bump map counts.
-                m->bump = made[kind.operands[0]].bump;
-                m->normalMap = made[kind.operands[0]].normalMap;
-            } else {
-                m->maxLobes = kind.MaxLobes();
-            }
-            if constexpr (std::is_same_v<Kind, Interface>) {
-                m->lobeNeeds = kIsInterface;
-                m->bump.reset();
-            }
+SurfaceTilt TiltOf(const MaterialKind& kind, const MaterialReader& in) {
+    return std::visit(
+        [&](const auto& k) {
+            if constexpr (requires { k.Tilt(in); })
+                return k.Tilt(in);
+            else
+                return in.BumpMap();
         },
-        m->kind);
-    m->needs = m->lobeNeeds;
-    if (m->bump) {
-        m->needs = m->needs | kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint |
-                   textures.Needs(*m->bump);
+        kind);
+}
+
+SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
+    SurfaceNeeds needs = kNeedsNothing;
+    if (tilt.bump)
+        needs =
+            kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint | textures.Needs(*tilt.bump);
+    if (tilt.normalMap) {
+        needs = needs | kNeedsTangents | textures.Needs(tilt.normalMap->texture);
+        if (tilt.normalMap->secondUv) needs = needs | kNeedsSecondUv;
     }
-    if (m->normalMap) {
-        m->needs = m->needs | kNeedsTangents | textures.Needs(m->normalMap->texture);
-        if (m->normalMap->secondUv) m->needs = m->needs | kNeedsSecondUv;
-    }
-    m->tilts = m->bump || m->normalMap;
+    return needs;
 }
 
-// Reads "normalmap" with "normalscale" and "normaluv" (1: the second texture coordinates), which
-// only glTF's materials have.
-std::optional<NormalMap> ReadNormalMap(const MaterialReader& in) {
-    const SpectrumTexture texture = in.Spectrum("normalmap", -1);
-    if (texture.IsConstant() && texture.constant.x() < 0) return {};
-    const Parameters& parameters = in.entity.parameters;
-    return NormalMap{texture, parameters.GetFloat("normalscale", 1),
-                     parameters.GetInt("normaluv", 0) == 1};
-}
-
-}  // namespace
-
-std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) {
-    if (!index.IsConstant() || IsIndexOfRefraction(index.constant)) return "";
-    return fmt::format("\"eta\" of material \"{}\" has to lie between 0.01 and 100; it is {}",
-                       in.entity.name, index.constant);
-}
-
-namespace {
-
-// Throws what is wrong, or warns of it where a matte material may stand in.
-void Refuse(const MaterialEntity& entity, const std::string& problem, bool substitute,
-            Warnings& warnings) {
-    if (!substitute) throw Error(entity.loc, problem);
-    warnings.Add(entity.loc, problem + "; a matte material stands in");
-}
-
-Material MakeMaterial(const Description& description, const MaterialEntity& entity,
-                      const TextureTable& textures, std::span<const Material> made, bool substitute,
-                      Warnings& warnings) {
-    const MaterialReader in{entity, textures, made, description};
-    entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
-    const auto finish = [&](const MaterialKind& kind) {
-        Material m(kind);
-        if (!std::holds_alternative<Mix>(kind)) m.bump = in.FloatOrNone("bumpmap");
-        if (m.bump && m.bump->IsConstant() && m.bump->constant == 0) m.bump.reset();
-        if (std::holds_alternative<MetallicRoughness>(kind)) m.normalMap = ReadNormalMap(in);
-        Analyse(textures, made, &m);
-        return m;
-    };
-
-    const std::optional<MaterialKind> kind =
-        MakeKind(entity.name.empty() ? Interface::kName : entity.name, in);
-    if (!kind) {
-        Refuse(entity, "material \"" + entity.name + "\" is not modelled", substitute, warnings);
-        return finish(Matte(in));
-    }
+// Returns why the material cannot be rendered, "" if it can.
+std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
     const std::string problem = std::visit(
         [&](const auto& k) {
             if constexpr (requires { k.Problem(in); })
@@ -180,43 +116,50 @@ Material MakeMaterial(const Description& description, const MaterialEntity& enti
             else
                 return std::string();
         },
-        *kind);
-    if (!problem.empty()) {
-        Refuse(entity, problem, substitute, warnings);
-        return finish(Matte(in));
-    }
-    Material m = finish(*kind);
-    if (std::holds_alternative<Mix>(*kind) && (m.needs & kIsInterface)) {
-        Refuse(entity, "a mix of a material and \"none\" is not modelled", substitute, warnings);
-        return finish(Matte(in));
-    }
-    if (std::holds_alternative<Mix>(*kind) && (m.needs & kScattersBelow)) {
-        Refuse(entity,
-               "a mix with a material that scatters below its surface is not modelled; light that "
-               "goes in does not come out in pbrt-v3 either",
-               substitute, warnings);
-        return finish(Matte(in));
-    }
-    if (m.maxLobes > Bsdf::kMaxLobes) {
-        Refuse(entity,
-               "material \"" + entity.name + "\" can have more than " +
-                   std::to_string(Bsdf::kMaxLobes) + " lobes",
-               substitute, warnings);
-        return finish(Matte(in));
-    }
-    entity.parameters.ReportUnused("material \"" + entity.name + "\"", warnings);
-    return m;
+        kind);
+    if (problem.empty() && TraitsOf(kind, in).mostLobes > Bsdf::kMaxLobes)
+        return fmt::format("material \"{}\" can have more than {} lobes", in.entity.name,
+                           Bsdf::kMaxLobes);
+    return problem;
 }
 
 // Makes the lobes of a constant material once and for all.
-void FoldConstants(const TextureTable& textures, std::span<const Material> made, Material* m) {
-    if (!m->isConstant) return;
+void FoldConstants(const MaterialReader& in, Material* m) {
+    if (!m->traits.isConstant) return;
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
-    const MaterialInputs in{textures, TextureContext{Vec3f::Zero(), Vec2f::Zero()}, made};
-    std::visit([&](const auto& kind) { kind.AddLobes(in, &bsdf); }, m->kind);
-    m->maxLobes = bsdf.LobeCount(LobeSet::All);
-    for (int i = 0; i < m->maxLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
+    const MaterialInputs at{in.textures, TextureContext{Vec3f::Zero(), Vec2f::Zero()}, in.made};
+    std::visit([&](const auto& kind) { kind.AddLobes(at, &bsdf); }, m->kind);
+    m->traits.mostLobes = bsdf.LobeCount(LobeSet::All);
+    for (int i = 0; i < m->traits.mostLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
     m->constantEta = bsdf.Eta();
+}
+
+Material Complete(const MaterialKind& kind, const MaterialReader& in) {
+    Material m{.kind = kind, .traits = TraitsOf(kind, in), .tilt = TiltOf(kind, in)};
+    m.isTilted = m.tilt.bump || m.tilt.normalMap;
+    m.needs = m.traits.needs | NeedsOf(m.tilt, in.textures);
+    FoldConstants(in, &m);
+    return m;
+}
+
+// Makes the material of an entity. One that cannot be rendered is refused, or a matte one stands
+// in, with a warning.
+Material MakeMaterial(const MaterialReader& in, bool substitute, Warnings& warnings) {
+    const MaterialEntity& entity = in.entity;
+    entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
+    std::string problem = "material \"" + entity.name + "\" is not modelled";
+    if (const auto* named = FindKind(kMaterials, entity.name)) {
+        const MaterialKind kind = named->make(in);
+        problem = ProblemOf(kind, in);
+        if (problem.empty()) {
+            const Material m = Complete(kind, in);
+            entity.parameters.ReportUnused("material \"" + entity.name + "\"", warnings);
+            return m;
+        }
+    }
+    if (!substitute) throw Error(entity.loc, problem);
+    warnings.Add(entity.loc, problem + "; a matte material stands in");
+    return Complete(Matte(in), in);
 }
 
 // Returns the frame with s along dpdu, which anisotropy refers to; any where dpdu is none.
@@ -234,6 +177,24 @@ Frame TangentFrame(const SurfaceInteraction& hit) {
 
 }  // namespace
 
+SurfaceTilt MaterialReader::BumpMap() const {
+    const auto bump = FloatOrNone("bumpmap");
+    if (bump && bump->IsConstant() && bump->constant == 0) return {};
+    return {.bump = bump};
+}
+
+std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) {
+    if (!index.IsConstant() || IsIndexOfRefraction(index.constant)) return "";
+    return fmt::format("\"eta\" of material \"{}\" has to lie between 0.01 and 100; it is {}",
+                       in.entity.name, index.constant);
+}
+
+const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material> materials) {
+    return materials[operand].traits;
+}
+const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material> materials) {
+    return materials[operand].tilt;
+}
 void AddOperandLobes(int operand, const MaterialInputs& in, Bsdf* bsdf) {
     AddLobes(in.materials[operand], in, bsdf);
 }
@@ -242,9 +203,8 @@ MaterialTable::MaterialTable(const Description& description, const TextureTable&
                              bool substitute, Warnings& warnings) {
     materials.reserve(description.materials.size());
     for (const MaterialEntity& entity : description.materials) {
-        Material m = MakeMaterial(description, entity, textures, materials, substitute, warnings);
-        FoldConstants(textures, materials, &m);
-        materials.push_back(std::move(m));
+        const MaterialReader in{entity, textures, materials, description};
+        materials.push_back(MakeMaterial(in, substitute, warnings));
     }
 }
 
@@ -257,12 +217,12 @@ SurfaceNeeds MaterialTable::Needs(int material) const { return materials[materia
 
 Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
     const Material& material = materials[hit->material];
-    if (material.tilts) {
-        if (material.bump) ApplyBumpMap(*material.bump, textures, hit);
-        if (material.normalMap) ApplyNormalMap(*material.normalMap, textures, hit);
+    if (material.isTilted) {
+        if (material.tilt.bump) ApplyBumpMap(*material.tilt.bump, textures, hit);
+        if (material.tilt.normalMap) ApplyNormalMap(*material.tilt.normalMap, textures, hit);
     }
     Frame frame;
-    if (material.lobeNeeds & kNeedsTangents) {
+    if (material.traits.needs & kNeedsTangents) {
         frame = TangentFrame(*hit);
     } else {
         frame.n = hit->ns;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "renderer/scene/kinds.h"
 #include "renderer/scene/textures/bilerp.h"
 #include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/constant.h"
@@ -38,10 +39,7 @@ template <typename Node>
 using Nodes = std::vector<Node>;
 
 template <typename Node>
-struct Kind {
-    const char* name;
-    TextureHandle<TypeOf<Node>> (*make)(const TextureInput&, Nodes<Node>*);
-};
+using TextureKind = Kind<TextureHandle<TypeOf<Node>>(const TextureInput&, Nodes<Node>*)>;
 
 // Adapts a maker to the table of kinds: puts a new texture into the nodes.
 template <auto Make, typename Node>
@@ -66,7 +64,7 @@ TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* node
     }
 }
 
-constexpr Kind<FloatTextureNode> kFloatKinds[] = {
+constexpr TextureKind<FloatTextureNode> kFloatKinds[] = {
     {"constant", AddNode<MakeConstant<float>>},
     {"scale", AddNode<MakeScale<float>>},
     {"mix", AddNode<MakeMix<float>>},
@@ -79,7 +77,7 @@ constexpr Kind<FloatTextureNode> kFloatKinds[] = {
     {"wrinkled", AddNode<MakeOctaves<float, Turbulence>>},
 };
 
-constexpr Kind<SpectrumTextureNode> kSpectrumKinds[] = {
+constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
     {"constant", AddNode<MakeConstant<Rgb>>},
     {"scale", AddNode<MakeScale<Rgb>>},
     {"mix", AddNode<MakeMix<Rgb>>},
@@ -96,12 +94,11 @@ constexpr Kind<SpectrumTextureNode> kSpectrumKinds[] = {
 
 // Makes one texture, or what stands for one of a kind that is not modelled.
 template <typename Node, size_t N>
-TextureHandle<TypeOf<Node>> MakeTexture(const Kind<Node> (&kinds)[N], const TextureInput& input,
-                                        Nodes<Node>* nodes) {
+TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
+                                        const TextureInput& input, Nodes<Node>* nodes) {
     const TextureEntity& entity = input.entity;
-    for (const Kind<Node>& kind : kinds) {
-        if (entity.name != kind.name) continue;
-        const auto handle = kind.make(input, nodes);
+    if (const auto* kind = FindKind(kinds, entity.name)) {
+        const auto handle = kind->make(input, nodes);
         entity.parameters.ReportUnused(fmt::format("texture \"{}\"", entity.textureName),
                                        input.warnings);
         return handle;

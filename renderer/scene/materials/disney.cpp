@@ -21,11 +21,18 @@ Disney::Disney(const MaterialReader& in)
       flatness(in.Float("flatness", 0)),
       diffTrans(in.Float("difftrans", 1)) {}
 
-int Disney::MaxLobes() const {
+MaterialTraits Disney::Traits(const MaterialReader& in) const {
     const auto canBe = [](const FloatTexture& t) { return !(t.IsConstant() && t.constant <= 0); };
     // Base, retro-reflection and specular reflection; in addition of thin ones a flat base and
     // transmission.
-    return 3 + 2 * thin + canBe(sheen) + canBe(clearcoat) + canBe(specTrans);
+    const int most = 3 + 2 * thin + canBe(sheen) + canBe(clearcoat) + canBe(specTrans);
+    MaterialTraits traits =
+        in.TraitsOf(most, color, scatterDistance, metallic, eta, rough, specularTint, anisotropic,
+                    sheen, sheenTint, clearcoat, clearcoatGloss, specTrans, flatness, diffTrans);
+    if (!(anisotropic.IsConstant() && anisotropic.constant == 0))
+        traits.needs = traits.needs | kNeedsTangents;
+    if (!thin && !IsAlwaysBlack(scatterDistance)) traits.Need(kScattersBelow | kNeedsTangents);
+    return traits;
 }
 
 void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {

@@ -8,8 +8,6 @@
 namespace lull {
 
 struct Fourier {
-    static constexpr const char* kName = "fourier";
-
     std::shared_ptr<const FourierTable> table;
     std::string problem;  // why there is no table
 
@@ -17,11 +15,8 @@ struct Fourier {
 
     // Returns why the file could not be read, "" if it was.
     std::string Problem(const MaterialReader&) const { return problem; }
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1); }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&&) const {}
-    int MaxLobes() const { return 1; }
 };
 
 }  // namespace lull

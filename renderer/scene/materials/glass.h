@@ -6,8 +6,6 @@
 namespace lull {
 
 struct Glass {
-    static constexpr const char* kName = "glass";
-
     SpectrumTexture kr, kt;
     FloatTexture eta;     // index of refraction
     Roughness roughness;  // 0 both ways: smooth
@@ -15,16 +13,10 @@ struct Glass {
     explicit Glass(const MaterialReader& in);
     std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
-    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(kr);
-        f(kt);
-        f(eta);
-        roughness.VisitTextures(f);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(!IsAlwaysBlack(kr) + !IsAlwaysBlack(kt), kr, kt, eta, roughness);
     }
-    int MaxLobes() const { return !IsAlwaysBlack(kr) + !IsAlwaysBlack(kt); }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
 // Adds the lobes of a dielectric of index `eta`, smooth or rough, and sets the index.

@@ -25,6 +25,14 @@ Hair::Hair(const MaterialReader& in)
     if (!in.FloatOrNone("eumelanin") && !in.FloatOrNone("pheomelanin")) eumelanin.constant = kBrown;
 }
 
+// The offset across the hair is a texture coordinate.
+MaterialTraits Hair::Traits(const MaterialReader& in) const {
+    MaterialTraits traits =
+        in.TraitsOf(1, sigmaA, color, eumelanin, pheomelanin, eta, betaM, betaN, alpha);
+    traits.Need(kNeedsUv | kNeedsTangents);
+    return traits;
+}
+
 void Hair::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float n = in(betaN), index = in.Index(eta);
     Rgb absorption;

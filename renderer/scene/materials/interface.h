@@ -6,15 +6,12 @@
 namespace lull {
 
 struct Interface {
-    static constexpr const char* kName = "none";
-
     explicit Interface(const MaterialReader&) {}
 
+    MaterialTraits Traits(const MaterialReader&) const { return {.needs = kIsInterface}; }
+    // A bump map has nothing to tilt.
+    SurfaceTilt Tilt(const MaterialReader& in) const { return in.BumpMap(), SurfaceTilt(); }
     void AddLobes(const MaterialInputs&, Bsdf*) const {}
-
-    template <typename F>
-    void VisitTextures(F&&) const {}
-    int MaxLobes() const { return 0; }
 };
 
 }  // namespace lull

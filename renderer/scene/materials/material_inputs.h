@@ -1,19 +1,23 @@
-// Holds what all kinds of material share: how they read their parameters, and their inputs at a hit
-// point.
+// What a material is, and what all kinds of it share.
 //
-// A kind is a struct K with
-//     static constexpr const char* kName                 as in scene files;
-//     explicit K(const MaterialReader&)                  reads the parameters;
-//     void AddLobes(const MaterialInputs&, Bsdf*) const  adds the lobes, sets eta if not 1;
-//     void VisitTextures(f) const                        calls f with every texture it evaluates;
-//     int MaxLobes() const                               how many lobes AddLobes can add,
+// A kind is a struct K, in a file of this folder, with
+//
+//     explicit K(const MaterialReader&)
+//         reads the parameters;
+//     MaterialTraits Traits(const MaterialReader&) const
+//         returns what its lobes depend on, and how many there can be;
+//     void AddLobes(const MaterialInputs&, Bsdf*) const
+//         adds the lobes at a hit, and sets eta where that is not 1,
+//
 // and, where they apply,
-//     SurfaceNeeds ExtraNeeds() const                    what it reads of a hit besides its
-//     textures;
-//     std::string Problem(const MaterialReader&) const   what is wrong or not modelled, "" if
-//     nothing; bool NeedsTangents() const, bool NeedsUv() const   whether the lobes depend on
-//     these; bool VariesWithHit() const   whether they differ from hit to hit where no texture
-//     does.
+//
+//     std::string Problem(const MaterialReader&) const
+//         returns what is wrong with the parameters or not modelled, "" if nothing;
+//     std::optional<SubsurfaceProfile> Profile(const MaterialInputs&) const
+//         returns how light that the lobes transmit spreads below the surface; nothing where it
+//         goes on unscattered. The needs have kScattersBelow;
+//     SurfaceTilt Tilt(const MaterialReader&) const
+//         reads what tilts the shading normal, where that is not the parameter "bumpmap" alone.
 #pragma once
 
 #include <optional>
@@ -21,13 +25,34 @@
 
 #include "renderer/bsdf/bsdf.h"
 #include "renderer/scene/interaction.h"
+#include "renderer/scene/materials/normal_map.h"
 #include "renderer/scene/texture.h"
 
 namespace lull {
 
 struct Material;
 
-// Reads the parameters of one material. `made` are the materials before it.
+// What is known of a material before any hit.
+struct MaterialTraits {
+    SurfaceNeeds needs = kNeedsNothing;  // of a hit, for the lobes
+    int mostLobes = 0;                   // that AddLobes can add
+    bool isConstant = true;              // the lobes are the same at all hits
+
+    // Takes into account that the lobes depend on this part of a hit.
+    void Need(SurfaceNeeds part) {
+        needs = needs | part;
+        isConstant = false;
+    }
+};
+
+// What tilts the shading normals of a material.
+struct SurfaceTilt {
+    std::optional<FloatTexture> bump{};
+    std::optional<NormalMap> normalMap{};
+};
+
+// Reads the parameters of one material, and knows the textures and, in `made`, the materials before
+// it.
 struct MaterialReader {
     const MaterialEntity& entity;
     const TextureTable& textures;
@@ -48,17 +73,43 @@ struct MaterialReader {
         const std::optional<FloatTexture> eta = FloatOrNone("eta");
         return eta ? *eta : Float("index", 1.5f);
     }
+    // Reads "bumpmap"; nothing where it is flat.
+    SurfaceTilt BumpMap() const;
+
+    // Returns the traits of up to `mostLobes` lobes that depend on textures alone; a Roughness
+    // counts as its two.
+    template <typename... Textures>
+    MaterialTraits TraitsOf(int mostLobes, const Textures&... read) const {
+        MaterialTraits traits{.mostLobes = mostLobes};
+        (AddTexture(read, &traits), ...);
+        return traits;
+    }
+
+  private:
+    template <typename T>
+    void AddTexture(const TextureHandle<T>& texture, MaterialTraits* traits) const {
+        if (!texture.IsConstant()) traits->Need(textures.Needs(texture));
+    }
+    template <typename T>
+    void AddTexture(const std::optional<T>& texture, MaterialTraits* traits) const {
+        if (texture) AddTexture(*texture, traits);
+    }
+    template <typename Roughness>
+    void AddTexture(const Roughness& roughness, MaterialTraits* traits) const {
+        roughness.VisitTextures([&](const auto& t) { AddTexture(t, traits); });
+        if (!roughness.IsIsotropic()) traits->needs = traits->needs | kNeedsTangents;
+    }
 };
 
-// Says whether a number can be an index of refraction. Light that goes in and out of what is beyond
-// these, and is not all reflected, would count up to 1e4 times.
+// Returns whether a number can be an index of refraction. Light that goes in and out of what is
+// beyond these, and is not all reflected, would count up to 1e4 times.
 inline bool IsIndexOfRefraction(float index) { return index >= 0.01f && index <= 100; }
 
-// Says what is wrong with an index of refraction that is the same everywhere, "" if nothing.
+// Returns what is wrong with an index of refraction that is the same everywhere, "" if nothing.
 std::string ProblemOfIndex(const MaterialReader&, const FloatTexture& index);
 
-// Holds what lobes are made from at a hit point. `materials` is the whole table, for mixtures.
-// `hit` is null if a material without ExtraNeeds is turned into lobes once and for all.
+// What lobes are made from at a hit point. `materials` is the whole table, for mixtures.
+// `hit` is null if the lobes of a constant material are made once and for all.
 struct MaterialInputs {
     const TextureTable& textures;
     TextureContext context;
@@ -76,13 +127,15 @@ struct MaterialInputs {
     }
 };
 
-// Says whether a colour is known to be black everywhere, so that its lobe never appears.
+// Returns whether a colour is known to be black everywhere, so that its lobe never appears.
 inline bool IsAlwaysBlack(const SpectrumTexture& t) {
     return t.IsConstant() && (t.constant <= 0).all();
 }
 
-// Adds the lobes of the operand-th material of the table, without its bump map. In material.cpp,
-// the only file that knows every kind.
+// What a mixture asks of the operand-th material of a table: its traits, what tilts it, and its
+// lobes. In material.cpp, the only file that knows every kind.
+const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material>);
+const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material>);
 void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
 
 }  // namespace lull

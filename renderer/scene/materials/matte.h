@@ -6,22 +6,14 @@
 namespace lull {
 
 struct Matte {
-    static constexpr const char* kName = "matte";
-
     SpectrumTexture kd;
     FloatTexture sigma;  // degrees, clamped to [0, 90]; 0: Lambertian, else Oren-Nayar
 
     explicit Matte(const MaterialReader& in)
         : kd(in.Spectrum("Kd", 0.5f)), sigma(in.Float("sigma", 0)) {}
 
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, kd, sigma); }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(kd);
-        f(sigma);
-    }
-    int MaxLobes() const { return 1; }
 };
 
 }  // namespace lull

@@ -6,22 +6,15 @@
 namespace lull {
 
 struct Metal {
-    static constexpr const char* kName = "metal";
-
     SpectrumTexture eta, k;  // complex index of refraction; copper's by default
     Roughness roughness;
 
     explicit Metal(const MaterialReader& in);
 
-    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(eta);
-        f(k);
-        roughness.VisitTextures(f);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(1, eta, k, roughness);
     }
-    int MaxLobes() const { return 1; }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
 }  // namespace lull

@@ -74,12 +74,28 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
         throw Error(in.entity.loc, "\"ior\" has to be 0 or from 1 to 100");
 }
 
-SurfaceNeeds MetallicRoughness::ExtraNeeds() const {
-    SurfaceNeeds needs = vertexColors ? kNeedsColor : kNeedsNothing;
+MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
+    const bool isAnisotropic = anisotropyFactor > 0, hasSheen = !IsBlack(sheenColorFactor);
+    MaterialTraits traits = in.TraitsOf(4 + isAnisotropic + hasSheen);
     VisitSlots([&](const auto& slot) {
-        if (slot.secondUv && !slot.texture.IsConstant()) needs = needs | kNeedsSecondUv;
+        if (slot.texture.IsConstant()) return;
+        traits.Need(in.textures.Needs(slot.texture));
+        if (slot.secondUv) traits.Need(kNeedsSecondUv);
     });
-    return needs;
+    if (vertexColors) traits.Need(kNeedsColor);
+    if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
+    if (hasSheen) traits.isConstant = false;  // what it leaves to the rest depends on the view
+    return traits;
+}
+
+SurfaceTilt MetallicRoughness::Tilt(const MaterialReader& in) const {
+    SurfaceTilt tilt = in.BumpMap();
+    const SpectrumTexture texture = in.Spectrum("normalmap", -1);
+    if (texture.IsConstant() && texture.constant.x() < 0) return tilt;
+    const Parameters& parameters = in.entity.parameters;
+    tilt.normalMap = NormalMap{texture, parameters.GetFloat("normalscale", 1),
+                               parameters.GetInt("normaluv", 0) == 1};
+    return tilt;
 }
 
 Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const {

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds a texture that may be looked up with the second set of texture coordinates.
+// A texture that may be looked up with the second set of texture coordinates.
 template <typename Texture>
 struct UvSlot {
     Texture texture;
@@ -23,8 +23,6 @@ struct UvSlot {
 // refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's colours multiply the
 // base colour; "anisotropyrotation": radians, from the first tangent to the second.
 struct MetallicRoughness {
-    static constexpr const char* kName = "metallicroughness";
-
     UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy;
     UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness;
     Rgb baseColorFactor, specularColorFactor, sheenColorFactor;
@@ -35,19 +33,10 @@ struct MetallicRoughness {
 
     explicit MetallicRoughness(const MaterialReader& in);
 
+    MaterialTraits Traits(const MaterialReader& in) const;
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    // Returns what it reads of a hit besides its textures' needs.
-    SurfaceNeeds ExtraNeeds() const;
-    bool NeedsTangents() const { return anisotropyFactor > 0; }
-    // What sheen leaves to the rest depends on the view; anisotropy turns the frame.
-    bool VariesWithHit() const { return anisotropyFactor > 0 || !IsBlack(sheenColorFactor); }
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        VisitSlots([&](const auto& slot) { f(slot.texture); });
-    }
-    int MaxLobes() const { return 4 + (anisotropyFactor > 0) + !IsBlack(sheenColorFactor); }
+    // Reads "normalmap", with "normalscale" and "normaluv" (1: the second texture coordinates).
+    SurfaceTilt Tilt(const MaterialReader& in) const;
 
   private:
     template <typename F>

@@ -12,7 +12,23 @@ std::string Mix::Problem(const MaterialReader& in) const {
         if (operands[i] < 0 || operands[i] >= int(in.made.size()))
             return "\"" + parameter + "\" of a mix: there is no material \"" + name + "\"";
     }
+    const SurfaceNeeds needs = Traits(in).needs;
+    if (needs & kIsInterface) return "a mix of a material and \"none\" is not modelled";
+    if (needs & kScattersBelow)
+        return "a mix with a material that scatters below its surface is not modelled; light that "
+               "goes in does not come out in pbrt-v3 either";
     return "";
+}
+
+MaterialTraits Mix::Traits(const MaterialReader& in) const {
+    MaterialTraits traits = in.TraitsOf(0, amount);
+    for (const int operand : operands) {
+        const MaterialTraits& other = TraitsOfOperand(operand, in.made);
+        traits.needs = traits.needs | other.needs;
+        traits.mostLobes += other.mostLobes;
+        traits.isConstant &= other.isConstant;
+    }
+    return traits;
 }
 
 void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {

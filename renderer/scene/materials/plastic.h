@@ -6,22 +6,15 @@
 namespace lull {
 
 struct Plastic {
-    static constexpr const char* kName = "plastic";
-
     SpectrumTexture kd, ks;
     Roughness roughness;
 
     explicit Plastic(const MaterialReader& in);
 
-    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(kd);
-        f(ks);
-        roughness.VisitTextures(f);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(!IsAlwaysBlack(kd) + !IsAlwaysBlack(ks), kd, ks, roughness);
     }
-    int MaxLobes() const { return !IsAlwaysBlack(kd) + !IsAlwaysBlack(ks); }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
 }  // namespace lull

@@ -6,22 +6,15 @@
 namespace lull {
 
 struct Substrate {
-    static constexpr const char* kName = "substrate";
-
     SpectrumTexture kd, ks;
     Roughness roughness;
 
     explicit Substrate(const MaterialReader& in);
 
-    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(kd);
-        f(ks);
-        roughness.VisitTextures(f);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(1, kd, ks, roughness);
     }
-    int MaxLobes() const { return 1; }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
 }  // namespace lull

@@ -61,8 +61,9 @@ Subsurface::Subsurface(const MaterialReader& in)
       sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s",
                                      PresetOr(in, true, Rgb(2.55f, 3.21f, 3.77f)))) {}
 
-SubsurfaceProfile Subsurface::Profile(const MaterialInputs& in) const {
-    return {DiffusionProfile(*table, scale * in.Color(sigmaA), scale * in.Color(sigmaS)), eta};
+std::optional<SubsurfaceProfile> Subsurface::Profile(const MaterialInputs& in) const {
+    return SubsurfaceProfile{
+        DiffusionProfile(*table, scale * in.Color(sigmaA), scale * in.Color(sigmaS)), eta};
 }
 
 KdSubsurface::KdSubsurface(const MaterialReader& in)
@@ -70,14 +71,14 @@ KdSubsurface::KdSubsurface(const MaterialReader& in)
       kd(in.Spectrum("Kd", 0.5f)),
       meanFreePath(in.Spectrum("mfp", 1)) {}
 
-SubsurfaceProfile KdSubsurface::Profile(const MaterialInputs& in) const {
+std::optional<SubsurfaceProfile> KdSubsurface::Profile(const MaterialInputs& in) const {
     // Less than that float could not square the inverse of.
     constexpr float kLeastPath = 1e-15f;
     const Rgb sigmaT = 1 / (scale * in.Color(meanFreePath)).max(kLeastPath);
     const Rgb effective = in.Color(kd);
     Rgb albedo;
     for (int c = 0; c < 3; ++c) albedo[c] = AlbedoOfScattering(*table, effective[c]);
-    return {DiffusionProfile(*table, (1 - albedo) * sigmaT, albedo * sigmaT), eta};
+    return SubsurfaceProfile{DiffusionProfile(*table, (1 - albedo) * sigmaT, albedo * sigmaT), eta};
 }
 
 }  // namespace lull

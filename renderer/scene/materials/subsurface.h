@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what both kinds share: the surface, below which transmitted light continues.
+// What both kinds share: the surface, below which transmitted light continues.
 struct TranslucentSolid {
     SpectrumTexture kr, kt;
     Roughness roughness;
@@ -16,50 +16,42 @@ struct TranslucentSolid {
 
     explicit TranslucentSolid(const MaterialReader& in, float g);
 
-    SurfaceNeeds ExtraNeeds() const { return kScattersBelow | kNeedsTangents; }
     std::string Problem(const MaterialReader&) const;
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-    int MaxLobes() const { return !IsAlwaysBlack(kr) + !IsAlwaysBlack(kt); }
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        f(kr);
-        f(kt);
-        roughness.VisitTextures(f);
+
+  protected:
+    // Returns the traits of a solid that depends on these textures as well.
+    template <typename... Textures>
+    MaterialTraits SolidTraits(const MaterialReader& in, const Textures&... read) const {
+        const int most = !IsAlwaysBlack(kr) + !IsAlwaysBlack(kt);
+        MaterialTraits traits = in.TraitsOf(most, kr, kt, roughness, read...);
+        traits.Need(kScattersBelow | kNeedsTangents);
+        return traits;
     }
 };
 
 // Is given coefficients of absorption and scattering, 1/length times "scale", or those of a "name".
 struct Subsurface : TranslucentSolid {
-    static constexpr const char* kName = "subsurface";
-
     SpectrumTexture sigmaA, sigmaS;
 
     explicit Subsurface(const MaterialReader& in);
 
-    SubsurfaceProfile Profile(const MaterialInputs& in) const;
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        TranslucentSolid::VisitTextures(f);
-        f(sigmaA);
-        f(sigmaS);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return SolidTraits(in, sigmaA, sigmaS);
     }
+    std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
 };
 
 // Is given the albedo that it shows under uniform light, and the mean free path times "scale".
 struct KdSubsurface : TranslucentSolid {
-    static constexpr const char* kName = "kdsubsurface";
-
     SpectrumTexture kd, meanFreePath;
 
     explicit KdSubsurface(const MaterialReader& in);
 
-    SubsurfaceProfile Profile(const MaterialInputs& in) const;
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        TranslucentSolid::VisitTextures(f);
-        f(kd);
-        f(meanFreePath);
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return SolidTraits(in, kd, meanFreePath);
     }
+    std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
 };
 
 }  // namespace lull

@@ -6,24 +6,17 @@
 namespace lull {
 
 struct Translucent {
-    static constexpr const char* kName = "translucent";
-
     SpectrumTexture kd, ks, reflect, transmit;
     Roughness roughness;
 
     explicit Translucent(const MaterialReader& in);
 
+    MaterialTraits Traits(const MaterialReader& in) const {
+        const int most = (!IsAlwaysBlack(kd) + !IsAlwaysBlack(ks)) *
+                         (!IsAlwaysBlack(reflect) + !IsAlwaysBlack(transmit));
+        return in.TraitsOf(most, kd, ks, reflect, transmit, roughness);
+    }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        for (const SpectrumTexture* t : {&kd, &ks, &reflect, &transmit}) f(*t);
-        roughness.VisitTextures(f);
-    }
-    int MaxLobes() const {
-        return (!IsAlwaysBlack(kd) + !IsAlwaysBlack(ks)) *
-               (!IsAlwaysBlack(reflect) + !IsAlwaysBlack(transmit));
-    }
 };
 
 }  // namespace lull

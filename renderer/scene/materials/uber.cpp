@@ -20,12 +20,12 @@ Uber::Uber(const MaterialReader& in)
       eta(in.IndexOfRefraction()),
       roughness(UberRoughness(in)) {}
 
-int Uber::MaxLobes() const {
+MaterialTraits Uber::Traits(const MaterialReader& in) const {
     const bool isOpaque = opacity.IsConstant() && (opacity.constant >= 1).all();
     int count = !isOpaque;
     for (const SpectrumTexture* t : {&kd, &ks, &kr, &kt})
         count += !IsAlwaysBlack(*t) && !IsAlwaysBlack(opacity);
-    return count;
+    return in.TraitsOf(count, kd, ks, kr, kt, opacity, eta, roughness);
 }
 
 void Uber::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {

@@ -6,8 +6,6 @@
 namespace lull {
 
 struct Uber {
-    static constexpr const char* kName = "uber";
-
     SpectrumTexture kd, ks, kr, kt, opacity;
     FloatTexture eta;  // index of refraction
     Roughness roughness;
@@ -15,15 +13,8 @@ struct Uber {
     explicit Uber(const MaterialReader& in);
     std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
+    MaterialTraits Traits(const MaterialReader& in) const;
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
-
-    template <typename F>
-    void VisitTextures(F&& f) const {
-        for (const SpectrumTexture* t : {&kd, &ks, &kr, &kt, &opacity}) f(*t);
-        f(eta);
-        roughness.VisitTextures(f);
-    }
-    int MaxLobes() const;
 };
 
 }  // namespace lull
