@@ -1,11 +1,11 @@
-// Describes the point on a surface that a ray has hit.
+// Describes what a ray has hit, and the point on that surface.
 #pragma once
 
 #include "renderer/base/math.h"
 
 namespace lull {
 
-// Says what a material needs of a hit beyond position and normals; nothing else is computed. Bits.
+// What a material needs of a hit beyond position and normals; nothing else is computed. Bits.
 enum SurfaceNeeds : uint8_t {
     kNeedsNothing = 0,
     kNeedsUv = 1,                 // uv
@@ -21,6 +21,20 @@ enum SurfaceNeeds : uint8_t {
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
     return SurfaceNeeds(uint8_t(a) | uint8_t(b));
 }
+
+// What the accelerator tells of a hit.
+struct Hit {
+    float t;
+    float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v
+    int shape;
+    uint32_t primitive;
+    int instance;  // -1: the shape stands in the world itself
+};
+
+// What a shape of several primitives tells of a hit: the place on the ray and on the primitive.
+struct ShapeHit {
+    float t, u, v;
+};
 
 struct SurfaceInteraction {
     Vec3f p;       // world

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/geometry/shape_table.h"
+#include "renderer/scene/kinds.h"
 #include "renderer/scene/lights/light_color.h"
 
 namespace lull {
@@ -22,29 +24,42 @@ WorldSphere BoundingSphere(const Bounds3f& bounds) {
     return {center, std::max((bounds.upper - center).norm(), 1e-10f)};
 }
 
-// Makes the light of one LightSource directive: the table of kinds.
-Light MakeLight(const Description& description, const LightEntity& entity, float worldRadius,
-                bool asPbrtV3, Warnings& warnings) {
+// Adapts makers to the table of kinds.
+template <typename L>
+Light Make(const LightReader& in) {
+    return L::Make(in);
+}
+
+constexpr Kind<Light(const LightReader&)> kLights[] = {
+    {"point", Make<PointLight>},
+    {"spot", Make<SpotLight>},
+    {"spot-squared", Make<SpotLight>},
+    {"distant", Make<DistantLight>},
+    {"infinite", Make<InfiniteLight>},
+    {"exinfinite", Make<InfiniteLight>},
+    {"goniometric", Make<GoniometricLight>},
+    {"projection", Make<ProjectionLight>},
+};
+
+// Makes the light of one LightSource directive.
+Light MakeLight(const LightReader& in) {
+    const LightEntity& entity = in.entity;
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
     entity.parameters.GetInt("nsamples", 1);
-    if (entity.name == "point") return PointLight::Make(entity, warnings);
-    if (entity.name == "spot" || entity.name == "spot-squared")
-        return SpotLight::Make(entity, warnings);
-    if (entity.name == "distant") return DistantLight::Make(entity, worldRadius, warnings);
-    if (entity.name == "infinite" || entity.name == "exinfinite")
-        return InfiniteLight::Make(description, entity, worldRadius, !asPbrtV3, warnings);
-    if (entity.name == "goniometric") return GoniometricLight::Make(description, entity, warnings);
-    if (entity.name == "projection") return ProjectionLight::Make(description, entity, warnings);
-    throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; point, spot, distant, "
-                                        "infinite, goniometric and projection are",
-                                        entity.name));
+    const auto* kind = FindKind(kLights, entity.name);
+    if (!kind)
+        throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; {} are",
+                                            entity.name, NamesOf(kLights)));
+    const Light light = kind->make(in);
+    entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", in.warnings);
+    return light;
 }
 
 // Refuses lights to whose place no ray is traced.
 void CheckReach(const Light& light, const LightEntity& entity, float reach) {
     std::visit(
         [&]<typename L>(const L& l) {
-            if constexpr (requires { l.p; })
+            if constexpr (L::kType == LightType::DeltaPosition)
                 if (!(l.p.template cast<double>().norm() <= double(reach)))
                     throw Error(entity.loc, fmt::format("LightSource \"{}\" lies farther than "
                                                         "{:.3g} from the origin, where no ray is "
@@ -81,14 +96,11 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     std::vector<LightBounds> bounds;
     bounds.reserve(lights.size());
     std::vector<int> unbounded;
-    for (const Light& light : lights)
-        bounds.push_back(std::visit(
-            [&]<typename L>(const L& l) -> LightBounds {
-                if constexpr (requires { l.Bounds(); }) return l.Bounds();
-                unbounded.push_back(int(&light - lights.data()));
-                return {};
-            },
-            light));
+    for (const Light& light : lights) {
+        const auto placed = std::visit([](const auto& l) { return l.Bounds(); }, light);
+        if (!placed) unbounded.push_back(int(&light - lights.data()));
+        bounds.push_back(placed.value_or(LightBounds{}));
+    }
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
@@ -100,7 +112,7 @@ std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const S
     const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());
     const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
     const bool isPlain = emission.IsConstant() && (emission.constant == 1).all();
-    if (!std::holds_alternative<Mesh>(shape.geometry) || (isPlain && !shape.coverage)) return {};
+    if (!shape.IsMesh() || (isPlain && !shape.coverage)) return {};
     return std::make_unique<const EmissionMap>(EmissionMap{&textures, &shape, emission, secondUv});
 }
 
@@ -111,10 +123,9 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     const WorldSphere world = BoundingSphere(shapes.bounds);
     lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
-        lights.push_back(MakeLight(description, entity, world.radius, asPbrtV3, warnings));
+        lights.push_back(MakeLight({description, entity, world.radius, !asPbrtV3, warnings}));
         CheckReach(lights.back(), entity, shapes.reach);
-        entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", warnings);
-        if (std::holds_alternative<InfiniteLight>(lights.back())) infinite.push_back(Count() - 1);
+        if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {
         const auto& entity = description.shapes[i].areaLight;
@@ -130,14 +141,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         }
         shape.firstLight = Count();
         for (uint32_t k = 0; k < shape.PrimitiveCount(); ++k) {
-            if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry))
-                light.surface = mesh->Sampler(k);
-            else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
-                light.surface = sphere;
-            else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
-                light.surface = disk;
-            else
-                light.surface = &std::get<Revolved>(shape.geometry);
+            light.surface = EmitterOf(shape.geometry, k);
             if (light.map) {
                 light.triangle = k;
                 light.meanFactor = light.map->Mean(k);
@@ -146,10 +150,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         }
     }
     if (lights.empty()) return;
-    anyVisible = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
-        const AreaLight* area = std::get_if<AreaLight>(&light);
-        return area ? !area->isHidden : std::holds_alternative<InfiniteLight>(light);
-    });
+    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
 
     const Entity& integrator = description.integrator;
     std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
@@ -175,16 +176,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
 }
 
 std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Vec2f& u) const {
-    const Light& light = lights[i];
-    if (const AreaLight* area = std::get_if<AreaLight>(&light)) return area->Sample(from, u);
-    if (const InfiniteLight* environment = std::get_if<InfiniteLight>(&light))
-        return environment->Sample(u);
-    if (const PointLight* point = std::get_if<PointLight>(&light)) return point->Sample(from);
-    if (const SpotLight* spot = std::get_if<SpotLight>(&light)) return spot->Sample(from);
-    if (const DistantLight* distant = std::get_if<DistantLight>(&light)) return distant->Sample();
-    if (const auto* goniometric = std::get_if<GoniometricLight>(&light))
-        return goniometric->Sample(from);
-    return std::get<ProjectionLight>(light).Sample(from);
+    return Visit(lights[i], [&](const auto& light) { return light.Sample(from, u); });
 }
 
 }  // namespace lull

@@ -1,22 +1,14 @@
 // Owns the lights of a scene: what they emit, how they are sampled, and which is chosen.
 #pragma once
 
-#include <variant>
-
 #include "renderer/base/color.h"
+#include "renderer/bsdf/bsdf.h"
+#include "renderer/scene/light.h"
 #include "renderer/scene/light_distribution.h"
-#include "renderer/scene/lights/area.h"
-#include "renderer/scene/lights/distant.h"
-#include "renderer/scene/lights/goniometric.h"
-#include "renderer/scene/lights/infinite.h"
-#include "renderer/scene/lights/point.h"
-#include "renderer/scene/lights/projection.h"
-#include "renderer/scene/lights/spot.h"
 
 namespace lull {
 
-using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, AreaLight,
-                           GoniometricLight, ProjectionLight>;
+struct ShapeTable;
 
 class LightTable {
   public:

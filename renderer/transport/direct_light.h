@@ -50,25 +50,22 @@ template <typename Media, typename Vertex>
 Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int index, float pmf) {
     const Vec2f u = context.sampler.Get2D();
     const Light& light = context.scene.lights[index];
-    const AreaLight* area = std::get_if<AreaLight>(&light);
-    const InfiniteLight* environment = std::get_if<InfiniteLight>(&light);
-    if (!area && !environment) return Rgb::Zero();  // a direction cannot be found by chance
-    if (area && area->isHidden) return Rgb::Zero();
+    if (!IsVisible(light)) return Rgb::Zero();
     const auto sample = v.Sample(u, LobeSet::NonSpecular);
     if (!sample) return Rgb::Zero();
     Sighting sighting;
     Rgb L;
     float lightPdf;
-    if (environment) {
-        lightPdf = environment->Pdf(sample->wi);
+    if (TypeOf(light) == LightType::Infinite) {
+        lightPdf = Pdf(light, sample->wi);
         if (lightPdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
             return Rgb::Zero();
-        L = environment->Le(sample->wi);
+        L = Le(light, sample->wi);
     } else {
         if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
         const SurfaceInteraction& at = sighting.at;
-        L = area->Le(at.n, -sample->wi, sighting.found);
-        lightPdf = area->Pdf(v.Position(), at.p, at.n);
+        L = Le(light, at.n, -sample->wi, sighting.found);
+        lightPdf = Pdf(light, v.Position(), at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
     return sample->f * L * sighting.share *

@@ -48,15 +48,15 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
     Rgb sum = Rgb::Zero();
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
-            const auto& light = std::get<InfiniteLight>(scene.lights[i]);
-            const float pdf = path.seesLights ? 0 : light.Pdf(path.ray.d);
-            sum += light.Le(path.ray.d) * EmissionWeight(estimator, path, i, pdf);
+            const Light& light = scene.lights[i];
+            const float pdf = path.seesLights ? 0 : Pdf(light, path.ray.d);
+            sum += Le(light, path.ray.d) * EmissionWeight(estimator, path, i, pdf);
         }
     } else if (hit->areaLight >= 0) {
-        const auto& light = std::get<AreaLight>(scene.lights[hit->areaLight]);
-        const Rgb L = light.Le(hit->n, hit->wo, found);
+        const Light& light = scene.lights[hit->areaLight];
+        const Rgb L = Le(light, hit->n, hit->wo, found);
         if (IsBlack(L)) return sum;
-        const float pdf = path.seesLights ? 0 : light.Pdf(path.origin, hit->p, hit->n);
+        const float pdf = path.seesLights ? 0 : Pdf(light, path.origin, hit->p, hit->n);
         sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
     }
     return sum;

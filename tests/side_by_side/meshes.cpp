@@ -23,8 +23,11 @@ GltfMesh Grid(uint32_t columns, uint32_t rows, P&& p) {
     return mesh;
 }
 
-// Curves have no triangles: MakeGltfMesh leaves them out.
-GltfMesh Triangulate(const Curves&) { return {}; }
+// Other kinds have no triangles: MakeGltfMesh leaves them out.
+template <typename S>
+GltfMesh Triangulate(const S&) {
+    return {};
+}
 
 Vec3f Turned(const Vec3f& p, float phi) { return Eigen::AngleAxisf(phi, Vec3f::UnitZ()) * p; }
 
@@ -105,7 +108,7 @@ GltfMesh MakeGltfMesh(const Shape& shape, const Mat4d& m) {
             if constexpr (std::is_same_v<std::decay_t<decltype(geometry)>, Mesh>) {
                 // Normals of its own are as they are.
                 flipTriangles = geometry.flipNormals != (m.topLeftCorner<3, 3>().determinant() < 0);
-            } else if constexpr (!std::is_same_v<std::decay_t<decltype(geometry)>, Curves>) {
+            } else if constexpr (requires { geometry.place.worldFromShape; }) {
                 all = m * geometry.place.worldFromShape;
                 flipNormals = geometry.place.flipNormals;
             }

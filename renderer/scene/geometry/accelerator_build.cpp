@@ -13,10 +13,6 @@ void ReportEmbreeError(void*, RTCError, const char* message) {
                             message ? message : "unknown error"));
 }
 
-Ray RayOf(const RTCRay& r) {
-    return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
-}
-
 // Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
 // random from one ray or one primitive to another (mixing by Stafford 2011, variant 13).
 float NumberOf(const RTCRay& ray, const RTCHit& hit) {
@@ -65,75 +61,7 @@ void FilterByAlpha(const RTCFilterFunctionNArguments* args, bool isShadow) {
         args->valid[0] = 0;
 }
 
-std::optional<float> IntersectQuadric(const ShapeUser& user, const Ray& ray) {
-    const auto& geometry = user.shapes->shapes[user.shape].geometry;
-    if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) return Intersect(*sphere, ray);
-    if (const Disk* disk = std::get_if<Disk>(&geometry)) return Intersect(*disk, ray);
-    return Intersect(std::get<Revolved>(geometry), ray);
-}
-
-std::optional<CurveHit> IntersectCurve(const ShapeUser& user, uint32_t primitive, const Ray& ray) {
-    return Intersect(std::get<Curves>(user.shapes->shapes[user.shape].geometry), primitive, ray);
-}
-
-void ShapeBoundsCallback(const RTCBoundsFunctionArguments* args) {
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    const auto& geometry = user.shapes->shapes[user.shape].geometry;
-    const Bounds3f b = std::visit(
-        [&]<typename G>(const G& g) {
-            if constexpr (std::is_same_v<G, Mesh>)
-                return Bounds3f();  // meshes have bounds of Embree's own
-            else if constexpr (std::is_same_v<G, Curves>)
-                return g.WorldBounds(args->primID);
-            else
-                return g.WorldBounds();
-        },
-        geometry);
-    *args->bounds_o = PaddedBounds(b);
-}
-
 }  // namespace
-
-void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    const auto t = IntersectQuadric(user, RayOf(rayHit->ray));
-    if (!t) return;
-    rayHit->ray.tfar = *t;
-    rayHit->hit.u = rayHit->hit.v = 0;
-    rayHit->hit.geomID = args->geomID;
-    rayHit->hit.primID = args->primID;
-    rayHit->hit.instID[0] = args->context->instID[0];
-}
-
-void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    if (IntersectQuadric(user, RayOf(*ray))) ray->tfar = -kInfinity;
-}
-
-void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const auto hit = IntersectCurve(*static_cast<const ShapeUser*>(args->geometryUserPtr),
-                                    args->primID, RayOf(rayHit->ray));
-    if (!hit) return;
-    rayHit->ray.tfar = hit->t;
-    rayHit->hit.u = hit->u;
-    rayHit->hit.v = hit->v;
-    rayHit->hit.geomID = args->geomID;
-    rayHit->hit.primID = args->primID;
-    rayHit->hit.instID[0] = args->context->instID[0];
-}
-
-void OccludedCurveCallback(const RTCOccludedFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    if (IntersectCurve(user, args->primID, RayOf(*ray))) ray->tfar = -kInfinity;
-}
 
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, true); }
@@ -168,13 +96,16 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
                                    mesh->triangles.data(), 0, 3 * sizeof(uint32_t),
                                    mesh->triangles.size());
     } else {
-        const bool isCurve = std::holds_alternative<Curves>(shape.geometry);
         rtcSetGeometryUserPrimitiveCount(geometry, shape.PrimitiveCount());
-        rtcSetGeometryBoundsFunction(geometry, ShapeBoundsCallback, nullptr);
-        rtcSetGeometryIntersectFunction(
-            geometry, isCurve ? IntersectCurveCallback : IntersectQuadricCallback);
-        rtcSetGeometryOccludedFunction(geometry,
-                                       isCurve ? OccludedCurveCallback : OccludedQuadricCallback);
+        std::visit(
+            [&]<typename S>(const S&) {
+                if constexpr (!std::is_same_v<S, Mesh>) {
+                    rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
+                    rtcSetGeometryIntersectFunction(geometry, IntersectCallback<S>);
+                    rtcSetGeometryOccludedFunction(geometry, OccludedCallback<S>);
+                }
+            },
+            shape.geometry);
     }
     if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
     if (mesh && (shape.alpha || shape.shadowAlpha))

@@ -23,14 +23,14 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-// Holds what Embree's callbacks know of a shape.
+// What Embree's callbacks know of a shape.
 struct ShapeUser {
     const ShapeTable* shapes;
     const TextureTable* textures;
     int shape;
 };
 
-// Holds what the callbacks of a moving instance know.
+// What the callbacks of a moving instance know.
 struct MovingUser {
     const ShapeTable* shapes;
     int instance;
@@ -41,13 +41,8 @@ struct MovingUser {
     void Attach(RTCDevice device, RTCScene world, unsigned id);
 };
 
-// Callbacks of Embree, called with one ray at a time, as rays are traced one at a time. Those of
-// quadrics and curves intersect shapes that are not meshes; the filters reject hits that alpha cuts
-// out.
-void IntersectQuadricCallback(const RTCIntersectFunctionNArguments* args);
-void OccludedQuadricCallback(const RTCOccludedFunctionNArguments* args);
-void IntersectCurveCallback(const RTCIntersectFunctionNArguments* args);
-void OccludedCurveCallback(const RTCOccludedFunctionNArguments* args);
+// Filters of Embree, which reject hits that alpha cuts out. Like the callbacks below they are
+// called with one ray at a time, as rays are traced one at a time.
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterByCoverage(const RTCFilterFunctionNArguments* args);
@@ -72,6 +67,58 @@ inline RTCBounds PaddedBounds(const Bounds3f& b) {
     const Vec3f pad = Gamma(16) * (b.lower.cwiseAbs().cwiseMax(b.upper.cwiseAbs()));
     const Vec3f lower = b.lower - pad, upper = b.upper + pad;
     return {lower.x(), lower.y(), lower.z(), 0, upper.x(), upper.y(), upper.z(), 0};
+}
+
+inline Ray RayOf(const RTCRay& r) {
+    return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
+}
+
+template <typename S>
+const S& ShapeOf(void* user) {
+    const auto& [shapes, textures, index] = *static_cast<const ShapeUser*>(user);
+    return *std::get_if<S>(&shapes->shapes[index].geometry);
+}
+
+template <typename S>
+std::optional<ShapeHit> IntersectPrimitive(const S& shape, uint32_t primitive, const Ray& ray) {
+    if constexpr (requires { Intersect(shape, primitive, ray); })
+        return Intersect(shape, primitive, ray);
+    else if (const auto t = Intersect(shape, ray))
+        return ShapeHit{*t, 0, 0};
+    return {};
+}
+
+// Let Embree see and hit shapes of kind S, which are not meshes.
+template <typename S>
+void BoundsCallback(const RTCBoundsFunctionArguments* args) {
+    const S& shape = ShapeOf<S>(args->geometryUserPtr);
+    if constexpr (requires { shape.WorldBounds(args->primID); })
+        *args->bounds_o = PaddedBounds(shape.WorldBounds(args->primID));
+    else
+        *args->bounds_o = PaddedBounds(shape.WorldBounds());
+}
+
+template <typename S>
+void IntersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto hit =
+        IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(rayHit->ray));
+    if (!hit) return;
+    rayHit->ray.tfar = hit->t;
+    rayHit->hit.u = hit->u;
+    rayHit->hit.v = hit->v;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
+template <typename S>
+void OccludedCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+    if (IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(*ray)))
+        ray->tfar = -kInfinity;
 }
 
 inline RTCRay MakeRay(const Ray& ray, float time) {

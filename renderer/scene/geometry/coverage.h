@@ -1,7 +1,7 @@
 // Computes the coverage of a mesh at a point.
 #pragma once
 
-#include "renderer/scene/geometry/shape_table.h"
+#include "renderer/scene/geometry/shape.h"
 
 namespace lull {
 

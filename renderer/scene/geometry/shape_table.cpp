@@ -7,21 +7,6 @@
 namespace lull {
 namespace {
 
-Bounds3f ShapeBounds(const Shape& shape) {
-    return std::visit(
-        [](const auto& geometry) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(geometry)>, Mesh>) {
-                Bounds3f bounds;
-                for (const auto& triangle : geometry.triangles)
-                    for (const uint32_t v : triangle) bounds.Extend(geometry.p[v]);
-                return bounds;
-            } else {
-                return geometry.WorldBounds();
-            }
-        },
-        shape.geometry);
-}
-
 // Refuses what no ray reaches. `what` is the grammatical subject.
 void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& what) {
     if (!(Farthest(bounds) <= double(kFarthest)))
@@ -59,18 +44,12 @@ Ray IntoInstance(const Instance& instance, const Ray& ray) {
             TransformVector(instance.instanceFromWorld, ray.d), ray.tMax};
 }
 
-uint32_t Shape::PrimitiveCount() const {
-    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) return uint32_t(mesh->triangles.size());
-    const Curves* curves = std::get_if<Curves>(&geometry);
-    return curves ? curves->PrimitiveCount() : 1;
-}
-
 ShapeTable::ShapeTable(const Description& description, const TextureTable& textures,
                        bool substitute, Warnings& warnings) {
     // Returns the bounds of the new shape.
     const auto add = [&](const ShapeEntity& entity) {
         shapes.push_back(MakeShape(description, entity, textures, substitute, warnings));
-        const Bounds3f b = ShapeBounds(shapes.back());
+        const Bounds3f b = shapes.back().WorldBounds();
         CheckReach(b, entity.loc, "Shape \"" + entity.name + "\"");
         return b;
     };
@@ -139,7 +118,7 @@ void ShapeTable::AddMotion(const Description& description, const InstanceEntity&
 Bounds3f ShapeTable::ObjectBounds(int object) const {
     const auto [first, count] = objects[object];
     Bounds3f bounds;
-    for (int i = first; i < first + count; ++i) bounds.Extend(ShapeBounds(shapes[i]));
+    for (int i = first; i < first + count; ++i) bounds.Extend(shapes[i].WorldBounds());
     return bounds;
 }
 
@@ -155,8 +134,7 @@ size_t ShapeTable::TriangleCount() const {
     const auto triangles = [&](int first, int count) {
         size_t sum = 0;
         for (int i = first; i < first + count; ++i)
-            if (const Mesh* mesh = std::get_if<Mesh>(&shapes[i].geometry))
-                sum += mesh->triangles.size();
+            if (shapes[i].IsMesh()) sum += shapes[i].PrimitiveCount();
         return sum;
     };
     size_t sum = triangles(0, worldShapeCount);
@@ -184,21 +162,10 @@ void ShapeTable::InteractMoving(const Ray& ray, const Hit& hit, const Instance& 
 void ShapeTable::InteractIn(const Instance* instance, const Ray& ray, const Hit& hit,
                             SurfaceNeeds needs, SurfaceInteraction* interaction) const {
     const Shape& shape = shapes[hit.shape];
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
-        mesh->Interact(hit.primitive, hit.b1, hit.b2, needs, interaction);
-    } else {
-        const Ray local = instance ? IntoInstance(*instance, ray) : ray;
-        if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry))
-            lull::Interact(*sphere, local, hit.t, needs, interaction);
-        else if (const Disk* disk = std::get_if<Disk>(&shape.geometry))
-            lull::Interact(*disk, local, hit.t, needs, interaction);
-        else if (const Revolved* revolved = std::get_if<Revolved>(&shape.geometry))
-            lull::Interact(*revolved, local, hit.t, needs, interaction);
-        else
-            lull::Interact(std::get<Curves>(shape.geometry), hit.primitive, local,
-                           {hit.t, hit.b1, hit.b2}, interaction);
-    }
-    if ((needs & (kNeedsSecondUv | kNeedsColor)) && !std::holds_alternative<Mesh>(shape.geometry)) {
+    const Ray local = instance && !shape.IsMesh() ? IntoInstance(*instance, ray) : ray;
+    Visit(shape.geometry,
+          [&](const auto& s) { lull::Interact(s, local, hit, needs, interaction); });
+    if ((needs & (kNeedsSecondUv | kNeedsColor)) && !shape.IsMesh()) {
         interaction->uv1 = interaction->uv;
         interaction->color = Rgb::Ones();
     }

@@ -1,42 +1,16 @@
 // Owns the geometry of a scene: shapes, object definitions and instances.
 #pragma once
 
-#include <variant>
 #include <vector>
 
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
-#include "renderer/scene/geometry/shapes/curves.h"
-#include "renderer/scene/geometry/shapes/mesh.h"
-#include "renderer/scene/geometry/shapes/quadric.h"
-#include "renderer/scene/geometry/shapes/revolved.h"
+#include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/material.h"
-#include "renderer/scene/texture.h"
 
 namespace lull {
 
-// Says how much of a surface is there (glTF's alpha modes). With a cutoff a point is there or not;
-// without, rays hit it at random, by a number derived from the ray itself, so that the right share
-// passes.
-struct Coverage {
-    FloatTexture alpha;
-    float factor = 1;
-    float cutoff = -1;  // negative: none
-    bool secondUv = false, vertexAlpha = false;
-};
-
-struct Shape {
-    std::variant<Mesh, Sphere, Disk, Revolved, Curves> geometry;
-    int material = -1;
-    int firstLight = -1;  // of its lights, one a triangle or one in all; -1: emits nothing
-    std::optional<FloatTexture> alpha, shadowAlpha;  // 0 there: not hit (by shadow rays)
-    std::optional<Coverage> coverage;                // of meshes
-
-    bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }
-    uint32_t PrimitiveCount() const;
-};
-
-// Holds a range of ShapeTable::shapes that is placed as a whole.
+// A range of ShapeTable::shapes that is placed as a whole.
 struct Object {
     int firstShape = 0, shapeCount = 0;
 };
@@ -46,14 +20,6 @@ struct Instance {
     int motion = -1;                             // into ShapeTable::motions; -1: does not move
     Mat4d worldFromInstance, instanceFromWorld;  // of one that moves: when the shutter opens
     int entity = -1;                             // into Description::instances
-};
-
-struct Hit {
-    float t;
-    float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v
-    int shape;
-    uint32_t primitive;
-    int instance;  // -1: the shape stands in the world itself
 };
 
 struct ShapeTable {

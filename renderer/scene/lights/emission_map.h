@@ -1,11 +1,12 @@
 // Varies the emission of a mesh over its surface.
 #pragma once
 
+#include "renderer/base/sampling.h"
 #include "renderer/scene/geometry/coverage.h"
 
 namespace lull {
 
-// Holds what all triangles of one emitting mesh share. The shape and textures are a scene's.
+// What all triangles of an emitting mesh share. The shape and textures are a scene's.
 struct EmissionMap {
     const TextureTable* textures;
     const Shape* shape;

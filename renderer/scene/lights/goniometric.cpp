@@ -4,15 +4,14 @@
 
 namespace lull {
 
-GoniometricLight GoniometricLight::Make(const Description& description, const LightEntity& entity,
-                                        Warnings& warnings) {
-    const Rgb I = LightColor(entity, "I", warnings);
-    return {TransformPoint(entity.worldFromLight, Vec3f::Zero()), I,
-            entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
-            ReadLightImage(description, entity, warnings)};
+GoniometricLight GoniometricLight::Make(const LightReader& in) {
+    const Rgb I = LightColor(in.entity, "I", in.warnings);
+    return {TransformPoint(in.entity.worldFromLight, Vec3f::Zero()), I,
+            in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
+            ReadLightImage(in)};
 }
 
-std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from) const {
+std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec2f&) const {
     const Vec3f d = p - from;
     const float distance2 = d.squaredNorm();
     if (!(distance2 > 0)) return {};
@@ -28,8 +27,8 @@ std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from) const {
     return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
 }
 
-LightBounds GoniometricLight::Bounds() const {
-    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+std::optional<LightBounds> GoniometricLight::Bounds() const {
+    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
 
 }  // namespace lull

@@ -39,27 +39,28 @@ int Blacken(const Rgb& L, Image* image) {
 
 }  // namespace
 
-InfiniteLight InfiniteLight::Make(const Description& description, const LightEntity& entity,
-                                  float worldRadius, bool isCompensated, Warnings& warnings) {
+InfiniteLight InfiniteLight::Make(const LightReader& in) {
+    const LightEntity& entity = in.entity;
     const Parameters& params = entity.parameters;
     InfiniteLight light;
-    light.worldRadius = worldRadius;
+    light.worldRadius = in.worldRadius;
     light.worldFromLight = entity.worldFromLight.topLeftCorner<3, 3>().cast<float>();
     light.lightFromWorld = entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
-    const Rgb L = LightColor(entity, "L", warnings);
+    const Rgb L = LightColor(entity, "L", in.warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
     if (params.GetBool("studio", false)) {
-        light.map = std::make_shared<const EnvironmentMap>(MakeStudio(), L, isCompensated);
+        light.map = std::make_shared<const EnvironmentMap>(MakeStudio(), L, in.isCompensated);
         return light;
     }
     if (file.empty()) return light;
     try {
         // As in pbrt-v3, 8-bit environment maps are taken as linear.
-        Image image = ReadImage(ResolvePath(description, file));
+        Image image = ReadImage(ResolvePath(in.description, file));
         for (int bad = Blacken(L, &image); bad > 0; --bad)
-            warnings.Add(entity.loc, "environment map texel that is not finite or negative", file);
-        light.map = std::make_shared<const EnvironmentMap>(std::move(image), L, isCompensated);
+            in.warnings.Add(entity.loc, "environment map texel that is not finite or negative",
+                            file);
+        light.map = std::make_shared<const EnvironmentMap>(std::move(image), L, in.isCompensated);
     } catch (const Error& error) {
         throw Error(entity.loc, error.what());
     }
@@ -71,7 +72,7 @@ Rgb InfiniteLight::Le(const Vec3f& w) const {
 }
 
 // A constant light is sampled as pbrt-v3 does, as a map of one texel: evenly in both coordinates.
-std::optional<LightSample> InfiniteLight::Sample(const Vec2f& u) const {
+std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) const {
     float mapPdf = 1;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
     const float theta = st.y() * kPi, phi = st.x() * 2 * kPi;

@@ -2,8 +2,9 @@
 
 #include <memory>
 
-#include "renderer/input/description.h"
 #include "renderer/scene/lights/environment_map.h"
+#include "renderer/scene/lights/light_bounds.h"
+#include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -12,16 +13,16 @@ namespace lull {
 // brightness guides the sampling (pbrt 3rd ed., 14.2.4).
 class InfiniteLight {
   public:
-    // Reads the image, if any. Throws Error if it cannot be read; texels that are negative or not
-    // finite count as black, with a counted warning. `isCompensated`: see EnvironmentMap.
-    static InfiniteLight Make(const Description&, const LightEntity&, float worldRadius,
-                              bool isCompensated, Warnings&);
+    static constexpr LightType kType = LightType::Infinite;
 
-    // Returns the radiance that arrives from direction w (unit, world).
+    // Reads the image, if any. Throws Error if it cannot be read; texels that are negative or not
+    // finite count as black, with a counted warning.
+    static InfiniteLight Make(const LightReader&);
+
     Rgb Le(const Vec3f& w) const;
-    std::optional<LightSample> Sample(const Vec2f& u) const;
-    // Returns the density, 1/sr, with which Sample finds w.
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
     float Pdf(const Vec3f& w) const;
+    std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const;
 
   private:

@@ -7,15 +7,14 @@ namespace lull {
 
 Rgb LightImage::Lookup(const Vec2f& st) const { return BilinearRgb(image, st, Wrap::Repeat); }
 
-std::shared_ptr<const LightImage> ReadLightImage(const Description& description,
-                                                 const LightEntity& entity, Warnings& warnings) {
-    const std::string file = entity.parameters.GetString("mapname", "");
+std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in) {
+    const std::string file = in.entity.parameters.GetString("mapname", "");
     if (file.empty()) return nullptr;
     auto made = std::make_shared<LightImage>();
     try {
-        made->image = ReadImage(ResolvePath(description, file));
+        made->image = ReadImage(ResolvePath(in.description, file));
     } catch (const Error& error) {
-        throw Error(entity.loc, error.what());
+        throw Error(in.entity.loc, error.what());
     }
     Image& image = made->image;
     Eigen::Array3d sum = Eigen::Array3d::Zero();
@@ -25,7 +24,8 @@ std::shared_ptr<const LightImage> ReadLightImage(const Description& description,
             for (T& texel : texels) {
                 if (float(texel) >= 0 && std::isfinite(float(texel))) continue;
                 texel = T();
-                warnings.Add(entity.loc, "light map texel that is not finite or negative", file);
+                in.warnings.Add(in.entity.loc, "light map texel that is not finite or negative",
+                                file);
             }
             for (int y = 0; y < image.height; ++y)
                 for (int x = 0; x < image.width; ++x)

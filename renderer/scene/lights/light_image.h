@@ -1,10 +1,10 @@
-// Holds the image that shapes the beam of a light.
+// The image that shapes the beam of a light.
 #pragma once
 
 #include <memory>
 
 #include "renderer/image/image.h"
-#include "renderer/input/description.h"
+#include "renderer/scene/lights/light_reader.h"
 
 namespace lull {
 
@@ -19,6 +19,6 @@ struct LightImage {
 // Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
 // Texels that are negative or not finite count as black, with a counted warning. Throws Error if
 // the image cannot be read.
-std::shared_ptr<const LightImage> ReadLightImage(const Description&, const LightEntity&, Warnings&);
+std::shared_ptr<const LightImage> ReadLightImage(const LightReader&);
 
 }  // namespace lull

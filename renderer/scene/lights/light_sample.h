@@ -1,10 +1,18 @@
-// Holds light that may arrive at a point, as a light's sampling proposes it.
+// What all kinds of light share: what sets them apart, and light as their sampling proposes it.
 #pragma once
 
 #include "renderer/base/math.h"
 
 namespace lull {
 
+// Tells lights apart by how paths find them. Rays meet none of the delta lights.
+enum class LightType { DeltaPosition, DeltaDirection, Area, Infinite };
+
+constexpr bool IsDelta(LightType type) {
+    return type == LightType::DeltaPosition || type == LightType::DeltaDirection;
+}
+
+// Light that may arrive at a point.
 struct LightSample {
     Rgb L;          // radiance arriving, or for delta lights radiant intensity / distance^2
     Vec3f wi;       // towards the light, unit, world

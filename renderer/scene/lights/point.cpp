@@ -4,14 +4,14 @@
 
 namespace lull {
 
-PointLight PointLight::Make(const LightEntity& entity, Warnings& warnings) {
-    const Parameters& params = entity.parameters;
+PointLight PointLight::Make(const LightReader& in) {
+    const Parameters& params = in.entity.parameters;
     const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
-    const Rgb I = LightColor(entity, "I", warnings);
-    return {TransformPoint(entity.worldFromLight, from), I};
+    const Rgb I = LightColor(in.entity, "I", in.warnings);
+    return {TransformPoint(in.entity.worldFromLight, from), I};
 }
 
-std::optional<LightSample> PointLight::Sample(const Vec3f& from) const {
+std::optional<LightSample> PointLight::Sample(const Vec3f& from, const Vec2f&) const {
     const Vec3f d = p - from;
     const float distance2 = d.squaredNorm();
     const Rgb L = I / distance2;
@@ -24,8 +24,8 @@ std::optional<LightSample> PointLight::Sample(const Vec3f& from) const {
                        .p = p};
 }
 
-LightBounds PointLight::Bounds() const {
-    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+std::optional<LightBounds> PointLight::Bounds() const {
+    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
 
 }  // namespace lull

@@ -6,27 +6,27 @@
 
 namespace lull {
 
-ProjectionLight ProjectionLight::Make(const Description& description, const LightEntity& entity,
-                                      Warnings& warnings) {
-    const Parameters& params = entity.parameters;
+ProjectionLight ProjectionLight::Make(const LightReader& in) {
+    const Parameters& params = in.entity.parameters;
     ProjectionLight light;
-    light.p = TransformPoint(entity.worldFromLight, Vec3f::Zero());
-    light.I = LightColor(entity, "I", warnings);
-    light.lightFromWorld = entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
+    light.p = TransformPoint(in.entity.worldFromLight, Vec3f::Zero());
+    light.I = LightColor(in.entity, "I", in.warnings);
+    light.lightFromWorld = in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
     const float fov = params.GetFloat("fov", 45);
     if (!(fov > 0 && fov < 180))
-        throw Error(entity.loc, fmt::format("the projection light's \"fov\" is {} degrees; it has "
-                                            "to lie between 0 and 180",
-                                            fov));
+        throw Error(in.entity.loc,
+                    fmt::format("the projection light's \"fov\" is {} degrees; it has "
+                                "to lie between 0 and 180",
+                                fov));
     light.perTangent = 1 / std::tan(fov * kPi / 360);
-    light.image = ReadLightImage(description, entity, warnings);
+    light.image = ReadLightImage(in);
     const float aspect =
         light.image ? float(light.image->image.width) / float(light.image->image.height) : 1;
     light.screen = aspect > 1 ? Vec2f(aspect, 1) : Vec2f(1, 1 / aspect);
     return light;
 }
 
-std::optional<LightSample> ProjectionLight::Sample(const Vec3f& from) const {
+std::optional<LightSample> ProjectionLight::Sample(const Vec3f& from, const Vec2f&) const {
     const Vec3f d = p - from;
     const float distance2 = d.squaredNorm();
     if (!(distance2 > 0)) return {};
@@ -49,8 +49,8 @@ Rgb ProjectionLight::Power() const {
     return 2 * kPi * (1 - cosCorner) * I * mean;
 }
 
-LightBounds ProjectionLight::Bounds() const {
-    return {.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+std::optional<LightBounds> ProjectionLight::Bounds() const {
+    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
 
 }  // namespace lull

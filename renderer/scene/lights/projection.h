@@ -2,6 +2,7 @@
 
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_image.h"
+#include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -10,6 +11,8 @@ namespace lull {
 // 3rd ed., 12.3.2). The field of view is that of the image's shorter side; its first row is at the
 // lowest y.
 struct ProjectionLight {
+    static constexpr LightType kType = LightType::DeltaPosition;
+
     Vec3f p;
     Rgb I;
     Mat3f lightFromWorld;
@@ -18,9 +21,9 @@ struct ProjectionLight {
     std::shared_ptr<const LightImage> image;  // null: white
 
     // Throws Error for a field of view outside (0, 180) or an image that cannot be read.
-    static ProjectionLight Make(const Description&, const LightEntity&, Warnings&);
-    std::optional<LightSample> Sample(const Vec3f& from) const;
-    LightBounds Bounds() const;
+    static ProjectionLight Make(const LightReader&);
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    std::optional<LightBounds> Bounds() const;
     Rgb Power() const;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "renderer/input/description.h"
 #include "renderer/scene/lights/light_bounds.h"
+#include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
@@ -10,14 +10,16 @@ namespace lull {
 // power of how far the cosine is from the edge's ("spot"), or by its square, as
 // KHR_lights_punctual proposes ("spot-squared").
 struct SpotLight {
+    static constexpr LightType kType = LightType::DeltaPosition;
+
     Vec3f p, axis;
     Rgb I;
     float cosTotalWidth, cosFalloffStart;
     bool isSquared = false;
 
-    static SpotLight Make(const LightEntity&, Warnings&);
-    std::optional<LightSample> Sample(const Vec3f& from) const;
-    LightBounds Bounds() const;
+    static SpotLight Make(const LightReader&);
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    std::optional<LightBounds> Bounds() const;
     Rgb Power() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)) * I; }
 };
 

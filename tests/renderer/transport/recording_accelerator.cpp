@@ -85,10 +85,15 @@ RTCScene AdmitPackets(const Scene& scene) {
             const Shape& shape = shapes.shapes[i];
             if (shape.IsInvisible() || shape.PrimitiveCount() == 0) continue;
             RTCGeometry geometry = rtcGetGeometry(world, unsigned(i));
-            if (!std::holds_alternative<Mesh>(shape.geometry)) {
-                rtcSetGeometryIntersectFunction(geometry, OneByOne<IntersectQuadricCallback>);
-                rtcSetGeometryOccludedFunction(geometry, OneByOne<OccludedQuadricCallback>);
-            } else if (shape.alpha || shape.shadowAlpha) {
+            std::visit(
+                [&]<typename S>(const S&) {
+                    if constexpr (!std::is_same_v<S, Mesh>) {
+                        rtcSetGeometryIntersectFunction(geometry, OneByOne<IntersectCallback<S>>);
+                        rtcSetGeometryOccludedFunction(geometry, OneByOne<OccludedCallback<S>>);
+                    }
+                },
+                shape.geometry);
+            if (shape.IsMesh() && (shape.alpha || shape.shadowAlpha)) {
                 if (shape.alpha)
                     rtcSetGeometryIntersectFilterFunction(geometry, OneByOne<FilterNearestByAlpha>);
                 rtcSetGeometryOccludedFilterFunction(geometry, OneByOne<FilterOcclusionByAlpha>);

@@ -87,7 +87,7 @@ class Search {
         if (CanHit(p, u0, u1)) Descend(p, u0, u1, DepthFor(p));
     }
 
-    std::optional<CurveHit> nearest;
+    std::optional<ShapeHit> nearest;
 
   private:
     // Says whether the box around the part is where the ray goes. The y range, which is the
@@ -155,7 +155,7 @@ class Search {
         const bool isLeft = at.x() * slope.y() - at.y() * slope.x() > 0;
         const float t = at.z() / rayLength;
         if (!(t > 0)) return;
-        nearest = CurveHit{t, u, isLeft ? 0.5f + aside : 0.5f - aside};
+        nearest = ShapeHit{t, u, isLeft ? 0.5f + aside : 0.5f - aside};
         zMax = at.z();
     }
 
@@ -202,26 +202,28 @@ Bounds3f Curves::WorldBounds() const {
     return bounds;
 }
 
-std::optional<CurveHit> Intersect(const Curves& curves, uint32_t primitive, const Ray& ray) {
+std::optional<ShapeHit> Intersect(const Curves& curves, uint32_t primitive, const Ray& ray) {
     return Search(curves, primitive, IntoShape(curves, ray)).nearest;
 }
 
-void Interact(const Curves& curves, uint32_t primitive, const Ray& worldRay, const CurveHit& found,
+void Interact(const Curves& curves, const Ray& worldRay, const Hit& found, SurfaceNeeds,
               SurfaceInteraction* hit) {
+    const uint32_t index = found.primitive >> curves.splitDepth;
+    const CurvePiece& piece = curves.pieces[index];
+    const float u = found.b1, v = found.b2;
     const Ray ray = IntoShape(curves, worldRay);
     const Vec3f direction = ray.d.normalized();
-    const CurvePiece& piece = curves.pieces[primitive >> curves.splitDepth];
     const bool isRibbon = curves.kind == CurveKind::Ribbon;
     Vec3f facing = direction;
-    if (isRibbon) facing = RibbonNormal(curves.normals[primitive >> curves.splitDepth], found.u);
-    const float width = SeenWidth(piece, isRibbon ? &facing : nullptr, direction, found.u);
+    if (isRibbon) facing = RibbonNormal(curves.normals[index], u);
+    const float width = SeenWidth(piece, isRibbon ? &facing : nullptr, direction, u);
 
-    hit->uv = {found.u, found.v};
-    hit->dpdu = Evaluate(piece.p, found.u).derivative;
+    hit->uv = {u, v};
+    hit->dpdu = Evaluate(piece.p, u).derivative;
     // A curve that ends where it begins may stand still there; any direction will do.
     if (!(hit->dpdu.squaredNorm() > 0)) hit->dpdu = Vec3f::UnitX();
     const Vec3f along = hit->dpdu.stableNormalized();
-    const Vec3f across = AcrossAt(curves.kind, facing, along, found.v);
+    const Vec3f across = AcrossAt(curves.kind, facing, along, v);
     hit->dpdv = width * across;
     hit->surfaceDpdu = hit->dpdu;
     hit->surfaceDpdv = hit->dpdv;

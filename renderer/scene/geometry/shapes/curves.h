@@ -12,13 +12,13 @@ namespace lull {
 // by their normals.
 enum class CurveKind { Flat, Cylinder, Ribbon };
 
-// Holds one Bezier curve. Its width changes linearly from u = 0 to u = 1.
+// A Bezier curve. Its width changes linearly from u = 0 to u = 1.
 struct CurvePiece {
     std::array<Vec3f, 4> p;
     std::array<float, 2> width;
 };
 
-// Holds curves of one kind, in world space (or in their object's). Each piece is 2^splitDepth
+// Curves of one kind, in world space (or in their object's). Each piece is 2^splitDepth
 // primitives, so that the boxes around them are small; primitive i is part i mod 2^splitDepth of
 // piece i / 2^splitDepth.
 struct Curves {
@@ -41,18 +41,12 @@ struct Curves {
 // Returns the point at t of the way from a to b.
 inline Vec3f Between(float t, const Vec3f& a, const Vec3f& b) { return (1 - t) * a + t * b; }
 
-// Where a ray hits a curve: u runs along the piece, v across it, both from 0 to 1.
-struct CurveHit {
-    float t, u, v;
-};
+// See shape.h. The piece is halved until it is straight to within a twentieth of its width; the hit
+// is where it is nearest to the ray in the plane perpendicular to the ray, as in pbrt-v3 (Nakamaru
+// and Ohno 2002): u runs along the piece, v across it, both from 0 to 1. A width of 0 is not hit.
+std::optional<ShapeHit> Intersect(const Curves&, uint32_t primitive, const Ray&);
 
-// Returns the nearest hit in (0, ray.tMax), if any. The piece is halved until it is straight to
-// within a twentieth of its width; the hit is where it is nearest to the ray in the plane
-// perpendicular to the ray, as in pbrt-v3 (Nakamaru and Ohno 2002). A width of 0 is not hit.
-std::optional<CurveHit> Intersect(const Curves&, uint32_t primitive, const Ray&);
-
-// Fills in everything about the hit except wo, material and light.
-void Interact(const Curves&, uint32_t primitive, const Ray&, const CurveHit&,
-              SurfaceInteraction* hit);
+// All is filled in, needed or not.
+void Interact(const Curves&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*);
 
 }  // namespace lull

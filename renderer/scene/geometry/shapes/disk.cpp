@@ -2,6 +2,14 @@
 #include "renderer/scene/geometry/shapes/quadric_internal.h"
 
 namespace lull {
+namespace {
+
+Vec3f SampledNormal(const Disk& disk) {
+    const Vec3f n = TransformNormal(disk.place.shapeFromWorld, Vec3f(0, 0, 1)).normalized();
+    return disk.place.reverseOrientation ? Vec3f(-n) : n;
+}
+
+}  // namespace
 
 Bounds3f Disk::WorldBounds() const {
     return TransformBounds(place.worldFromShape, Vec3f(-radius, -radius, height),
@@ -20,9 +28,9 @@ std::optional<float> Intersect(const Disk& disk, const Ray& worldRay) {
     return float(t);
 }
 
-void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds needs,
+void Interact(const Disk& disk, const Ray& worldRay, const Hit& found, SurfaceNeeds needs,
               SurfaceInteraction* hit) {
-    Vec3f p = ShapeRay(disk.place, worldRay)(t).cast<float>();
+    Vec3f p = ShapeRay(disk.place, worldRay)(found.t).cast<float>();
     p.z() = disk.height;
     const float r = std::max(std::hypot(p.x(), p.y()), 1e-20f);
     const float width = disk.radius - disk.innerRadius;
@@ -42,9 +50,9 @@ void Interact(const Disk& disk, const Ray& worldRay, float t, SurfaceNeeds needs
     hit->surfaceDpdv = hit->dpdv;
 }
 
-Vec3f SampledNormal(const Disk& disk) {
-    const Vec3f n = TransformNormal(disk.place.shapeFromWorld, Vec3f(0, 0, 1)).normalized();
-    return disk.place.reverseOrientation ? Vec3f(-n) : n;
+// Under a transform that mirrors, rays find the normal on the other side than samples.
+NormalBounds Disk::Normals() const {
+    return {SampledNormal(*this), 1, place.reverseOrientation != place.flipNormals};
 }
 
 std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {

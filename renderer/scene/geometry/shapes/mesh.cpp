@@ -89,11 +89,24 @@ Eigen::Array3f KeepInside(Eigen::Array3f b, const Vec3f& p0, const Vec3f& p1, co
 
 }  // namespace
 
-void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
-                    SurfaceInteraction* hit) const {
-    const auto& v = triangles[triangle];
-    const Vec3f &p0 = p[v[0]], &p1 = p[v[1]], &p2 = p[v[2]];
-    const float b0 = 1 - b1 - b2;
+Bounds3f EmittingTriangle::WorldBounds() const {
+    Bounds3f bounds;
+    for (const Vec3f& p : {p0, p1, p2}) bounds.Extend(p);
+    return bounds;
+}
+
+Bounds3f Mesh::WorldBounds() const {
+    Bounds3f bounds;
+    for (const auto& triangle : triangles)
+        for (const uint32_t v : triangle) bounds.Extend(p[v]);
+    return bounds;
+}
+
+void Interact(const Mesh& mesh, const Ray&, const Hit& found, SurfaceNeeds needs,
+              SurfaceInteraction* hit) {
+    const auto& v = mesh.triangles[found.primitive];
+    const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
+    const float b1 = found.b1, b2 = found.b2, b0 = 1 - b1 - b2;
     // The sum of the weighted vertices would bound the error of the point itself, but that of
     // Embree's distance to this triangle comes from all of the vertices, also from a far one that
     // has no weight here.
@@ -101,29 +114,29 @@ void Mesh::Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
     const Eigen::Array3f inside = KeepInside({b0, b1, b2}, p0, p1, p2, hit->pError);
     hit->p = inside[0] * p0 + inside[1] * p1 + inside[2] * p2;
     hit->n = UnitOf((p0 - p2).cross(p1 - p2));
-    if (flipNormals) hit->n = -hit->n;
+    if (mesh.flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
-    if (!n.empty()) {
+    if (!mesh.n.empty()) {
         // The interpolated normal decides the side of the geometric one.
-        const Vec3f sum = b0 * n[v[0]] + b1 * n[v[1]] + b2 * n[v[2]];
+        const Vec3f sum = b0 * mesh.n[v[0]] + b1 * mesh.n[v[1]] + b2 * mesh.n[v[2]];
         if (const float length2 = sum.squaredNorm(); length2 > 0)
             hit->ns = sum / std::sqrt(length2);
     }
     if (needs & kNeedsUv) {
-        const auto uvs = Uvs(*this, v);
+        const auto uvs = Uvs(mesh, v);
         hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
     }
     if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint)) {
-        ComputeTangents(*this, v, needs, hit);
-        if (!tangents.empty()) UseVertexTangents(Interpolate(tangents, v, b1, b2), hit);
+        ComputeTangents(mesh, v, needs, hit);
+        if (!mesh.tangents.empty()) UseVertexTangents(Interpolate(mesh.tangents, v, b1, b2), hit);
     }
     if (needs & (kNeedsSecondUv | kNeedsColor)) {
-        hit->uv1 = Uv1(triangle, b1, b2);
-        const auto c = Color(triangle, b1, b2);
+        hit->uv1 = mesh.Uv1(found.primitive, b1, b2);
+        const auto c = mesh.Color(found.primitive, b1, b2);
         hit->color = Rgb(c[0], c[1], c[2]);
     }
-    if (!n.empty()) {
-        if (reverseOrientation) hit->ns = -hit->ns;
+    if (!mesh.n.empty()) {
+        if (mesh.reverseOrientation) hit->ns = -hit->ns;
         hit->n = FaceForward(hit->n, hit->ns);
     }
 }
@@ -149,7 +162,7 @@ float Mesh::Area(uint32_t triangle) const {
     return 0.5f * LengthOf((p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]));
 }
 
-TriangleSampler Mesh::Sampler(uint32_t triangle) const {
+EmittingTriangle Mesh::EmitterAt(uint32_t triangle) const {
     const auto& v = triangles[triangle];
     const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
     const float twiceArea = LengthOf(cross);
@@ -161,14 +174,16 @@ TriangleSampler Mesh::Sampler(uint32_t triangle) const {
     return {p[v[0]], p[v[1]], p[v[2]], normal, 2 / twiceArea};
 }
 
-std::optional<ShapeSample> TriangleSampler::Sample(const Vec3f& from, const Vec2f& u) const {
+std::optional<ShapeSample> Sample(const EmittingTriangle& triangle, const Vec3f& from,
+                                  const Vec2f& u) {
     const Vec2f b = SampleUniformTriangle(u);
-    const Vec3f q0 = b.x() * p0, q1 = b.y() * p1, q2 = (1 - b.x() - b.y()) * p2;
+    const Vec3f q0 = b.x() * triangle.p0, q1 = b.y() * triangle.p1,
+                q2 = (1 - b.x() - b.y()) * triangle.p2;
     ShapeSample sample;
     sample.p = q0 + q1 + q2;
     sample.pError = Gamma(6) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
-    sample.n = n;
-    sample.pdf = SolidAnglePdf(areaPdf, from, sample.p, n);
+    sample.n = triangle.n;
+    sample.pdf = SolidAnglePdf(triangle.areaPdf, from, sample.p, triangle.n);
     if (!(sample.pdf > 0)) return {};
     return sample;
 }

@@ -9,14 +9,22 @@
 
 namespace lull {
 
-// Holds what sampling an emitting triangle reads, in one place.
-struct TriangleSampler {
+// What sampling an emitting triangle reads, in one place.
+struct EmittingTriangle {
     Vec3f p0, p1, p2, n;
     float areaPdf;  // 1 / area
 
-    // Samples uniformly by area. Returns nothing for a degenerate configuration.
-    std::optional<ShapeSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    float Area() const { return 1 / areaPdf; }
+    Bounds3f WorldBounds() const;
+    NormalBounds Normals() const { return {n, 1}; }
 };
+
+// Samples uniformly by area, with the barycentric coordinates of SampleUniformTriangle(u).
+std::optional<ShapeSample> Sample(const EmittingTriangle&, const Vec3f& from, const Vec2f& u);
+inline float Pdf(const EmittingTriangle& triangle, const Vec3f& from, const Vec3f& p,
+                 const Vec3f& n) {
+    return SolidAnglePdf(triangle.areaPdf, from, p, n);
+}
 
 struct Mesh {
     std::vector<Vec3f> p;
@@ -31,10 +39,8 @@ struct Mesh {
     bool reverseOrientation = false;
     bool flipNormals = false;  // reverseOrientation xor the transform mirrors
 
-    // Fills in everything about the hit except wo, material and light; b1 and b2 are the weights of
-    // the second and third vertex.
-    void Interact(uint32_t triangle, float b1, float b2, SurfaceNeeds needs,
-                  SurfaceInteraction* hit) const;
+    uint32_t PrimitiveCount() const { return uint32_t(triangles.size()); }
+    Bounds3f WorldBounds() const;  // of the triangles
 
     Vec2f Uv(uint32_t triangle, float b1, float b2) const;
     Vec2f Uv1(uint32_t triangle, float b1, float b2) const;  // as Uv where there is no second set
@@ -42,7 +48,10 @@ struct Mesh {
     float Area(uint32_t triangle) const;
     // The emitting side is pbrt-v3's: vertex normals decide, regardless of ReverseOrientation;
     // those of a triangle are added.
-    TriangleSampler Sampler(uint32_t triangle) const;
+    EmittingTriangle EmitterAt(uint32_t triangle) const;
 };
+
+// The ray is not read.
+void Interact(const Mesh&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*);
 
 }  // namespace lull

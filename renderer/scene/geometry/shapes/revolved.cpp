@@ -169,10 +169,10 @@ std::optional<float> Intersect(const Revolved& shape, const Ray& worldRay) {
     return {};
 }
 
-void Interact(const Revolved& shape, const Ray& worldRay, float t, SurfaceNeeds needs,
+void Interact(const Revolved& shape, const Ray& worldRay, const Hit& found, SurfaceNeeds needs,
               SurfaceInteraction* hit) {
     // Carry the point back onto the surface, off which the rounding of t has put it.
-    Vector3d p = ShapeRay(shape.place, worldRay)(t);
+    Vector3d p = ShapeRay(shape.place, worldRay)(found.t);
     for (int step = 0; step < 2; ++step) {
         const Vector3d g = HalfGradient(shape, p);
         const double g2 = g.squaredNorm();

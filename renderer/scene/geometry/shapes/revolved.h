@@ -18,7 +18,9 @@ struct Revolved {
     float phiMax = 2 * kPi;
     double normalSign = 1;  // of dpdu x dpdv against the gradient of x^2 + y^2 - r2(z)
 
+    uint32_t PrimitiveCount() const { return 1; }
     Bounds3f WorldBounds() const;
+    NormalBounds Normals() const { return {}; }
     float Area() const;  // of cylinders alone
 };
 
@@ -36,9 +38,9 @@ Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeHyperboloid(const Vec3f& p1, const Vec3f& p2, float phiMax);
 bool HasArea(const Revolved&);
 
-// As for the other quadrics. Only cylinders are sampled: uniformly by area.
+// See shape.h. Only cylinders are sampled: uniformly by area.
 std::optional<float> Intersect(const Revolved&, const Ray&);
-void Interact(const Revolved&, const Ray&, float t, SurfaceNeeds, SurfaceInteraction* hit);
+void Interact(const Revolved&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*);
 std::optional<ShapeSample> Sample(const Revolved&, const Vec3f& from, const Vec2f& u);
 float Pdf(const Revolved&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 

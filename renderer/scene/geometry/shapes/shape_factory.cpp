@@ -7,6 +7,7 @@
 #include "renderer/scene/geometry/shapes/curve_reader.h"
 #include "renderer/scene/geometry/shapes/patches.h"
 #include "renderer/scene/geometry/shapes/placement.h"
+#include "renderer/scene/kinds.h"
 
 namespace lull {
 namespace {
@@ -225,51 +226,76 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
     return coverage;
 }
 
+// What the makers of shapes read.
+struct ShapeReader {
+    const Description& description;
+    const ShapeEntity& entity;
+    const TextureTable& textures;
+    Warnings& warnings;
+};
+
+// Makes a mesh of which textures may cut parts out.
+Shape MakeCutOutMesh(const ShapeReader& in, MeshData data) {
+    return {.geometry = PlaceMesh(std::move(data), in.entity, in.warnings),
+            .alpha = ReadAlpha(in.textures, in.entity, "alpha"),
+            .shadowAlpha = ReadAlpha(in.textures, in.entity, "shadowalpha"),
+            .coverage = ReadCoverage(in.textures, in.entity)};
+}
+
+Shape MakePlyMesh(const ShapeReader& in) {
+    const std::string file = in.entity.parameters.GetString("filename", "");
+    if (file.empty()) throw Error(in.entity.loc, "plymesh needs a \"filename\"");
+    return MakeCutOutMesh(in,
+                          LoadPly(ResolvePath(in.description, file), in.warnings, in.entity.loc));
+}
+Shape MakeTriangleMesh(const ShapeReader& in) {
+    return MakeCutOutMesh(in, TriangleMesh(in.entity, in.warnings));
+}
+Shape MakeSubdividedMesh(const ShapeReader& in) {
+    return MakeCutOutMesh(in, SubdividedMesh(in.entity));
+}
+
+// Adapt makers to the table of kinds.
+template <auto Make>
+Shape MakePatches(const ShapeReader& in) {
+    return {.geometry = PlaceMesh(Make(in.entity), in.entity, in.warnings)};
+}
+template <auto Make>
+Shape MakeSolid(const ShapeReader& in) {
+    return {.geometry = Make(in.entity)};
+}
+Shape MakeCurves(const ShapeReader& in) { return {.geometry = ReadCurves(in.entity, in.warnings)}; }
+
+constexpr Kind<Shape(const ShapeReader&)> kShapes[] = {
+    {"plymesh", MakePlyMesh},
+    {"trianglemesh", MakeTriangleMesh},
+    {"loopsubdiv", MakeSubdividedMesh},
+    {"heightfield", MakePatches<HeightfieldMesh>},
+    {"nurbs", MakePatches<NurbsMesh>},
+    {"sphere", MakeSolid<MakeSphere>},
+    {"disk", MakeSolid<MakeDisk>},
+    {"cylinder", MakeSolid<MakeRevolved>},
+    {"cone", MakeSolid<MakeRevolved>},
+    {"paraboloid", MakeSolid<MakeRevolved>},
+    {"hyperboloid", MakeSolid<MakeRevolved>},
+    {"curve", MakeCurves},
+};
+
 }  // namespace
 
 Shape MakeShape(const Description& description, const ShapeEntity& entity,
                 const TextureTable& textures, bool substitute, Warnings& warnings) {
     Shape shape;
-    shape.material = entity.material;
-    const Parameters& params = entity.parameters;
-    const auto mesh = [&](MeshData data) {
-        shape.alpha = ReadAlpha(textures, entity, "alpha");
-        shape.shadowAlpha = ReadAlpha(textures, entity, "shadowalpha");
-        shape.coverage = ReadCoverage(textures, entity);
-        shape.geometry = PlaceMesh(std::move(data), entity, warnings);
-    };
-    if (entity.name == "plymesh") {
-        const std::string file = params.GetString("filename", "");
-        if (file.empty()) throw Error(entity.loc, "plymesh needs a \"filename\"");
-        mesh(LoadPly(ResolvePath(description, file), warnings, entity.loc));
-    } else if (entity.name == "trianglemesh") {
-        mesh(TriangleMesh(entity, warnings));
-    } else if (entity.name == "loopsubdiv") {
-        mesh(SubdividedMesh(entity));
-    } else if (entity.name == "sphere") {
-        shape.geometry = MakeSphere(entity);
-    } else if (entity.name == "disk") {
-        shape.geometry = MakeDisk(entity);
-    } else if (entity.name == "cylinder" || entity.name == "cone" || entity.name == "paraboloid" ||
-               entity.name == "hyperboloid") {
-        shape.geometry = MakeRevolved(entity);
-    } else if (entity.name == "heightfield") {
-        shape.geometry = PlaceMesh(HeightfieldMesh(entity), entity, warnings);
-    } else if (entity.name == "nurbs") {
-        shape.geometry = PlaceMesh(NurbsMesh(entity), entity, warnings);
-    } else if (entity.name == "curve") {
-        shape.geometry = ReadCurves(entity, warnings);
+    if (const auto* kind = FindKind(kShapes, entity.name)) {
+        shape = kind->make({description, entity, textures, warnings});
+        entity.parameters.ReportUnused("Shape \"" + entity.name + "\"", warnings);
     } else {
-        const std::string message = fmt::format(
-            "Shape \"{}\" is not modelled; plymesh, trianglemesh, loopsubdiv, heightfield, nurbs, "
-            "sphere, disk, cylinder, cone, paraboloid, hyperboloid and curve are",
-            entity.name);
+        const std::string message =
+            fmt::format("Shape \"{}\" is not modelled; {} are", entity.name, NamesOf(kShapes));
         if (!substitute) throw Error(entity.loc, message);
         warnings.Add(entity.loc, message + "; it is left out");
-        shape.geometry = Mesh{};
-        return shape;
     }
-    params.ReportUnused("Shape \"" + entity.name + "\"", warnings);
+    shape.material = entity.material;
     return shape;
 }
 

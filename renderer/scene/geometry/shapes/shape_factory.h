@@ -1,7 +1,8 @@
 // Makes shapes from their directives: the table of shape kinds.
 #pragma once
 
-#include "renderer/scene/geometry/shape_table.h"
+#include "renderer/input/description.h"
+#include "renderer/scene/geometry/shape.h"
 
 namespace lull {
 

@@ -1,4 +1,5 @@
-// Holds a point sampled on an emitting shape, and converts between area and solid angle.
+// What light sampling learns of an emitting shape, and how densities by area become those by solid
+// angle.
 #pragma once
 
 #include "renderer/base/math.h"
@@ -8,6 +9,13 @@ namespace lull {
 struct ShapeSample {
     Vec3f p, pError, n;  // world; n unit, on the side that emits
     float pdf = 0;       // 1/sr, as seen from the reference point; positive and finite
+};
+
+// Bounds normals by a cone about an axis.
+struct NormalBounds {
+    Vec3f axis = Vec3f::UnitZ();
+    float cosAngle = -1;      // -1: any normal
+    bool isTwoSided = false;  // the cone about the opposite of the axis as well
 };
 
 // Converts a density by area to one by solid angle; 0 if that would not be finite.

@@ -52,10 +52,10 @@ std::optional<float> Intersect(const Sphere& sphere, const Ray& worldRay) {
     return {};
 }
 
-void Interact(const Sphere& sphere, const Ray& worldRay, float t, SurfaceNeeds needs,
+void Interact(const Sphere& sphere, const Ray& worldRay, const Hit& found, SurfaceNeeds needs,
               SurfaceInteraction* hit) {
     const float r = sphere.radius;
-    Vec3f p = (ShapeRay(sphere.place, worldRay)(t).normalized() * double(r)).cast<float>();
+    Vec3f p = (ShapeRay(sphere.place, worldRay)(found.t).normalized() * double(r)).cast<float>();
     if (p.x() == 0 && p.y() == 0) p.x() = 1e-5f * r;
     const float thetaMin = std::acos(std::clamp(std::min(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
     const float thetaMax = std::acos(std::clamp(std::max(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));

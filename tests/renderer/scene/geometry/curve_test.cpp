@@ -48,12 +48,12 @@ Vec3f DerivativeAt(const CurvePiece& piece, double u) {
     return 500 * (PointAt(piece, u + 0.001) - PointAt(piece, u - 0.001));
 }
 
-// Returns the nearest hit over all primitives, and which one it is.
-std::optional<std::pair<uint32_t, CurveHit>> Nearest(const Curves& curves, Ray ray) {
-    std::optional<std::pair<uint32_t, CurveHit>> nearest;
+// Returns the nearest hit over all primitives, as the accelerator tells of it.
+std::optional<Hit> Nearest(const Curves& curves, Ray ray) {
+    std::optional<Hit> nearest;
     for (uint32_t i = 0; i < curves.PrimitiveCount(); ++i)
         if (const auto hit = Intersect(curves, i, ray)) {
-            nearest = {i, *hit};
+            nearest = Hit{hit->t, hit->u, hit->v, 0, i, -1};
             ray.tMax = hit->t;
         }
     return nearest;
@@ -85,13 +85,13 @@ TEST(Curves, AreHitWithinTheirWidth) {
                     EXPECT_GT(std::abs(aside), 0.85f) << u;
                     continue;
                 }
-                if (std::abs(hit->second.t - 1.5f) > 0.1f) continue;  // something else in front
+                if (std::abs(hit->t - 1.5f) > 0.1f) continue;  // something else in front
                 EXPECT_LT(std::abs(aside), 1.15f);
-                EXPECT_NEAR(hit->second.t, 1.5f, 0.03f);
-                EXPECT_NEAR(hit->second.u, u, 0.03f);
-                EXPECT_NEAR(hit->second.v, 0.5f + 0.5f * aside, 0.1f);
+                EXPECT_NEAR(hit->t, 1.5f, 0.03f);
+                EXPECT_NEAR(hit->b1, u, 0.03f);
+                EXPECT_NEAR(hit->b2, 0.5f + 0.5f * aside, 0.1f);
                 SurfaceInteraction at;
-                Interact(curves, hit->first, ray, hit->second, &at);
+                Interact(curves, ray, *hit, kNeedsNothing, &at);
                 EXPECT_NEAR((at.p - target).norm(), 0, 0.06f);
                 EXPECT_NEAR(at.n.norm(), 1, 1e-5f);
                 EXPECT_NEAR(at.n.dot(at.dpdu.normalized()), 0, 1e-5f);
@@ -125,7 +125,7 @@ TEST(Curves, RibbonsAreSeenFromTheSideAsThin) {
     const auto hit = Nearest(ribbon, ray);
     ASSERT_TRUE(hit.has_value());
     SurfaceInteraction at;
-    Interact(ribbon, hit->first, ray, hit->second, &at);
+    Interact(ribbon, ray, *hit, kNeedsNothing, &at);
     EXPECT_GT(std::abs(at.n.z()), 0.99f);
     // Normals that are the same at both ends are not a quotient of zeros.
     const Curves straight =
@@ -133,7 +133,7 @@ TEST(Curves, RibbonsAreSeenFromTheSideAsThin) {
               StringParameter("type", "ribbon"), FloatParameter("width", {0.2f})});
     const auto middle = Nearest(straight, {Vec3f(0, 0.09f, 5), down, kInfinity});
     ASSERT_TRUE(middle.has_value());
-    EXPECT_NEAR(std::abs(middle->second.v - 0.5f), 0.45f, 1e-3f);
+    EXPECT_NEAR(std::abs(middle->b2 - 0.5f), 0.45f, 1e-3f);
 }
 
 // Splines and quadratic curves become cubic Bezier curves with the same points.
@@ -190,15 +190,15 @@ TEST(Curves, MayBePlacedByAnyTransform) {
         const Vec3f d = random.Direction();
         const Ray ray{target + 0.12f * random.Direction() - 4 * d, d, kInfinity};
         const auto a = Nearest(moved, ray), b = Nearest(kept, ray);
-        if (!a || !b || std::abs(a->second.t - b->second.t) > 0.01f) continue;
+        if (!a || !b || std::abs(a->t - b->t) > 0.01f) continue;
         ++hits;
         SurfaceInteraction atA, atB;
-        Interact(moved, a->first, ray, a->second, &atA);
-        Interact(kept, b->first, ray, b->second, &atB);
+        Interact(moved, ray, *a, kNeedsNothing, &atA);
+        Interact(kept, ray, *b, kNeedsNothing, &atB);
         EXPECT_NEAR((atA.p - atB.p).norm(), 0, 0.01f);
         EXPECT_NEAR((atA.dpdu - atB.dpdu).norm(), 0, 0.2f);
         EXPECT_NEAR((atA.pError - atB.pError).norm(), 0, 0.05f);
-        if (std::abs(a->second.v - b->second.v) < 0.02f) {
+        if (std::abs(a->b2 - b->b2) < 0.02f) {
             EXPECT_GT(atA.n.dot(atB.n), 0.98f);
         }
     }
@@ -222,7 +222,7 @@ TEST(Curves, MayHaveNoWidthOrLength) {
         const Ray ray{PointAt(tip.pieces[0], u) - d, d, kInfinity};
         if (const auto hit = Nearest(tip, ray)) {
             SurfaceInteraction at;
-            Interact(tip, hit->first, ray, hit->second, &at);
+            Interact(tip, ray, *hit, kNeedsNothing, &at);
             EXPECT_TRUE(at.p.allFinite() && at.n.allFinite() && at.uv.allFinite());
             EXPECT_NEAR(at.n.norm(), 1, 1e-5f);
         }

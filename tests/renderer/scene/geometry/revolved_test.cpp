@@ -8,6 +8,7 @@
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene/geometry/hit_at.h"
 
 namespace lull {
 namespace {
@@ -83,7 +84,7 @@ TEST(Revolved, IsHitWhereItsParametersSay) {
             }
             ASSERT_LT(*t, 8.001f) << e.name;
             SurfaceInteraction hit;
-            Interact(e.shape, ray, *t, kNeedsNormalDerivatives, &hit);
+            Interact(e.shape, ray, HitAt(*t), kNeedsNormalDerivatives, &hit);
             ASSERT_NEAR((hit.p - (ray.o + *t * ray.d)).norm(), 0, 1e-5);
             const double hu = hit.uv.x(), hv = hit.uv.y();
             ASSERT_TRUE(hu >= -1e-5 && hu <= 1.00001 && hv >= -1e-4 && hv <= 1.0001) << e.name;
@@ -124,7 +125,7 @@ TEST(Revolved, KnowsHowItsNormalTurns) {
             SurfaceInteraction hit;
             const auto t = Intersect(e.shape, ray);
             ASSERT_TRUE(t) << e.name;
-            Interact(e.shape, ray, *t, kNeedsNormalDerivatives, &hit);
+            Interact(e.shape, ray, HitAt(*t), kNeedsNormalDerivatives, &hit);
             const double h = 1e-3;
             const Vec3f dndu = ((normal(u + h, v) - normal(u - h, v)) / (2 * h)).cast<float>();
             const Vec3f dndv = ((normal(u, v + h) - normal(u, v - h)) / (2 * h)).cast<float>();
@@ -221,7 +222,7 @@ TEST(Revolved, HyperboloidIsPbrtV3s) {
             if (!t) continue;
             ++hits;
             SurfaceInteraction hit;
-            Interact(shape, ray, *t, kNeedsNormalDerivatives, &hit);
+            Interact(shape, ray, HitAt(*t), kNeedsNormalDerivatives, &hit);
             ASSERT_NEAR((hit.p - theirs->p.cast<float>()).norm(), 0, 1e-4);
             ASSERT_NEAR(hit.uv.x(), theirs->u, 1e-3);
             ASSERT_NEAR(hit.uv.y(), theirs->v, 1e-3);
@@ -271,7 +272,7 @@ TEST(Revolved, RaysDoNotMeetWhereTheyStart) {
             const auto t = Intersect(shape, ray);
             if (!t) continue;
             SurfaceInteraction hit;
-            Interact(shape, ray, *t, kNeedsNothing, &hit);
+            Interact(shape, ray, HitAt(*t), kNeedsNothing, &hit);
             const Vec3f radial = hit.p - offset;
             if (hit.n.dot(Vec3f(radial.x(), radial.y(), 0)) <= 0) continue;
             Vec3f wi = random.Direction();

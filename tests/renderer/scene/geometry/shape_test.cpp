@@ -6,6 +6,7 @@
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene/geometry/hit_at.h"
 
 namespace lull::shape_test {
 namespace {
@@ -100,7 +101,7 @@ TEST(Shapes, ErrorBoundsHold) {
             const auto t = Intersect(sphere, ray);
             ASSERT_TRUE(t);
             SurfaceInteraction at;
-            Interact(sphere, ray, *t, kNeedsNothing, &at);
+            Interact(sphere, ray, HitAt(*t), kNeedsNothing, &at);
             const double distance = (at.p.cast<double>() - center.cast<double>()).norm();
             ASSERT_LE(std::abs(distance - sphere.radius), at.pError.norm());
         }

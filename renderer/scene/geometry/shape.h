@@ -1,0 +1,86 @@
+// What rays hit: all kinds of shape, and what each of them does.
+//
+// A kind is a struct S, in a file of shapes/, that consists of one or more primitives:
+//
+//     uint32_t PrimitiveCount() const
+//     Bounds3f WorldBounds() const
+//     void Interact(const S&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*)
+//         fills in what is needed of the hit, all but wo, material and light.
+//
+// World space is that of the object where a shape belongs to one, and so is the ray; meshes do not
+// read it. Triangles are intersected by Embree, other kinds by
+//
+//     std::optional<float> Intersect(const S&, const Ray&)
+//         returns the least t in (0, ray.tMax); in double, as a ray that starts an error bound away
+//         from the surface must find t on the right side of 0,
+//
+// or, where they can have several primitives,
+//
+//     std::optional<ShapeHit> Intersect(const S&, uint32_t primitive, const Ray&)
+//     Bounds3f WorldBounds(uint32_t primitive) const.
+//
+// What emits light is one primitive: E is EmittingTriangle or a kind of one primitive, whose
+// transform may move and turn it, but not stretch it:
+//
+//     std::optional<ShapeSample> Sample(const E&, const Vec3f& from, const Vec2f& u)
+//         returns a point as seen from `from`; nothing where all of E is seen edge-on;
+//     float Pdf(const E&, const Vec3f& from, const Vec3f& p, const Vec3f& n)
+//         returns the density, 1/sr, with which Sample finds p, where the normal is n; finite;
+//     float Area() const
+//     Bounds3f WorldBounds() const
+//     NormalBounds Normals() const
+//         bounds the normals that samples and hits have.
+#pragma once
+
+#include "renderer/base/visit.h"
+#include "renderer/scene/geometry/shapes/curves.h"
+#include "renderer/scene/geometry/shapes/mesh.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
+#include "renderer/scene/geometry/shapes/revolved.h"
+#include "renderer/scene/texture.h"
+
+namespace lull {
+
+using Geometry = std::variant<Mesh, Sphere, Disk, Revolved, Curves>;
+
+// What emits light. Shapes belong to the shape table, and outlive this.
+using Emitter = std::variant<EmittingTriangle, const Sphere*, const Disk*, const Revolved*>;
+
+// Returns what emits the light of a primitive. The kind of shape must be one that can.
+Emitter EmitterOf(const Geometry&, uint32_t primitive);
+
+// Calls f with the E inside; see Visit().
+template <typename F>
+[[gnu::always_inline]] inline auto VisitEmitter(const Emitter& emitter, F&& f) {
+    return Visit(emitter, [&]<typename E>(const E& e) {
+        if constexpr (std::is_pointer_v<E>)
+            return f(*e);
+        else
+            return f(e);
+    });
+}
+
+// How much of a surface is there (glTF's alpha modes). With a cutoff a point is there or not;
+// without, rays hit it at random, by a number derived from the ray itself, so that the right share
+// passes.
+struct Coverage {
+    FloatTexture alpha;
+    float factor = 1;
+    float cutoff = -1;  // negative: none
+    bool secondUv = false, vertexAlpha = false;
+};
+
+struct Shape {
+    Geometry geometry{};
+    int material = -1;
+    int firstLight = -1;  // of its lights, one a primitive; -1: emits nothing
+    std::optional<FloatTexture> alpha{}, shadowAlpha{};  // 0 there: not hit (by shadow rays)
+    std::optional<Coverage> coverage{};                  // of meshes
+
+    bool IsMesh() const { return std::holds_alternative<Mesh>(geometry); }
+    bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }
+    uint32_t PrimitiveCount() const;
+    Bounds3f WorldBounds() const;
+};
+
+}  // namespace lull

@@ -1,0 +1,16 @@
+// What the makers of lights read.
+#pragma once
+
+#include "renderer/input/description.h"
+
+namespace lull {
+
+struct LightReader {
+    const Description& description;  // relative file names start at its directory
+    const LightEntity& entity;
+    float worldRadius;   // of a sphere about the scene
+    bool isCompensated;  // environment maps leave what is dim to BSDF sampling: EnvironmentMap
+    Warnings& warnings;
+};
+
+}  // namespace lull
