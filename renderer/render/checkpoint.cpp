@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "renderer/files/file_io.h"
-#include "renderer/render/block_judge_internal.h"
+#include "renderer/render/block_criteria_internal.h"
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"

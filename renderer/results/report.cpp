@@ -113,17 +113,17 @@ Json RectJson(const PixelRect& r) {
 }
 
 Json ProvenanceJson(const Provenance& p) {
-    struct Values {
-        template <typename T>
-        Json operator()(const T& value) const {
+    const auto valueJson = []<typename T>(const T& value) -> Json {
+        if constexpr (std::is_same_v<T, Vec2i>)
+            return {value.x(), value.y()};
+        else if constexpr (std::is_same_v<T, PixelRect>)
+            return RectJson(value);
+        else
             return value;
-        }
-        Json operator()(const Vec2i& v) const { return {v.x(), v.y()}; }
-        Json operator()(const PixelRect& r) const { return RectJson(r); }
     };
     Json json;
     for (const NamedProvenance& part : PartsOf(p))
-        if (part.json) json[part.json] = std::visit(Values(), part.value);
+        if (part.json) json[part.json] = std::visit(valueJson, part.value);
     if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
     return json;
 }
