@@ -8,6 +8,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/files/outputs.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/results/denoiser_channels.h"
 #include "renderer/results/image_files.h"
 

@@ -11,6 +11,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/render/progress.h"
+#include "stopping/rules/learned.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/hard_cases/heavy_tails.h"
 

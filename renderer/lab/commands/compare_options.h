@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/commands/render_settings.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
