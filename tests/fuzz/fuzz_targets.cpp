@@ -13,6 +13,7 @@
 #include "renderer/scene/medium_table.h"
 #include "stopping/lab/evaluation/single_answers.h"
 #include "stopping/lab/observers/observers.h"
+#include "stopping/lab/training/search.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/thresholds.h"
@@ -172,6 +173,22 @@ void FuzzSingleAnswers(std::span<const char> bytes) {
             throw std::logic_error("an answer that cannot be was taken");
 }
 
+// What is read makes as many combinations as it has.
+void FuzzGrid(std::span<const char> bytes) {
+    std::istringstream in(std::string(bytes.begin(), bytes.end()));
+    std::vector<SearchAxis> axes;
+    try {
+        axes = ReadGrid(in, "input");
+    } catch (const std::runtime_error&) {
+        return;
+    }
+    const size_t count = CombinationCount(axes);
+    if (count < 1 || count > kMostCombinations)
+        throw std::logic_error("a grid has too few or too many combinations");
+    if (count > 1 && CombinationAt(axes, 0) == CombinationAt(axes, count - 1))
+        throw std::logic_error("two combinations are the same");
+}
+
 }  // namespace
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
@@ -187,7 +204,8 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds},
             {"answers", FuzzAnswers},
-            {"single_answers", FuzzSingleAnswers}};
+            {"single_answers", FuzzSingleAnswers},
+            {"grid", FuzzGrid}};
 }
 
 }  // namespace lull

@@ -17,7 +17,7 @@ struct NamedFuzzTarget {
 };
 
 // Lists the targets: pbrt, gltf, ply, bsdf, lens, png, exr, scene, model, keras_config, thresholds,
-// answers and single_answers. Most of what `model` finds is in the HDF5 library, which does
+// answers, single_answers and grid. Most of what `model` finds is in the HDF5 library, which does
 // not withstand files made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 

@@ -156,109 +156,90 @@ TEST(Train, SplitsBlocks) {
     EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
 }
 
-// Runs tests/measurements/search.py, which makes s.csv and s.md.
-std::string SearchOf(const std::string& options) {
-    return fmt::format(
-        "'{}' -B '{}/measurements/search.py' grid.txt s.csv LULL train data.h5 "
-        "--human human.csv --preset paper {}",
-        LULL_PYTHON, LULL_TESTS_DIR, options);
-}
+const std::string kSearch =
+    "train data.h5 --human human.csv --preset paper --search grid.txt --csv s.csv ";
 
-// Returns the lines of s.csv without their last column, which are seconds.
-std::vector<std::string> SearchResults(const TemporaryDirectory& directory) {
-    std::istringstream in(ReadBytes(directory.File("s.csv")));
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line.substr(0, line.rfind(',')));
-    return lines;
-}
-
-TEST(Search, TrainsAllCombinationsAndRanksThem) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
+TEST(Train, SearchesAGrid) {
     const TrainingDirectory directory;
-    directory.Write("grid.txt", "k 2 4  # steps\nfeatures H noise\n\nsnorm 0 1\n");
-    const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 2"));
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    const std::vector<std::string> lines = SearchResults(directory);
-    ASSERT_EQ(lines.size(), 9u);
-    EXPECT_EQ(lines[0],
-              "k,features,snorm,auc_left_out,accuracy_left_out,auc_training,accuracy_training,"
-              "critical_error_2,early,late");
+    directory.Write("grid.txt", "k 2 4\nfeatures H noise\nsnorm 0 1\nbatch 32 64\n");
+    const Outcome outcome = RunLull(directory, kSearch + "--units 4 --epochs 2 --json-progress");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_FALSE(Contains(outcome.err, "lull: ")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, R"("combinations":16,"remainingSeconds":)")) << outcome.err;
+    const std::string csv = ReadBytes(directory.File("s.csv"));
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 17) << csv;
+    EXPECT_EQ(csv.substr(0, 35), "k,features,snorm,batch,auc_left_out");
     double last = 1;
-    for (size_t i = 1; i < lines.size(); ++i) {
-        size_t field = 0;
-        for (int j = 0; j < 3; ++j) field = lines[i].find(',', field) + 1;
-        const double auc = std::stod(lines[i].substr(field));
+    for (size_t at = csv.find('\n'); at + 1 < csv.size(); at = csv.find('\n', at + 1)) {
+        size_t field = at;
+        for (int i = 0; i < 4; ++i) field = csv.find(',', field + 1);
+        const double auc = std::stod(csv.substr(field + 1));
         EXPECT_LE(auc, last);
         last = auc;
     }
-    EXPECT_EQ(outcome.out, ReadBytes(directory.File("s.md")));
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 10) << outcome.out;
+    EXPECT_TRUE(Contains(outcome.out, ReadBytes(directory.File("s.md"))));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("s.csv.checkpoint")));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("s.csv.training.checkpoint")));
 
-    // A combination has the figures that it has by itself.
+    // A combination is trained as it would be by itself.
     const Outcome single = RunLull(directory,
                                    "train data.h5 --human human.csv --preset paper --units 4 "
-                                   "--epochs 2 --k 2 --features noise --no-snorm "
-                                   "--cross-validate --csv one.csv");
+                                   "--epochs 2 --k 2 --features noise "
+                                   "--no-snorm "
+                                   "--batch 32 --cross-validate --csv one.csv");
     EXPECT_EQ(single.exitCode, 0) << single.err;
     const std::string one = ReadBytes(directory.File("one.csv"));
     size_t field = one.find("left out, at least\",all,");
     for (int i = 0; i < 7; ++i) field = one.find(',', field) + 1;
     const std::string criticalError = one.substr(field, 8);
-    EXPECT_EQ(std::ranges::count_if(lines,
-                                    [&](const std::string& line) {
-                                        return line.starts_with("2,noise,0,") &&
-                                               Contains(line, "," + criticalError + ",");
-                                    }),
-              1)
-        << one << outcome.out;
+    const size_t row = csv.find("2,noise,0,32,");
+    EXPECT_TRUE(Contains(csv.substr(row, csv.find('\n', row) - row), "," + criticalError + ","))
+        << one << csv;
 }
 
-TEST(Search, GoesOnAfterAnInterruption) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
+TEST(Train, GoesOnWithASearch) {
     const TrainingDirectory directory;
-    directory.Write("grid.txt", "k 2 4\nepochs 1 40\n");
-    const std::string search = SearchOf("--units 16,8 --checkpoint-interval 0.1");
-    EXPECT_EQ(RunShell(directory, search).exitCode, 0);
-    const std::vector<std::string> whole = SearchResults(directory);
-    std::filesystem::remove(directory.File("s.csv"));
-    const std::string checkpoint = "s.csv.k=4_epochs=40.h5.checkpoint";
-    const Outcome part = RunAndSignal(directory, search, SIGINT, checkpoint);
-    ASSERT_EQ(part.exitCode, 130) << part.err;
-    EXPECT_EQ(SearchResults(directory).size(), 4u);
-    EXPECT_TRUE(std::filesystem::exists(directory.File(checkpoint)));
-    // Other options are another search.
-    const Outcome other = RunShell(directory, search + " --learning-rate 0.01");
-    EXPECT_EQ(other.exitCode, 1);
-    EXPECT_TRUE(Contains(other.err, "s.csv: is not of this search")) << other.err;
-    const Outcome rest = RunShell(directory, search);
-    EXPECT_EQ(rest.exitCode, 0) << rest.err;
-    EXPECT_EQ(SearchResults(directory), whole);
-    EXPECT_FALSE(std::filesystem::exists(directory.File(checkpoint)));
-}
-
-TEST(Search, SaysWhatCannotBeTrained) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
-    const TrainingDirectory directory;
-    const auto expect = [&](const std::string& grid, const std::string& part) {
-        directory.Write("grid.txt", grid);
-        const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 1"));
-        EXPECT_EQ(outcome.exitCode, 1) << grid << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, part)) << grid << outcome.err;
-        std::filesystem::remove(directory.File("s.csv.search"));
+    directory.Write("grid.txt", "k 2 4 8\nepochs 1 2 3 60\n");
+    const std::string options = kSearch + "--units 16,8 --leave-out barn-b --quiet ";
+    EXPECT_EQ(RunLull(directory, options).exitCode, 0);
+    // All but the last column, which are seconds.
+    const auto figures = [&] {
+        std::istringstream in(ReadBytes(directory.File("s.csv")));
+        std::vector<std::string> lines;
+        for (std::string line; std::getline(in, line);)
+            lines.push_back(line.substr(0, line.rfind(',')));
+        return lines;
     };
-    expect("k 2\nspeed 1\n", "--speed=1: are no options of lull train");
-    expect("m 7\n", "--m=7: are no options of lull train");
-    expect("n 30 50\n", "--n=50: not trained");
-    expect("k\n", "'k' has no values");
-    expect("k 2 4\nk 8\n", "'k' has no values, or something comes twice");
-    expect("# k 2\n", "no option to vary");
-    // What can be trained is.
-    directory.Write("grid.txt", "n 30 40\n");
-    const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 1"));
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "--n=30: not trained")) << outcome.err;
-    EXPECT_EQ(SearchResults(directory).size(), 2u);
+    const std::vector<std::string> whole = figures();
+    const Outcome part = RunAndSignal(directory, "LULL " + options, SIGINT, "s.csv.checkpoint");
+    ASSERT_EQ(part.exitCode, 130) << part.err;
+    EXPECT_LT(figures().size(), whole.size());
+    // Other options are another search.
+    const Outcome other = RunLull(directory, options + "--resume --learning-rate 0.01");
+    EXPECT_EQ(other.exitCode, 1);
+    EXPECT_TRUE(Contains(other.err, "s.csv.checkpoint: the saved search had other")) << other.err;
+    const Outcome rest = RunLull(directory, options + "--resume");
+    EXPECT_EQ(rest.exitCode, 0) << rest.err;
+    EXPECT_EQ(figures(), whole);
+}
+
+TEST(Train, RefusesSearchesThatCannotBe) {
+    const TrainingDirectory directory;
+    const auto expect = [&](const std::string& grid, const std::vector<std::string>& parts) {
+        directory.Write("grid.txt", grid);
+        ExpectFailure(directory, kSearch, parts);
+    };
+    expect("k 2\nm 25 7\n", {"grid.txt:2: m 7: "});
+    expect("k 2\nspeed 1\n", {"grid.txt:2: speed 1: this is no option that a search can vary"});
+    expect("k 2 0\n", {"grid.txt:1: k 0: "});
+    expect("n 40 30\n", {"grid.txt: n 30: ", "multiples"});
+    expect("m 25\nfeatures H H1\n", {"grid.txt: m 25, features H1: H1 with m = 25"});
+    expect("\n", {"grid.txt:1: there is no option to vary"});
+    for (const char* bad : {"--search grid.txt", "--search grid.txt --csv s.csv -o m.h5",
+                            "--search nowhere.txt --csv s.csv"})
+        EXPECT_EQ(
+            RunLull(directory, std::string("train data.h5 --human human.csv ") + bad).exitCode, 2)
+            << bad;
 }
 
 TEST(Train, SaysWhatIsWrong) {

@@ -29,15 +29,10 @@ def train(o, name, *options):
 
 
 def grid(text):
-    """Returns the combinations as lists of options, from lines, or what is between semicolons: `mask 24 40 # a comment`."""
-    axes = [axis for line in text.replace(';', '\n').splitlines() if (axis := line.split('#')[0].split())]
-    names = [axis[0] for axis in axes]
-    for name, *values in axes:
-        if names.count(name) > 1 or not values or len(set(values)) < len(values):
-            raise SystemExit(f"the grid: '{name}' has no values, or something comes twice")
-    if not axes:
-        raise SystemExit('the grid has no option to vary; a line is, for example, k 4 8 16')
-    return [[f'--{name}={value}' for name, value in zip(names, values)] for values in itertools.product(*(a[1:] for a in axes))]
+    """Returns the combinations as lists of options."""
+    axes = [line.split() for line in text.split(';')]
+    for values in itertools.product(*(axis[1:] for axis in axes)):
+        yield [x for axis, v in zip(axes, values) for x in ('--' + axis[0], v)]
 
 
 def error(rows):
@@ -45,7 +40,7 @@ def error(rows):
 
 
 def nested(o):
-    combinations = grid(o.grid)
+    combinations = list(grid(o.grid))
     name = lambda options: '_'.join(options).replace('--', '')
     every = {name(c): train(o, 'all_' + name(c), '--cross-validate', *c) for c in combinations}
     views = [v for v in next(iter(every.values())) if v != 'all']

@@ -9,11 +9,9 @@
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/evaluation_table.h"
-#include "renderer/lab/commands/train_options.h"
+#include "renderer/lab/commands/search.h"
 #include "renderer/lab/commands/training_printer.h"
 #include "stopping/base/parallel.h"
-#include "stopping/lab/recordings/judged_blocks.h"
-#include "stopping/lab/training/training_run.h"
 #include "stopping/network/model_file.h"
 
 namespace lull {
@@ -52,8 +50,8 @@ ExitCode RunTrain(const TrainOptions& options) {
     const Talk talk{.isJson = options.jsonProgress};
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
-    const std::vector<JudgedBlock> blocks = KeepRecorded(
-        ReadJudgedBlocks(viewpoints, plan.human, plan.without, note), plan.settings, note);
+    const std::vector<JudgedBlock> blocks = KeepRecordedForAll(
+        ReadJudgedBlocks(viewpoints, plan.human, plan.without, note), {&plan.settings, 1}, note);
     CheckSpacing(plan.settings, blocks.front().passSpp);
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
@@ -92,7 +90,9 @@ void AddTrainCommand(CLI::App& app, Command* command) {
         CompleteTrainOptions(options.get());
         *command = [=] {
             ExitCode code = kDone;
-            RunWithThreads(options->threads, [&] { code = RunTrain(*options); });
+            RunWithThreads(options->threads, [&] {
+                code = options->search.empty() ? RunTrain(*options) : RunSearch(*options);
+            });
             return code;
         };
     });

@@ -46,12 +46,20 @@ With --cross-validate each viewpoint is judged by a network that was trained on 
 the stops on what was left out, from which renders say how sure a stop is. For the columns of the tables see
 lull evaluate --help.
 
+With --search GRID every combination of the values in a file is trained, on networks that never see
+the blocks they are judged by: those of each viewpoint in turn, or of --leave-out or --split. A line
+of GRID is an option from --k to --class-weights without its dashes, and values: k 4 8 16. The table
+goes to F.csv of --csv, and as Markdown to F.md, the largest AUC on the blocks left out first, and is
+there after each combination. Interrupted, it leaves F.csv.checkpoint; --resume goes on from there.
+
 Examples:
   lull train data.h5 --human human.csv -o model.h5
   lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
   lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
       --pool rms,q90 --units 16,8
   lull train data.h5 --human human.csv --cross-validate --preset paper
+  lull train data.h5 --human human.csv --search grid.txt --csv search.csv --preset paper
+      --units 32 --epochs 10
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -250,7 +258,10 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
            "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others")
         ->type_name("paper:FILE");
     app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
-    app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
+    app.add_option("--search", o->search, "Try all combinations of values in a file; see below")
+        ->check(CLI::ExistingFile)
+        ->type_name("GRID");
+    app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint, or F.csv.checkpoint");
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
@@ -262,18 +273,41 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
 }
 
 void CompleteTrainOptions(TrainOptions* o) {
-    if (o->output.empty() && !o->plan.crossValidate)
-        throw CLI::ValidationError("train", "needs -o MODEL.h5 or --cross-validate");
-    if (o->resume && o->output.empty())
+    if (!o->search.empty()) {
+        if (!o->output.empty()) throw CLI::ValidationError("--search", "writes no model: no -o");
+        if (o->csv.empty()) throw CLI::ValidationError("--search", "needs --csv F.csv");
+        if (o->plan.leaveOut.empty() && o->plan.split.empty()) o->plan.crossValidate = true;
+    } else if (o->output.empty() && !o->plan.crossValidate) {
+        throw CLI::ValidationError("train", "needs -o MODEL.h5, --cross-validate or --search");
+    } else if (o->resume && o->output.empty())
         throw CLI::ValidationError("--resume", "needs -o MODEL.h5, beside which the checkpoint is");
     if (o->plan.crossValidate && (!o->plan.leaveOut.empty() || !o->plan.split.empty()))
         throw CLI::ValidationError("--cross-validate",
                                    "chooses blocks itself, without --leave-out and --split");
     TrainingPlan& plan = o->plan;
-    plan.withLast = !o->output.empty();
+    plan.withLast = !o->output.empty() || (!o->search.empty() && !plan.crossValidate);
     plan.version = LULL_VERSION;
     // Recordings have every second pass, and so has a rule that votes as often as it was trained.
-    if (plan.settings.voteSpacing == 0) plan.settings.voteSpacing = plan.settings.n;
+    if (plan.settings.voteSpacing == 0 && o->search.empty())
+        plan.settings.voteSpacing = plan.settings.n;
+}
+
+void SetPlanOptions(std::span<const OptionValue> values, TrainingPlan* plan) {
+    CLI::App app;
+    AddSettings(app, &plan->settings);
+    AddTraining(app, &plan->training);
+    std::vector<std::string> arguments;  // the first last, as the parser wants them
+    for (const OptionValue& option : values)
+        arguments.insert(arguments.begin(), "--" + option.name + "=" + option.value);
+    try {
+        app.parse(arguments);
+        CheckSettings(plan->settings);
+    } catch (const CLI::ExtrasError&) {
+        throw std::invalid_argument("this is no option that a search can vary");
+    } catch (const CLI::ParseError& error) {
+        throw std::invalid_argument(error.what());
+    }
+    if (plan->settings.voteSpacing == 0) plan->settings.voteSpacing = plan->settings.n;
 }
 
 std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {

@@ -39,9 +39,11 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
     throw std::runtime_error(human + ": " + error.what());
 }
 
-std::vector<JudgedBlock> KeepRecorded(const std::vector<JudgedBlock>& judged,
-                                      const ModelSettings& settings, const WarningSink& warn) {
-    std::vector<JudgedBlock> blocks = KeepRecorded(judged, settings);
+std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
+                                            std::span<const ModelSettings> settings,
+                                            const WarningSink& warn) {
+    std::vector<JudgedBlock> blocks = judged;
+    for (const ModelSettings& s : settings) blocks = KeepRecorded(blocks, s);
     if (blocks.empty()) throw std::runtime_error("no block was recorded with attributes26");
     if (blocks.size() < judged.size())
         warn(fmt::format("{} of {} blocks were recorded without attributes26",

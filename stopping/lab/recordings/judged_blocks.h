@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,10 @@ std::vector<JudgedBlock> ReadJudgedBlocks(const std::vector<ViewpointRecording>&
                                           const std::vector<std::string>& without,
                                           const WarningSink& warn);
 
-// Returns the blocks that were recorded with all that the settings ask for, and tells how many were
-// not. Throws std::runtime_error if none is left.
-std::vector<JudgedBlock> KeepRecorded(const std::vector<JudgedBlock>& judged,
-                                      const ModelSettings& settings, const WarningSink& warn);
+// Returns the blocks that were recorded with all that any of the settings asks for, and tells how
+// many were not. Throws std::runtime_error if none is left.
+std::vector<JudgedBlock> KeepRecordedForAll(const std::vector<JudgedBlock>& judged,
+                                            std::span<const ModelSettings> settings,
+                                            const WarningSink& warn);
 
 }  // namespace lull

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/state.h"
@@ -43,7 +42,7 @@ void TrainingCheckpoint::Restore(size_t training, Trainer* trainer) const {
     try {
         trainer->Restore(states[training]);
     } catch (const std::runtime_error& error) {
-        throw std::runtime_error(path + ": " + error.what());
+        throw CheckpointError(path + ": " + error.what());
     }
 }
 
@@ -57,7 +56,11 @@ void TrainingCheckpoint::Write() {
     writer.Put(checkpointTag);
     for (const std::vector<std::byte>& state : states) writer.PutVector(state);
     Seal(&writer.bytes);
-    write(path, writer.bytes);
+    try {
+        write(path, writer.bytes);
+    } catch (const std::runtime_error& error) {
+        throw CheckpointError(error.what());
+    }
     written = Clock::now();
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ namespace lull {
 
 // Puts bytes into a file, whole or not at all; throws what went wrong.
 using FileWriter = std::function<void(const std::string& path, std::span<const std::byte> bytes)>;
+
+// Signals that a checkpoint could not be written, or belongs to another training: the training
+// itself is not at fault.
+class CheckpointError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
 
 // Holds the states of several trainings, by number, finished ones first.
 class TrainingCheckpoint {
@@ -26,11 +34,11 @@ class TrainingCheckpoint {
     void Read();
     void Set(size_t training, std::vector<std::byte> state);
     // Lets a training go on where its state says; leaves it where there is none. Throws
-    // std::runtime_error if it is the state of another.
+    // CheckpointError.
     void Restore(size_t training, Trainer* trainer) const;
     // Returns whether the next writing is due.
     bool IsDue() const;
-    // Writes the file, if there is one. Throws what the writer does.
+    // Writes the file, if there is one. Throws CheckpointError.
     void Write();
     // Forgets all trainings, and removes the file.
     void Remove();

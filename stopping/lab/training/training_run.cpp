@@ -22,17 +22,7 @@ std::string JudgementText(const std::vector<ViewpointOutcome>& viewpoints,
                        j.auc.value_or(0.5));
 }
 
-void AddOutcomes(const Network& network, const ModelSettings& settings,
-                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
-    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
-    const auto simulator = [&](const JudgedBlock& block) {
-        return SimulateVoting(block, LearnedRule(model, block.passSpp));
-    };
-    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
-        viewpoints->push_back(std::move(viewpoint));
-}
-
-// What networks did to blocks that each of them did not see, or did.
+// Holds what networks did to blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
     std::vector<JudgedBlock> blocks = {};
@@ -46,8 +36,8 @@ struct NetworkOutcomes {
     }
 };
 
-// Trains a network, or goes on with training number `index` of the checkpoint. Nothing if it was
-// cancelled: the checkpoint has it, but is not written.
+}  // namespace
+
 std::optional<Network> TrainNetwork(const ModelSettings& settings, const TrainingOptions& options,
                                     const BlockSplit& split, size_t index,
                                     TrainingCheckpoint* checkpoint, const TrainingEvents& events) {
@@ -70,7 +60,15 @@ std::optional<Network> TrainNetwork(const ModelSettings& settings, const Trainin
     return trainer.Result();
 }
 
-}  // namespace
+void AddOutcomes(const Network& network, const ModelSettings& settings,
+                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
+    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
+    const auto simulator = [&](const JudgedBlock& block) {
+        return SimulateVoting(block, LearnedRule(model, block.passSpp));
+    };
+    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
+        viewpoints->push_back(std::move(viewpoint));
+}
 
 std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,

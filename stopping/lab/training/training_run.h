@@ -22,6 +22,17 @@ struct TrainingEvents {
     std::function<bool()> isCancelled;  // is asked before each step; true ends the training
 };
 
+// Trains a network, or goes on with training number `index` of the checkpoint. Nothing if it was
+// cancelled: the checkpoint has it, but is not written. Throws as MakeSamples(), Trainer and
+// TrainingCheckpoint do.
+std::optional<Network> TrainNetwork(const ModelSettings& settings, const TrainingOptions& options,
+                                    const BlockSplit& split, size_t index,
+                                    TrainingCheckpoint* checkpoint, const TrainingEvents& events);
+
+// Adds what a network does to blocks.
+void AddOutcomes(const Network& network, const ModelSettings& settings,
+                 std::span<const JudgedBlock> blocks, std::vector<ViewpointOutcome>* viewpoints);
+
 // Holds what came of a plan.
 struct TrainingResult {
     Network network;  // the last one
@@ -34,8 +45,7 @@ struct TrainingResult {
 };
 
 // Trains and judges a network on each split of a plan. Nothing if it was cancelled: the checkpoint
-// is written then. `eventsOf` is asked for the events of each training. Throws as MakeSamples(),
-// Trainer and TrainingCheckpoint do.
+// is written then. `eventsOf` is asked for the events of each training. Throws as TrainNetwork().
 std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
     const std::function<TrainingEvents(const BlockSplit&)>& eventsOf);

@@ -57,15 +57,16 @@ TEST(JudgedBlocks, HaveAllThatIsAskedFor) {
     const std::vector<JudgedBlock> blocks = data.Blocks();
     const ModelSettings entropy, attributes{.features = ParseFeatures("attributes26")};
     Listener listener;
-    EXPECT_EQ(KeepRecorded(blocks, entropy, listener.Ear()).size(), 7u);
+    EXPECT_EQ(KeepRecordedForAll(blocks, {&entropy, 1}, listener.Ear()).size(), 7u);
     EXPECT_TRUE(listener.said.empty());
-    EXPECT_EQ(KeepRecorded(blocks, attributes, listener.Ear()).size(), 6u);
+    const std::vector<ModelSettings> both = {attributes, entropy};
+    EXPECT_EQ(KeepRecordedForAll(blocks, both, listener.Ear()).size(), 6u);
     EXPECT_EQ(listener.said,
               std::vector<std::string>{"1 of 7 blocks were recorded without attributes26"});
     for (ViewpointRecording& viewpoint : data.viewpoints)
         for (auto& [number, block] : viewpoint.blocks)
             block.absent.set(ChannelIndex("attributes26"));
-    EXPECT_THROW(KeepRecorded(blocks, attributes, listener.Ear()), std::runtime_error);
+    EXPECT_THROW(KeepRecordedForAll(blocks, both, listener.Ear()), std::runtime_error);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
     }
 }
 
-TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
+TEST(TrainingCheckpoint, TellsItsOwnFaultsFromThoseOfTrainings) {
     const LearningData data;
     TrainingPlan plan = data.Plan();
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
@@ -115,7 +115,7 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     other.training.batch = 32;
     TrainingCheckpoint read(file.path, 1e6, WriteFile);
     read.Read();
-    EXPECT_THROW(TrainAll(other, splits, &read, Watcher().Events()), std::runtime_error);
+    EXPECT_THROW(TrainAll(other, splits, &read, Watcher().Events()), CheckpointError);
     // Neither can this one from a part of the file.
     std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 1);
     TrainingCheckpoint cut(file.path, 1e6, WriteFile);
@@ -124,7 +124,7 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     TrainingCheckpoint full(file.path, 0, [](const std::string&, std::span<const std::byte>) {
         throw std::runtime_error("the disk is full");
     });
-    EXPECT_THROW(TrainAll(plan, splits, &full, Watcher().Events()), std::runtime_error);
+    EXPECT_THROW(TrainAll(plan, splits, &full, Watcher().Events()), CheckpointError);
     TrainingCheckpoint nowhere("", 0,
                                [](const std::string&, std::span<const std::byte>) { FAIL(); });
     EXPECT_FALSE(nowhere.IsDue());
