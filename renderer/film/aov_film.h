@@ -68,7 +68,7 @@ struct AovPixel {
     bool operator==(const AovPixel&) const = default;
 };
 
-// Holds these pixels of the region that a Film beside it has, which knows their samples.
+// These pixels of the region of a Film, which has their sample counts.
 class AovFilm : public PixelPlane<AovPixel> {
   public:
     AovFilm(const PixelRect& region, const AovSet& wanted) : PixelPlane(region), wanted(wanted) {}

@@ -60,7 +60,7 @@ struct FilmOptions {
 
 class FilmTile;
 
-// Holds the pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
+// The pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
 // more with the half, and 8 a tile. Different tiles can be changed by different threads at the same
 // time.
 class Film {

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds the pixels [min, max).
+// The pixels [min, max).
 struct PixelRect {
     Vec2i min = {0, 0}, max = {0, 0};
 
@@ -19,7 +19,7 @@ struct PixelRect {
     bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
 };
 
-// Holds a Pixel, value-initialised, for each of a region. Different ones can be changed by
+// A Pixel, value-initialised, for each of a region. Different ones can be changed by
 // different threads at the same time.
 template <typename Pixel>
 class PixelPlane {

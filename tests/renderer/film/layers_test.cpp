@@ -9,7 +9,7 @@ namespace {
 
 const PixelRect kRegion = {{3, 5}, {43, 31}};
 
-// Holds a film with all layers.
+// A film with all layers.
 struct Planes {
     Film film;
     AovFilm aovs{kRegion, {.depth = true}};
@@ -21,7 +21,7 @@ struct Planes {
     Layers TheLayers() {
         return {.aovs = &aovs, .features = &features, .mattes = &mattes, .source = {}};
     }
-    // Adds a sample to each pixel of a tile, another one for each.
+    // Adds a sample to each pixel of a tile, different in all of them.
     void AddTo(const PixelRect& pixels) {
         FilmTile tile = film.Tile(pixels);
         for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
