@@ -132,9 +132,9 @@ Run MakeRun(std::span<const LabelledBlock> blocks, const RivalRule& rival) {
         };
     std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
     for (const double mask : MasksOf(rival)) {
-        const auto rule = std::make_shared<const Rule>(
+        const Rule rule =
             ParseRule(std::string(rival.rule->name) + ":1",
-                      {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}}));
+                      {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}});
         std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
         for (const LabelledBlock& block : blocks) ofBlocks.push_back(MakeErrorSeries(block, rule));
     }

@@ -56,16 +56,15 @@ void CheckSpacing(const Rule& rule, const LabelledBlock& block) {
 }
 
 // Lets the rule decide after every recorded pass, whether it has stopped the block or not.
-std::vector<Decision> Replayed(const LabelledBlock& block,
-                               const std::shared_ptr<const Rule>& rule) {
-    CheckSpacing(*rule, block);
+std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
+    CheckSpacing(rule, block);
     const BlockRecording& recording = *block.recording;
-    RuleCriterion criterion(rule, {.index = block.block});
+    RuleCriterion criterion(std::make_shared<const Rule>(rule), {.index = block.block});
     std::vector<Decision> decisions;
     for (int i = 0; i < recording.Count(); ++i) {
         const int spp = recording.spp[size_t(i)];
         decisions.push_back(criterion.Decide(
-            spp, criterion.IsDue(spp) ? rule->recall(spp, ValuesOf(recording, i)) : Signals()));
+            spp, criterion.IsDue(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
     }
     return decisions;
 }
@@ -96,8 +95,8 @@ Simulator ThresholdsSimulator(const std::string& path) {
 
 }  // namespace
 
-ErrorSeries MakeErrorSeries(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule) {
-    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule->votes)};
+ErrorSeries MakeErrorSeries(const LabelledBlock& block, const Rule& rule) {
+    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule.votes)};
 }
 
 int FirstBelow(const ErrorSeries& series, double threshold) {
@@ -136,13 +135,13 @@ RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool br
     return outcome;
 }
 
-RuleOutcome SimulateRule(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule) {
+RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule) {
     const std::vector<Decision> decisions = Replayed(block, rule);
     const auto last = std::ranges::find(decisions, true, &Decision::stop);
     RuleOutcome outcome = MakeOutcome(
         *block.recording,
         last == decisions.end() ? 0 : block.recording->spp[size_t(last - decisions.begin())]);
-    AddVerdicts(block, NumbersOf(decisions), rule->threshold, &outcome);
+    AddVerdicts(block, NumbersOf(decisions), rule.threshold, &outcome);
     return outcome;
 }
 
@@ -174,7 +173,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
         throw std::invalid_argument("stopping rule '" + rule->text + "' cannot be simulated");
     return [rule](const LabelledBlock& block) {
         try {
-            return SimulateRule(block, rule);
+            return SimulateRule(block, *rule);
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error("stopping rule '" + rule->text + "': " + error.what());
         }

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +22,7 @@ struct ErrorSeries {
     std::vector<double> errors = {};  // of each record; infinite where there is none
     int needed = 1;                   // errors below the threshold in a row that stop the block
 };
-ErrorSeries MakeErrorSeries(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule);
+ErrorSeries MakeErrorSeries(const LabelledBlock& block, const Rule& rule);
 
 // Returns the record at which a threshold stops the block; -1: none.
 int FirstBelow(const ErrorSeries& series, double threshold);
@@ -36,7 +35,7 @@ RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& ser
 RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief = false);
 // Decides as in a render, on signals that were recorded, with a rule that has them (recall) and was
 // made for the block's passes.
-RuleOutcome SimulateRule(const LabelledBlock& block, const std::shared_ptr<const Rule>& rule);
+RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 

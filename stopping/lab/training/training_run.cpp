@@ -27,7 +27,7 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
                  std::span<const LabelledBlock> blocks, std::vector<ViewpointOutcome>* viewpoints) {
     const auto model = std::make_shared<const Model>(Model{network, settings, ""});
     const auto simulator = [&](const LabelledBlock& block) {
-        return SimulateRule(block, std::make_shared<const Rule>(LearnedRule(model, block.passSpp)));
+        return SimulateRule(block, LearnedRule(model, block.passSpp));
     };
     for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
         viewpoints->push_back(std::move(viewpoint));

@@ -127,7 +127,7 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
     const LabelledBlock block = MakeBlock(recording);
     const ErrorSeries series = MakeErrorSeries(block, DammertzRule(0.05));
     for (const RuleOutcome& outcome :
-         {SimulateVoting(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
+         {SimulateRule(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
           SimulateCycles(block, 0.02)}) {
         EXPECT_EQ(outcome.stop, 700);
         EXPECT_TRUE(outcome.open);
@@ -140,7 +140,7 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
 
     BlockRecording whole = EmptyRecording(10000);
     SetChannel(&whole, "dammertz", [](int) { return 0.1; });
-    const RuleOutcome never = SimulateVoting(MakeBlock(whole), DammertzRule(0.05));
+    const RuleOutcome never = SimulateRule(MakeBlock(whole), DammertzRule(0.05));
     EXPECT_EQ(never.stop, 10000);
     EXPECT_FALSE(never.open);
 }
