@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace lull {
+namespace lull::layers_test {
 namespace {
 
 const PixelRect kRegion = {{3, 5}, {43, 31}};
@@ -98,4 +98,4 @@ TEST(Planes, AreNotReadFromTooFewBytes) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::layers_test

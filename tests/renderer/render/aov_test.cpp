@@ -71,10 +71,12 @@ TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
         render.options.layers = {.aovs = &aovs};
         render.options.schedule.cap = 6;
         int64_t asked = 0;
-        render.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+        render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
+                                    FirstHit* hit) {
             asked += hit != nullptr;
             return SyntheticSample(sampler, pixel, k, hit);
-        });
+        };
+        render.Run();
         EXPECT_EQ(asked, withDepth ? render.film.SampleCount() : 0);
         EXPECT_GT(aovs.At(kRegion.min).squares, 0);
     }
@@ -87,10 +89,11 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     render.options.threads = 2;
     render.options.makeCriterion = nullptr;
     render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
-    render.Run(nullptr, [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+    render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
         ++taken;
         return SyntheticSample(sampler, pixel, k, hit);
-    });
+    };
+    render.Run();
     EXPECT_TRUE(render.result.timeUp);
     EXPECT_LT(render.film.SampleCount(), taken);  // some were undone
     EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
