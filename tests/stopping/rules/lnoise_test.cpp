@@ -87,9 +87,9 @@ TEST(LNoise, GoesOnCountingAfterARestart) {
 
 TEST(LNoise, IsARule) {
     const Rule rule = ParseRule("lnoise:0.5");
-    EXPECT_EQ(factory.text, "lnoise:0.5");
-    EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
-    EXPECT_EQ(MakeCriterion(factory)->Observe(EvenNoise(0.4).At(20)).threshold, 0.5);
+    EXPECT_EQ(rule.text, "lnoise:0.5");
+    EXPECT_EQ(rule.smallestSide, kSmallestVotingSide);
+    EXPECT_EQ(MakeCriterion(rule)->Observe(EvenNoise(0.4).At(20)).threshold, 0.5);
 }
 
 TEST(LNoise, RefusesWhatItCannotMeasure) {
