@@ -15,7 +15,7 @@ namespace {
 // by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
 struct Blocks {
     std::vector<BlockRecording> recordings;
-    std::vector<LabelledBlock> judged;
+    std::vector<LabelledBlock> blocks;
 
     Blocks() {
         for (int i = 0; i < 9; ++i) {
@@ -31,7 +31,7 @@ struct Blocks {
             recording.cyclesStops[3] = human * 3 / 2;
         }
         for (int i = 0; i < 9; ++i)
-            judged.push_back({.viewpoint = std::string(1, char('a' + i / 3)),
+            blocks.push_back({.viewpoint = std::string(1, char('a' + i / 3)),
                               .block = i % 3,
                               .human = int(std::pow((5 + 4 * i) / 0.5, 2)),
                               .cap = 10000,
@@ -47,7 +47,7 @@ const Rival& Find(const std::vector<Rival>& rivals, const std::string& rule) {
 TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
-        const std::vector<Rival> rivals = EvaluateRivals(blocks.checked, chooseBy, 40);
+        const std::vector<Rival> rivals = EvaluateRivals(blocks.blocks, chooseBy, 40);
         ASSERT_EQ(rivals.size(), 6u);
         const Rival& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
@@ -69,9 +69,9 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
     // The people of one viewpoint are of another mind. That changes the choice for the others, and
     // not for theirs.
     Blocks blocks;
-    const auto before = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
-    for (size_t i = 6; i < 9; ++i) blocks.checked[i].human = 200;
-    const auto after = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
+    const auto before = EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40);
+    for (size_t i = 6; i < 9; ++i) blocks.blocks[i].human = 200;
+    const auto after = EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40);
     for (const char* rule : {"dammertz", "luxtile", "lnoise"}) {
         const Rival &x = Find(before, rule), &y = Find(after, rule);
         EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
@@ -84,10 +84,10 @@ TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     const Blocks blocks;
     // Both settings of cycles are wrong by half; the coarser comes first.
     const Rival cycles =
-        Find(EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40), "cycles");
+        Find(EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40), "cycles");
     EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
-    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.checked[1].human / 2);
+    EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.blocks[1].human / 2);
 }
 
 TEST(Rivals, ChooseTheMaskAsWell) {
@@ -109,9 +109,9 @@ TEST(Rivals, ChooseTheMaskAsWell) {
         };
         int human = 20;
         while (seen(human) >= 1) human += 20;
-        blocks.checked[i].human = human;
+        blocks.blocks[i].human = human;
     }
-    const auto rivals = EvaluateRivals(blocks.checked, ChooseBy::AbsoluteError, 40);
+    const auto rivals = EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40);
     const Rival& masked = Find(rivals, "entropy, mask");
     EXPECT_TRUE(masked.bestOfAll.ends_with(", 12")) << masked.bestOfAll;
     for (const ViewpointOutcome& viewpoint : masked.viewpoints) {
@@ -127,7 +127,7 @@ TEST(Rivals, ChooseTheMaskAsWell) {
 
 TEST(Rivals, NeedTwoViewpoints) {
     const Blocks blocks;
-    EXPECT_THROW(EvaluateRivals(std::span(blocks.checked).first(3), ChooseBy::AbsoluteError, 40),
+    EXPECT_THROW(EvaluateRivals(std::span(blocks.blocks).first(3), ChooseBy::AbsoluteError, 40),
                  std::invalid_argument);
     EXPECT_THROW(EvaluateRivals({}, ChooseBy::AbsoluteError, 40), std::invalid_argument);
 }
