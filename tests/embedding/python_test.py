@@ -5,8 +5,10 @@ import contextlib
 import io
 import pathlib
 import sys
+import tempfile
 import threading
 import unittest
+import unittest.mock
 import warnings
 
 import numpy as np
@@ -15,6 +17,7 @@ sys.path.insert(0, sys.argv.pop(1))
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "stopping/examples"))
 import drive_renderer  # noqa: E402
 import lull  # noqa: E402
+import paper  # noqa: E402
 
 WIDTH, HEIGHT = 70, 60
 
@@ -223,6 +226,44 @@ class StopperTest(unittest.TestCase):
         self.assertLess(spp[0, 1], 10000)
         self.assertIn("100% of 2 blocks have stopped", out.getvalue())
         self.assertTrue(np.isfinite(image).all())
+
+    def test_example_runs_the_papers_method(self):
+        pictures = {spp: np.uint8(255 * np.clip(picture(spp)[0], 0, 1)) for spp in range(20, 420, 20)}
+        own = lull.Stopper(WIDTH, HEIGHT, model="paper", pass_spp=20)
+        answers = {spp: own.observe(image, spp) for spp, image in pictures.items()}
+        with tempfile.TemporaryDirectory() as folder:
+            for spp, image in pictures.items():
+                with open(f"{folder}/room7_{spp}.png", "wb") as file:
+                    np.save(file, image)  # no PNG, so that the test needs no Pillow
+            found = paper.pictures_in(folder)
+            self.assertEqual([spp for spp, _ in found], list(pictures))  # 100 is after 80
+            with unittest.mock.patch.object(paper, "read", np.load):
+                with contextlib.redirect_stdout(io.StringIO()) as out:
+                    stops = paper.thresholds_of(found)
+        last = max(answers)
+        self.assertEqual(stops.tolist(), [answers[last].spp[0, 0] if answers[last].stop else paper.CAP])
+        lines = out.getvalue().splitlines()
+        self.assertEqual(lines[0], "    20 spp: 0 of 1 blocks have stopped")
+        # Eight pictures 40 spp apart make the first window.
+        self.assertEqual([int(line.split()[0]) for line in lines if "P(noise)" in line][:3], [300, 340, 380])
+        self.assertIn(f"P(noise) {answers[300].probability[0, 0]:.2f}", lines[14])
+
+    def test_example_has_the_papers_critical_error(self):
+        self.assertEqual(paper.critical_error([1000, 1000], [1000, 900]), 0)
+        self.assertAlmostEqual(paper.critical_error([1000], [800], grid=20), 5 / 500)
+        self.assertAlmostEqual(paper.critical_error([1000], [1200]), 3 / 250)
+        self.assertAlmostEqual(paper.critical_error([10000], [9000], margin=10, grid=20), 49 / 500)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "human.csv")
+            path.write_text("room;20;40;\nattic;60;\n")
+            self.assertEqual(paper.row_of(path, "attic"), [60])
+            with self.assertRaisesRegex(SystemExit, "no row 'cellar'"):
+                paper.row_of(path, "cellar")
+            with self.assertRaisesRegex(SystemExit, "no PNG files"):
+                paper.pictures_in(folder)
+            pathlib.Path(folder, "room.png").touch()
+            with self.assertRaisesRegex(SystemExit, "no number of samples"):
+                paper.pictures_in(folder)
 
     def test_version(self):
         self.assertRegex(lull.__version__, r"^\d+\.\d+\.\d+$")

@@ -127,7 +127,9 @@ TEST(Install, CompletionKnowsCommandsAndValues) {
 }
 
 // Writes pictures of ever less noise: a gradient, to which the mean of so many samples adds some.
-std::string WritePictures(const TemporaryDirectory& directory, int count, int step) {
+// A pattern makes names of the number of the picture and its samples per pixel.
+std::string WritePictures(const TemporaryDirectory& directory, int count, int step,
+                          const char* pattern = "p{:02}.png") {
     std::mt19937 generator(1);
     std::normal_distribution<float> gauss;
     std::vector<Rgb> sum(100 * 60, Rgb(0, 0, 0)), mean = sum;
@@ -140,7 +142,7 @@ std::string WritePictures(const TemporaryDirectory& directory, int count, int st
                     truth * float(step) + 0.15f * std::sqrt(float(step)) * gauss(generator);
             mean[i] = sum[i] / float(k * step);
         }
-        const std::string name = fmt::format("p{:02}.png", k);
+        const std::string name = fmt::format(fmt::runtime(pattern), k, k * step);
         WritePng(directory.File(name), mean, 100, 60);
         names += " " + name;
     }
@@ -159,6 +161,19 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     EXPECT_TRUE(out.starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n")) << out;
     EXPECT_TRUE(out.ends_with(", 0 of 1 blocks go on\n")) << out;
     EXPECT_GT(std::ranges::count(out, '\n'), 5) << out;
+
+    // In the order of samples, not of names; eight pictures 40 spp apart make the first window.
+    std::filesystem::create_directory(tree.File("room7"));
+    WritePictures(tree, 20, 20, "room7/p_{1}.png");
+    const std::string paper = Do(tree, "build/paper room7");
+    EXPECT_TRUE(paper.starts_with("20 spp: 0 of 1 blocks have stopped\n40 spp: ")) << paper;
+    EXPECT_TRUE(Contains(paper, "\n300 spp: 0 of 1 blocks have stopped, P(noise) ")) << paper;
+    EXPECT_TRUE(Contains(paper, "\nroom7;")) << paper;
+    EXPECT_TRUE(paper.ends_with(";\n")) << paper;
+    std::filesystem::rename(tree.File("room7/p_20.png"), tree.File("room7/p.png"));
+    const Outcome unnamed = RunShell(tree, "build/paper room7");
+    EXPECT_EQ(unnamed.exitCode, 1);
+    EXPECT_TRUE(Contains(unnamed.err, "p.png: has no number of samples")) << unnamed.err;
 
     const Outcome bad = RunShell(tree, "build/watch_pngs 60 p01.png nowhere.png");
     EXPECT_EQ(bad.exitCode, 1);

@@ -7,12 +7,11 @@
 #include <atomic>
 
 #include "renderer/film/layers.h"
-#include "renderer/input/pbrt_parser.h"
 #include "renderer/render/guide_learning_state.h"
 #include "renderer/render/render.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -20,17 +19,11 @@ namespace {
 std::unique_ptr<const Scene> MakeScene(const std::string& world, int size = 16,
                                        const std::string& camera = "0 0 -0.9  0 0 0  0 1 0",
                                        int maxDepth = 100, const std::string& integrator = "path") {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = "LookAt " + camera + "\nCamera \"perspective\" \"float fov\" [80]\n" +
-                             "Film \"image\" \"integer xresolution\" [" + std::to_string(size) +
-                             "] \"integer yresolution\" [" + std::to_string(size) + "]\n" +
-                             "Integrator \"" + integrator + "\" \"integer maxdepth\" [" +
-                             std::to_string(maxDepth) + "]\nWorldBegin\n" + world + "\nWorldEnd\n";
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(d, options, warnings);
+    return SceneOf(WorldText(
+        world, "LookAt " + camera + "\nCamera \"perspective\" \"float fov\" [80]\n" +
+                   "Film \"image\" \"integer xresolution\" [" + std::to_string(size) +
+                   "] \"integer yresolution\" [" + std::to_string(size) + "]\n" + "Integrator \"" +
+                   integrator + "\" \"integer maxdepth\" [" + std::to_string(maxDepth) + "]"));
 }
 
 // A closed room with walls of several materials, lit by a lamp that shines at its ceiling alone.

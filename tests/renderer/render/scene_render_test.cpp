@@ -1,10 +1,9 @@
 // Renders small scenes all the way from pbrt text to pixels.
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull::scene_render_test {
 namespace {
@@ -58,15 +57,6 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
 WorldEnd
 )";
 
-std::unique_ptr<const Scene> MakeScene(const char* text, const FilmOverrides& film = {}) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const Description description = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-    CompileOptions options;
-    options.film = film;
-    return Compile(description, options, warnings);
-}
-
 PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
 
 struct Settings {
@@ -88,7 +78,7 @@ Film Rendered(const Scene& scene, const Settings& s) {
 }
 
 TEST(SceneRender, IsTheSameBitsForAnyThreadsBlocksAndPasses) {
-    const auto scene = MakeScene(kBox);
+    const auto scene = SceneOf(kBox);
     for (const Estimator estimator : {Estimator::Combined, Estimator::PbrtV3})
         for (const SamplerKind sampler : {SamplerKind::Random, SamplerKind::Sobol}) {
             const Settings base = {.estimator = estimator, .sampler = sampler};
@@ -105,10 +95,10 @@ TEST(SceneRender, IsTheSameBitsForAnyThreadsBlocksAndPasses) {
 }
 
 TEST(SceneRender, GivesACropTheSamePixels) {
-    const auto whole = MakeScene(kBox);
+    const auto whole = SceneOf(kBox);
     FilmOverrides overrides;
     overrides.crop = {.25f, .75f, .1f, .6f};
-    const auto part = MakeScene(kBox, overrides);
+    const auto part = SceneOf(kBox, {.film = overrides});
     const Film wholeFilm = Rendered(*whole, {}), partFilm = Rendered(*part, {.threads = 2});
     const PixelRect crop = RegionOf(*part);
     EXPECT_EQ(crop, (PixelRect{{24, 8}, {72, 48}}));
@@ -118,12 +108,12 @@ TEST(SceneRender, GivesACropTheSamePixels) {
 }
 
 TEST(SceneRender, DependsOnTheSeed) {
-    const auto scene = MakeScene(kBox);
+    const auto scene = SceneOf(kBox);
     EXPECT_FALSE(SamePixels(Rendered(*scene, {.seed = 1}), Rendered(*scene, {.seed = 2})));
 }
 
 TEST(SceneRender, GivesAWallItsRadiance) {
-    const auto scene = MakeScene(kWall);
+    const auto scene = SceneOf(kWall);
     const Film film = Rendered(*scene, {.cap = 100});
     double sum = 0;
     const std::vector<float> image = film.MeanImage();
@@ -136,7 +126,7 @@ TEST(SceneRender, GivesAWallItsRadiance) {
 
 // Neighbours across a border differ no more than neighbours elsewhere.
 TEST(SceneRender, ShowsNoBordersOfBlocks) {
-    const auto scene = MakeScene(kWall);
+    const auto scene = SceneOf(kWall);
     RenderOptions options;
     options.schedule = {.blockSize = 20, .passLength = 20, .cap = 200};
     options.sampler = SamplerKind::Random;

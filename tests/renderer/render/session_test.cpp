@@ -6,21 +6,16 @@
 #include <atomic>
 #include <filesystem>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
 
 // A box that is open to the camera, with a lamp that shines at its ceiling.
 std::unique_ptr<const Scene> MakeBox() {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    CompileOptions options;
-    options.threads = 1;
-    const Description d = ParsePbrt(directory.Write("box.pbrt", R"(
+    return SceneOf(R"(
 LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" [45]
 Film "image" "integer xresolution" [32] "integer yresolution" [24]
@@ -34,9 +29,7 @@ Material "matte" "rgb Kd" [.7 .5 .3]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7 3 2 6 3 6 7]
   "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1   -1 1 -1  1 1 -1  1 1 1  -1 1 1]
 WorldEnd
-)"),
-                                    warnings);
-    return Compile(d, options, warnings);
+)");
 }
 
 const PixelRect kBoxRegion = {{0, 0}, {32, 24}};

@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -139,19 +137,12 @@ TEST(LightHierarchy, StandsAnyArrangement) {
 
 std::unique_ptr<const Scene> MakeLights(const std::string& lights, const char* strategy,
                                         bool lightsAsPbrtV3 = false) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = fmt::format(
-        "Camera \"perspective\"\nIntegrator \"path\" \"string lightsamplestrategy\" \"{}\"\n"
-        "WorldBegin\n{}\nShape \"sphere\"\nWorldEnd\n",
-        strategy, lights);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
+    const std::string before = fmt::format(
+        "Camera \"perspective\"\nIntegrator \"path\" \"string lightsamplestrategy\" \"{}\"",
+        strategy);
     CompileOptions options;
-    options.threads = 1;
     options.lightsAsPbrtV3 = lightsAsPbrtV3;
-    auto scene = Compile(d, options, warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return scene;
+    return SceneOf(WorldText(lights + "\nShape \"sphere\"", before), options);
 }
 
 // A light that is never chosen gives nothing to a surface that only reflects.

@@ -7,6 +7,7 @@
 #include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -190,12 +191,10 @@ TEST(Lights, CountNegativePartsAsBlack) {
           "LightSource \"distant\" \"rgb L\"", "LightSource \"infinite\" \"rgb L\"",
           "LightSource \"goniometric\" \"rgb I\"", "LightSource \"projection\" \"rgb I\"",
           "AreaLightSource \"area\" \"rgb L\""}) {
-        const TemporaryDirectory directory;
         Warnings warnings;
-        const std::string text = "Camera \"perspective\"\nWorldBegin\n" + light +
-                                 " [16 -0.5 12]\nShape \"sphere\"\nWorldEnd\n";
-        const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-        const std::unique_ptr<const Scene> scene = Compile(d, {}, warnings);
+        const auto scene =
+            SceneOf(WorldText(light + " [16 -0.5 12]\nShape \"sphere\"", "Camera \"perspective\""),
+                    {}, &warnings);
         const Rgb power = std::visit([](const auto& l) { return l.Power(); }, scene->lights[0]);
         EXPECT_EQ(power.y(), 0) << light;
         EXPECT_GT(power.x(), power.z()) << light;

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/transport/integrator.h"
-
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -15,17 +12,11 @@ constexpr Estimator kBoth[] = {Estimator::Combined, Estimator::PbrtV3};
 
 // An image of one pixel with a box filter, whose camera at z = -3 looks at the origin.
 std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::string& before = "") {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = fmt::format(
-        "LookAt 0 0 -3  0 0 0  0 1 0\n"
-        "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n{}\n"
-        "Camera \"perspective\" \"float fov\" [20]\nWorldBegin\n{}\nWorldEnd\n",
-        before, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(d, options, warnings);
+    return SceneOf(
+        WorldText(world,
+                  "LookAt 0 0 -3  0 0 0  0 1 0\n"
+                  "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n" +
+                      before + "\nCamera \"perspective\" \"float fov\" [20]"));
 }
 
 constexpr const char* kSky = "LightSource \"infinite\" \"rgb L\" [.25 .5 4]\n";
@@ -179,16 +170,10 @@ TEST(FirstHit, CanBeAPointInAMedium) {
 }
 
 TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const Description d =
-        ParsePbrt(directory.Write(
-                      "e.pbrt",
-                      "Film \"image\" \"integer xresolution\" [4] \"integer yresolution\" [4]\n"
-                      "Camera \"environment\"\nWorldBegin\nShape \"sphere\" \"float radius\" [7]\n"
-                      "WorldEnd\n"),
-                  warnings);
-    const auto scene = Compile(d, {}, warnings);
+    const auto scene =
+        SceneOf(WorldText("Shape \"sphere\" \"float radius\" [7]",
+                          "Film \"image\" \"integer xresolution\" [4] \"integer yresolution\" [4]\n"
+                          "Camera \"environment\""));
     for (int i = 0; i < 16; ++i) {
         Sampler sampler(SamplerKind::Random, 7);
         FirstHit hit;

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/bsdf/fresnel_moments.h"
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull::furnace_test {
@@ -16,19 +14,12 @@ constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
 std::unique_ptr<const Scene> MakeScene(const std::string& world, const char* integrator = "",
                                        int size = 8, const char* camera = "0 0 -3  0 0 0  0 1 0",
                                        int fov = 40) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = fmt::format(
-        "LookAt {}\nCamera \"perspective\" \"float fov\" [{}]\n"
-        "Film \"image\" \"integer xresolution\" [{}] \"integer yresolution\" [{}]\n"
-        "Integrator \"path\" {}\nWorldBegin\n{}\nWorldEnd\n",
-        camera, fov, size, size, integrator, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-    CompileOptions options;
-    options.threads = 1;
-    auto scene = Compile(d, options, warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return scene;
+    return SceneOf(WorldText(
+        world,
+        fmt::format("LookAt {}\nCamera \"perspective\" \"float fov\" [{}]\n"
+                    "Film \"image\" \"integer xresolution\" [{}] \"integer yresolution\" [{}]\n"
+                    "Integrator \"path\" {}",
+                    camera, fov, size, size, integrator)));
 }
 
 struct Total {

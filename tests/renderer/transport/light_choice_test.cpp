@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {
@@ -50,20 +48,14 @@ struct Total {
 };
 
 Total Measure(const char* strategy, bool lightsAsPbrtV3, Estimator estimator) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = fmt::format(
+    const std::string before = fmt::format(
         "LookAt 0 .7 -4  0 -.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [45]\n"
         "Film \"image\" \"integer xresolution\" [16] \"integer yresolution\" [16]\n"
-        "Integrator \"path\" \"string lightsamplestrategy\" \"{}\" \"integer maxdepth\" [3]\n"
-        "WorldBegin\n{}\nWorldEnd\n",
-        strategy, World());
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
+        "Integrator \"path\" \"string lightsamplestrategy\" \"{}\" \"integer maxdepth\" [3]",
+        strategy);
     CompileOptions options;
-    options.threads = 1;
     options.lightsAsPbrtV3 = lightsAsPbrtV3;
-    const auto scene = Compile(d, options, warnings);
-    EXPECT_EQ(warnings.Total(), 0);
+    const auto scene = SceneOf(WorldText(World(), before), options);
     const auto pixels = MeasurePixels(*scene, estimator, SamplerKind::Random, 256, 1);
     EXPECT_EQ(pixels.rejected, 0);
     Total total;

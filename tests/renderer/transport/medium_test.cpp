@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {
@@ -16,17 +14,11 @@ constexpr Estimator kBothEstimators[] = {Estimator::Combined, Estimator::PbrtV3}
 std::unique_ptr<const Scene> MakeMediumScene(const std::string& world,
                                              const std::string& before = "", int depth = 1000,
                                              const char* view = "0 0 -2.5  0 0 0  0 1 0") {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string text = fmt::format(
-        "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
-        "Integrator \"volpath\" \"integer maxdepth\" {}\nLookAt {}\n{}\n"
-        "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n{}\nWorldEnd\n",
-        depth, view, before, world);
-    const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-    auto scene = Compile(d, {}, warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return scene;
+    return SceneOf(WorldText(
+        world, fmt::format("Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+                           "Integrator \"volpath\" \"integer maxdepth\" {}\nLookAt {}\n{}\n"
+                           "Camera \"perspective\" \"float fov\" 40",
+                           depth, view, before)));
 }
 
 // Expects the mean of the green channel over the image.

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/transport/path_log.h"
-
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull::path_log_test {
 namespace {
@@ -29,15 +26,10 @@ constexpr const char* kFog =
     "Material \"matte\" Shape \"sphere\" \"float radius\" [.5]\nWorldEnd\n";
 
 std::unique_ptr<const Scene> MakeScene(const std::string& text) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const std::string film =
+    return SceneOf(
         "LookAt 0 0 -5  0 0 0  0 1 0\n"
-        "Film \"image\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n";
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(ParsePbrt(directory.Write("test.pbrt", film + text), warnings), options,
-                   warnings);
+        "Film \"image\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n" +
+        text);
 }
 
 TEST(PathLog, IsOfTheSampleThatIsRendered) {

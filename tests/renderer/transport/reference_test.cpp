@@ -59,7 +59,7 @@ double SidakQuantile(double tests) {
 struct Comparison {
     double energyRatio, energySigma;           // ours over pbrt-v3's; distance in standard errors
     double pixelsOut, tilesOut;                // shares beyond the Sidak quantile
-    double varianceMedian;                     // over pixels, of ours over pbrt-v3's
+    double varianceMedian;                     // over tiles, of ours over pbrt-v3's
     double varianceTotal, varianceTotalSigma;  // ratio of sums; its rough standard error
 };
 
@@ -82,7 +82,6 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     Comparison result{};
     double sumOurs = 0, sumTheirs = 0, sumVariance = 0;
     double varianceOurs = 0, varianceTheirs = 0, squaresOurs = 0, squaresTheirs = 0;
-    std::vector<double> ratios;
     const double zPixel = SidakQuantile(3.0 * count);
     size_t out = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -99,7 +98,6 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
         sumTheirs += theirs.mean[i].sum();
         sumVariance += 3 * variance.sum();  // channels are nearly fully correlated
         const double vo = ours.variance[i].sum(), vt = theirs.variance[i].sum();
-        if (vt > 1e-9) ratios.push_back(vo / vt);
         varianceOurs += vo;
         varianceTheirs += vt;
         squaresOurs += vo * vo;
@@ -108,7 +106,6 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     result.energyRatio = sumOurs / sumTheirs;
     result.energySigma = (sumOurs - sumTheirs) / std::sqrt(sumVariance);
     result.pixelsOut = double(out) / count;
-    result.varianceMedian = Median(ratios);
     result.varianceTotal = varianceOurs / varianceTheirs;
     // A few pixels carry most of a heavy-tailed total; their number bounds its precision.
     result.varianceTotalSigma =
@@ -118,18 +115,24 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     const int across = ours.width / kTile, down = ours.height / kTile;
     const double zTile = SidakQuantile(3.0 * across * down);
     size_t tilesOut = 0;
+    std::vector<double> ratios;
     for (int ty = 0; ty < down; ++ty)
         for (int tx = 0; tx < across; ++tx) {
             Eigen::Array3d difference = Eigen::Array3d::Zero(), variance = difference;
+            double vo = 0, vt = 0;
             for (int y = 0; y < kTile; ++y)
                 for (int x = 0; x < kTile; ++x) {
                     const size_t i = size_t(ty * kTile + y) * ours.width + tx * kTile + x;
                     difference += ours.mean[i] - theirs.mean[i];
                     variance += pooled(i) * perMean;
+                    vo += ours.variance[i].sum();
+                    vt += theirs.variance[i].sum();
                 }
+            if (vt > 1e-9) ratios.push_back(vo / vt);
             tilesOut += ((difference.abs() > zTile * variance.sqrt() + 1e-6).any());
         }
     result.tilesOut = double(tilesOut) / (across * down);
+    result.varianceMedian = Median(ratios);
     return result;
 }
 
@@ -153,13 +156,12 @@ bool ShowsTextureFiltering(const std::string& name) {
     return name == "staircase" || name == "contemporary-bathroom" || name == "crown";
 }
 
-class ReferenceTest : public testing::TestWithParam<const char*> {};
+class ReferenceTest : public testing::TestWithParam<std::tuple<const char*, Estimator>> {};
 
 TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
-    const std::string name = GetParam();
+    const std::string name = std::get<0>(GetParam());
+    const Estimator estimator = std::get<1>(GetParam());
     LULL_SHARED_FILE(file, "references/" + name + ".exr");
-    const Estimator estimator =
-        std::getenv("LULL_REFERENCE_COMBINED") ? Estimator::Combined : Estimator::PbrtV3;
     const auto filtering =
         ShowsTextureFiltering(name) ? TextureFiltering::PbrtV3 : TextureFiltering::Bilinear;
     const auto scene =
@@ -191,17 +193,19 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceTest,
-                         testing::Values("cornell-box", "veach-mis", "veach-bidir",
-                                         "killeroo-simple", "staircase2", "veach-ajar", "staircase",
-                                         "caustic-glass", "matpreview", "breakfast", "bathroom",
-                                         "coffee-splash", "contemporary-bathroom", "dining-room",
-                                         "crown", "classroom", "living-room"),
-                         [](const auto& info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, ReferenceTest,
+    testing::Combine(testing::Values("cornell-box", "veach-mis", "veach-bidir", "killeroo-simple",
+                                     "staircase2", "veach-ajar", "staircase", "caustic-glass",
+                                     "matpreview", "breakfast", "bathroom", "coffee-splash",
+                                     "contemporary-bathroom", "dining-room", "crown", "classroom",
+                                     "living-room"),
+                     testing::Values(Estimator::PbrtV3, Estimator::Combined)),
+    [](const auto& info) {
+        std::string name = std::get<0>(info.param);
+        std::replace(name.begin(), name.end(), '-', '_');
+        return name + (std::get<1>(info.param) == Estimator::Combined ? "_combined" : "_pbrt_v3");
+    });
 
 }  // namespace
 }  // namespace lull

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "renderer/base/error.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
@@ -20,8 +22,16 @@ TEST(FixedLadder, GoesFromTheFirstPassToTheCap) {
     EXPECT_LT(full.size(), 20u);
 }
 
-TEST(BenchRules, CanAllBeRead) {
-    for (const std::string& rule : BenchRules(20, 10000)) EXPECT_NO_THROW(ParseRule(rule)) << rule;
+TEST(BenchRules, HaveTheLadderAndEachKindAndCanAllBeRead) {
+    const std::vector<std::string> rules = BenchRules(20, 10000);
+    for (const std::string& rule : rules) EXPECT_NO_THROW(ParseRule(rule)) << rule;
+    for (const char* known : {"fixed:20", "fixed:10000"})
+        EXPECT_EQ(std::ranges::count(rules, known), 1) << known;
+    for (const char* kind : {"entropy:", "dammertz:", "cycles:", "luxtile:", "lnoise:"})
+        EXPECT_GE(std::ranges::count_if(
+                      rules, [&](const std::string& rule) { return rule.starts_with(kind); }),
+                  3)
+            << kind;
 }
 
 TEST(MeasurePoints, GivesAPointForEachRule) {

@@ -8,15 +8,14 @@
 #include <thread>
 #include <utility>
 
-#include "renderer/input/pbrt_parser.h"
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/messages.h"
-#include "renderer/scene/compile.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -495,11 +494,7 @@ TEST(Ranks, UndoLayers) {
 
 // A lamp that shines at the top of the sphere around it.
 std::unique_ptr<const Scene> MakeSphere() {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(ParsePbrt(directory.Write("sphere.pbrt", R"(
+    return SceneOf(R"(
 Camera "perspective" "float fov" [80]
 Film "image" "integer xresolution" [80] "integer yresolution" [60]
 WorldBegin
@@ -511,9 +506,7 @@ AttributeEnd
 ReverseOrientation
 Shape "sphere" "float radius" [1]
 WorldEnd
-)"),
-                             warnings),
-                   options, warnings);
+)");
 }
 
 // The first learns alone and tells the others, who take part from then on; also where one of them

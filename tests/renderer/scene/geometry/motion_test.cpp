@@ -5,27 +5,13 @@
 
 #include <Eigen/LU>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
 
 using test::Random;
-
-std::unique_ptr<const Scene> MakeMovingScene(const std::string& world,
-                                             const std::string& options = {}) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const auto d =
-        ParsePbrt(directory.Write("test.pbrt", options + "\nWorldBegin\n" + world + "\nWorldEnd\n"),
-                  warnings);
-    CompileOptions compile;
-    compile.threads = 1;
-    return Compile(d, compile, warnings);
-}
 
 Mat4d Translation(double x, double y, double z) {
     return Eigen::Affine3d(Eigen::Translation3d(x, y, z)).matrix();
@@ -175,7 +161,7 @@ TEST(Motion, MovingScenesAreAtEachTimeTheScenesThatStandThere) {
         "TransformTimes .2 .7 Camera \"perspective\" \"float shutteropen\" .1 \"float "
         "shutterclose\" .9";
     const auto moved =
-        MakeMovingScene(world(moving(outer0, outer1), moving(inner0, inner1)), options);
+        SceneOf(WorldText(world(moving(outer0, outer1), moving(inner0, inner1)), options));
     EXPECT_TRUE(moved->isMoving);
     const Shutter shutter{0.1, 0.9};
     const AnimatedTransform outer(outer0, outer1, 0.2, 0.7, shutter);
@@ -184,7 +170,7 @@ TEST(Motion, MovingScenesAreAtEachTimeTheScenesThatStandThere) {
     Random random(8);
     int hits = 0, differences = 0, escapes = 0;
     for (const float time : {0.f, 0.05f, 0.3f, 0.5f, 0.71f, 0.9f, 1.f}) {
-        const auto still = MakeMovingScene(world(at(outer.At(time)), at(inner.At(time))));
+        const auto still = SceneOf(WorldText(world(at(outer.At(time)), at(inner.At(time)))));
         EXPECT_FALSE(still->isMoving);
         for (int i = 0; i < 4000; ++i) {
             const Vec3f o = 6 * random.Direction(), to = 1.5f * random.Float() * random.Direction();
@@ -221,7 +207,7 @@ TEST(Motion, MovingScenesAreAtEachTimeTheScenesThatStandThere) {
 
 TEST(Motion, CamerasMove) {
     const std::string moves = "ActiveTransform EndTime Translate -2 0 0 ActiveTransform All ";
-    const auto scene = MakeMovingScene("", moves + "Camera \"perspective\"");
+    const auto scene = SceneOf(WorldText("Shape \"sphere\"", moves + "Camera \"perspective\""));
     EXPECT_TRUE(scene->isMoving);
     const Vec2f film(3, 4), lens(0, 0);
     const Ray first = scene->camera.GenerateRay({film, lens, 0});
@@ -230,11 +216,13 @@ TEST(Motion, CamerasMove) {
         EXPECT_NEAR((ray.o - Vec3f(2 * time, 0, 0)).norm(), 0, 1e-6);
         EXPECT_NEAR((ray.d - first.d).norm(), 0, 1e-6);
     }
-    const auto still = MakeMovingScene(
-        "", moves + "Camera \"perspective\" \"float shutteropen\" .5 \"float shutterclose\" .5");
+    const auto still = SceneOf(WorldText(
+        "Shape \"sphere\"",
+        moves + "Camera \"perspective\" \"float shutteropen\" .5 \"float shutterclose\" .5"));
     EXPECT_FALSE(still->isMoving);
     EXPECT_NEAR((still->camera.GenerateRay({film, lens}).o - Vec3f(1, 0, 0)).norm(), 0, 1e-6);
-    EXPECT_THROW(MakeMovingScene("", "Camera \"perspective\" \"float shutterclose\" 1e39"), Error);
+    EXPECT_THROW(SceneOf(WorldText("", "Camera \"perspective\" \"float shutterclose\" 1e39")),
+                 Error);
 }
 
 }  // namespace

@@ -4,24 +4,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
 
-std::unique_ptr<const Scene> MakeScene(const std::string& text) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const auto d = ParsePbrt(directory.Write("far.pbrt", text), warnings);
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(d, options, warnings);
-}
-
 std::string ErrorIn(const std::string& options, const std::string& world) {
-    return ErrorOf([&] { MakeScene(options + "\nWorldBegin\n" + world + "\nWorldEnd\n"); });
+    return ErrorOf([&] { SceneOf(WorldText(world, options)); });
 }
 
 const char* const kObject = "ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\n";
@@ -73,8 +63,8 @@ TEST(Reach, RefusesLightsTooFarAway) {
 // An instance that is smaller than its object makes rays longer.
 TEST(Reach, IsThatOfAllInstances) {
     EXPECT_EQ(ReachThrough(Mat4d::Identity() * 1e-3), double(kFarthest));
-    const auto scene = MakeScene("WorldBegin\n" + std::string(kObject) +
-                                 "Scale 1e-6 1e-6 1e-6\nObjectInstance \"a\"\nWorldEnd\n");
+    const auto scene = SceneOf("WorldBegin\n" + std::string(kObject) +
+                               "Scale 1e-6 1e-6 1e-6\nObjectInstance \"a\"\nWorldEnd\n");
     EXPECT_LT(scene->shapes.reach, 1e12f);
     EXPECT_GT(scene->shapes.reach, 1e11f);
     EXPECT_TRUE(Contains(ErrorIn("LookAt 0 0 1e13 0 0 0 0 1 0\nCamera \"perspective\"",
@@ -87,7 +77,7 @@ TEST(Reach, IsThatOfAllInstances) {
 // squares are no longer floats.
 TEST(Reach, MeshesMayBeOfAnySize) {
     for (const double scale : {1e-12, 1e-10, 1., 1e10, 1e11}) {
-        const auto scene = MakeScene(fmt::format(
+        const auto scene = SceneOf(fmt::format(
             "WorldBegin\nScale {0} {0} {0}\nShape \"trianglemesh\" \"integer indices\" [0 1 2]"
             "\"point P\" [-1 -1 2  3 -1 2  -1 3 2]\nWorldEnd\n",
             scale));
@@ -107,7 +97,7 @@ TEST(Reach, MeshesMayBeOfAnySize) {
 
 TEST(Reach, SpheresMayBeOfAnySize) {
     for (const double scale : {1e-10, 1., 1e10, 1e11}) {
-        const auto scene = MakeScene(fmt::format(
+        const auto scene = SceneOf(fmt::format(
             "WorldBegin\nTranslate 0 0 {0}\nShape \"sphere\" \"float radius\" [{1}]\nWorldEnd\n",
             4 * scale, scale));
         Hit hit;
@@ -122,19 +112,11 @@ TEST(Reach, SpheresMayBeOfAnySize) {
 
 TEST(Reach, WarnsOfScenesTooSmallForTriangles) {
     const auto warningsOf = [](double scale) {
-        const TemporaryDirectory directory;
         Warnings warnings;
-        const auto d =
-            ParsePbrt(directory.Write(
-                          "small.pbrt",
-                          fmt::format("WorldBegin\nScale {0} {0} {0}\nShape \"trianglemesh\" "
-                                      "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"
-                                      "\nWorldEnd\n",
+        SceneOf(WorldText(fmt::format("Scale {0} {0} {0}\nShape \"trianglemesh\" "
+                                      "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]",
                                       scale)),
-                      warnings);
-        CompileOptions options;
-        options.threads = 1;
-        Compile(d, options, warnings);
+                {}, &warnings);
         return warnings.Counts();
     };
     const std::string kind = "the scene is too small for its light to be right";

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/geometry/hit_at.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -317,16 +316,7 @@ TEST(Revolved, CylinderSamplesItsArea) {
 }
 
 std::string ErrorOfWorld(const std::string& world) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    try {
-        const auto d = ParsePbrt(
-            directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"), warnings);
-        Compile(d, {}, warnings);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
+    return ErrorOf([&] { SceneOf(WorldText(world)); });
 }
 
 TEST(Revolved, RefusesWhatHasNoArea) {

@@ -2,26 +2,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/geometry/hit_at.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull::shape_test {
 namespace {
 
 using test::Random;
-
-std::unique_ptr<const Scene> MakeScene(const std::string& world) {
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const auto d =
-        ParsePbrt(directory.Write("test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n"), warnings);
-    CompileOptions options;
-    options.threads = 1;
-    return Compile(d, options, warnings);
-}
 
 std::string Numbers(const Vec3f& v) {
     return fmt::format("{:.9g} {:.9g} {:.9g} ", v.x(), v.y(), v.z());
@@ -52,7 +41,7 @@ TEST(Shapes, RaysDoNotMeetWhereTheyStart) {
                     fmt::format("Shape \"{}\" \"float radius\" [{:.9g}]",
                                 k % 3 == 1 ? "sphere" : "disk", scale);
         }
-        const auto scene = MakeScene(world);
+        const auto scene = SceneOf(WorldText(world));
         const Bounds3f& box = scene->shapes.bounds;
         for (int i = 0; i < 400; ++i) {
             const Vec3f u(random.Float(), random.Float(), random.Float());
@@ -275,8 +264,8 @@ TEST(Mesh, IsWatertight) {
         indices += fmt::format("{} {} {} ", last - kSectors + j, last, last - kSectors + k);
     }
     for (const Vec3f& p : points) positions += Numbers(p);
-    const auto scene = MakeScene("Shape \"trianglemesh\" \"integer indices\" [" + indices +
-                                 "] \"point P\" [" + positions + "]");
+    const auto scene = SceneOf(WorldText("Shape \"trianglemesh\" \"integer indices\" [" + indices +
+                                         "] \"point P\" [" + positions + "]"));
     int escapes = 0, vertexEscapes = 0;
     for (int i = 0; i < 1000000; ++i) {
         const Vec3f o = 0.5f * random.Float() * random.Direction();
@@ -308,11 +297,11 @@ TEST(Instances, GiveWhatPlacedShapesGive) {
     )";
     const char* transform = "Translate .3 -.2 .1 Rotate 70 1 -1 .5 Scale 1.5 1.5 1.5\n";
     const auto placed =
-        MakeScene(fmt::format("AttributeBegin {} {} AttributeEnd", transform, shapes));
+        SceneOf(WorldText(fmt::format("AttributeBegin {} {} AttributeEnd", transform, shapes)));
     const auto instanced =
-        MakeScene(fmt::format("ObjectBegin \"o\" {} ObjectEnd\nAttributeBegin {} ObjectInstance "
-                              "\"o\" AttributeEnd",
-                              shapes, transform));
+        SceneOf(WorldText(fmt::format("ObjectBegin \"o\" {} ObjectEnd\nAttributeBegin {} "
+                                      "ObjectInstance \"o\" AttributeEnd",
+                                      shapes, transform)));
     EXPECT_LT((placed->shapes.bounds.Diagonal() - instanced->shapes.bounds.Diagonal()).norm(), 4);
     Random random(8);
     int hits = 0, differences = 0;

@@ -1,0 +1,101 @@
+// The method of Buisine et al., Entropy 2021, 23(1), 75, on a folder of pictures: `paper FOLDER
+// [MODEL.h5]`. FOLDER has PNG files of one scene; the last number in a name is its samples per
+// pixel: kitchen_20.png, kitchen_40.png, ... The last line of the output is that of a thresholds
+// file: the spp at which each block stopped, row by row.
+//
+// The library runs the method, and no more. What to look at (sub-blocks, H, H1 or H2, k, n, bnorm,
+// snorm) is fixed by the model; entropies and windows stay inside. It trains nothing, and it does
+// not compare with people: `lull train --preset paper` and `lull evaluate` do, or paper.py beside
+// this file. The model "paper" is lull's own small network: the authors' weights are not part of
+// lull; a file with weights of Keras can be named instead.
+#include <lull/stopping.h>
+#include <png.h>
+
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<unsigned char> pixels;  // 8-bit sRGB, as people saw it
+};
+
+static int Fail(const std::string& file, const char* message) {
+    std::fprintf(stderr, "paper: %s: %s\n", file.c_str(), message);
+    return 1;
+}
+
+// Returns the last number in the name of a file; 0 if there is none.
+static int SppOf(const std::string& stem) {
+    size_t end = stem.size();
+    while (end > 0 && !std::isdigit(static_cast<unsigned char>(stem[end - 1]))) --end;
+    size_t begin = end;
+    while (begin > 0 && std::isdigit(static_cast<unsigned char>(stem[begin - 1]))) --begin;
+    return end - begin > 0 && end - begin < 9 ? std::stoi(stem.substr(begin, end - begin)) : 0;
+}
+
+static bool Read(const std::string& file, Picture* picture) {
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&png, file.c_str())) return false;
+    png.format = PNG_FORMAT_RGB;
+    *picture = {int(png.width), int(png.height), std::vector<unsigned char>(PNG_IMAGE_SIZE(png))};
+    return png_image_finish_read(&png, nullptr, picture->pixels.data(), 0, nullptr) != 0;
+}
+
+int main(int argc, char** argv) {
+    if (argc < 2 || !std::filesystem::is_directory(argv[1]))
+        return Fail("usage", "paper FOLDER [MODEL.h5]");
+    std::map<int, std::string> files;  // by spp: 9 before 20, which comes before 100
+    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
+        if (entry.path().extension() != ".png") continue;
+        const int spp = SppOf(entry.path().stem().string());
+        if (spp == 0) return Fail(entry.path().string(), "has no number of samples in its name");
+        if (!files.emplace(spp, entry.path().string()).second)
+            return Fail(entry.path().string(), "there is another picture with as many samples");
+    }
+    if (files.empty()) return Fail(argv[1], "has no PNG files");
+
+    lull_settings settings = {};  // blocks of 200x200 pixels
+    settings.model = argc > 2 ? argv[2] : "paper";
+    // A rule that knows the pass looks at the first picture; otherwise at whole multiples of n.
+    settings.pass = files.begin()->first;
+    int expected = 0;
+    for (const auto& [spp, file] : files)
+        if (spp != (expected += files.begin()->first)) settings.pass = 0;
+
+    lull_stopper* stopper = nullptr;
+    std::vector<lull_answer> answers;
+    for (const auto& [spp, file] : files) {
+        Picture image;
+        if (!Read(file, &image)) return Fail(file, "cannot be read");
+        settings.width = image.width, settings.height = image.height;
+        if (!stopper && lull_stopper_create(&settings, &stopper) != LULL_OK)
+            return Fail(file, lull_error_message());
+        lull_picture picture = {};
+        picture.width = image.width, picture.height = image.height;
+        picture.format = LULL_SRGB8, picture.mean = image.pixels.data();
+        answers.resize(size_t(lull_stopper_block_count(stopper)));
+        // Entropies of the sub-blocks (Eq. 3), the window of k of them, its normalisation, the
+        // network's probability of noise, and the vote: all of it in one call.
+        if (lull_stopper_observe(stopper, &picture, spp, answers.data()) != LULL_OK)
+            return Fail(file, lull_error_message());
+        int stopped = 0, judged = 0;
+        double sum = 0;
+        for (const lull_answer& a : answers) {
+            stopped += a.stop, judged += a.judged;
+            sum += a.judged ? a.probability : 0;
+        }
+        std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
+        if (judged > 0) std::printf(", P(noise) %.2f on average", sum / judged);
+        std::printf("\n");
+        if (lull_stopper_done(stopper)) break;
+    }
+    std::printf("%s;", std::filesystem::absolute(argv[1]).lexically_normal().filename().c_str());
+    for (const lull_answer& a : answers) std::printf("%d;", a.stop ? a.spp : 10000);
+    std::printf("\n");
+    lull_stopper_destroy(stopper);
+}

@@ -1,0 +1,33 @@
+// Compiles the scenes that tests write down.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+
+// Returns the text of a pbrt-v3 file: what stands before the world, and the world.
+inline std::string WorldText(const std::string& world, const std::string& before = "") {
+    return before + "\nWorldBegin\n" + world + "\nWorldEnd\n";
+}
+
+// Compiles the scene that a pbrt-v3 file describes, on one thread. Without `warnings` there must be
+// none. Throws Error.
+inline std::unique_ptr<const Scene> SceneOf(const std::string& text, CompileOptions options = {},
+                                            Warnings* warnings = nullptr) {
+    options.threads = 1;
+    const TemporaryDirectory directory;
+    Warnings own;
+    Warnings* const all = warnings ? warnings : &own;
+    auto scene = Compile(ParsePbrt(directory.Write("test.pbrt", text), *all), options, *all);
+    for (const auto& [kind, count] : own.Counts()) ADD_FAILURE() << kind;
+    return scene;
+}
+
+}  // namespace lull
