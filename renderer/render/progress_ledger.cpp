@@ -15,7 +15,7 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
     std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
     for (size_t i = 0; i < results.size(); ++i)
         for (const DecisionRecord& record : results[i].decisions)
-            made[i].Add(record.spp, record.decision);
+            made[i].Add(record.spp, record.decision, 1, record.noiseTold);
     return made;
 }
 
