@@ -49,8 +49,8 @@ TEST_F(PbrtErrors, Scopes) {
     ExpectInWorld("ObjectBegin \"o\" TransformBegin ObjectEnd",
                   "ObjectEnd where the TransformBegin of line 2 is still open");
     ExpectInWorld("AttributeBegin ObjectEnd", "ObjectEnd without ObjectBegin");
-    ExpectInWorld("ObjectBegin \"o\" AttributeEnd",
-                  "WorldEnd where the ObjectBegin of line 2 is still open");
+    Expect("WorldBegin\nObjectBegin \"o\" AttributeEnd\nWorldEnd",
+           "scene.pbrt:3: WorldEnd where the ObjectBegin of line 2 is still open");
     Expect("WorldBegin\nAttributeBegin\nWorldEnd",
            "scene.pbrt:3: WorldEnd where the AttributeBegin of line 2 is still open");
 }
