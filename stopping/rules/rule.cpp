@@ -39,6 +39,7 @@ RuleCriterion::RuleCriterion(std::shared_ptr<const Rule> given, const BlockInfo&
       value(rule->valueBefore) {}
 
 Decision RuleCriterion::Decide(int spp, Signals signals) {
+    if (spp < last) throw std::invalid_argument("a block must be shown with increasing spp");
     std::optional<double> number;
     if (IsDue(spp)) {
         last = spp;
