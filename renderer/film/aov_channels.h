@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/film/aov_film.h"
+#include "renderer/film/film.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {

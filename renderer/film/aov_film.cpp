@@ -57,17 +57,4 @@ AovSet ParseAovs(const std::string& names) {
     return set;
 }
 
-void AovFilm::Copy(const PixelRect& rect, std::vector<AovPixel>* to) const {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const AovPixel* row = &At({rect.min.x(), y});
-        to->insert(to->end(), row, row + rect.Width());
-    }
-}
-
-const AovPixel* AovFilm::Set(const AovPixel* from, const PixelRect& rect) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y, from += rect.Width())
-        std::copy_n(from, rect.Width(), &At({rect.min.x(), y}));
-    return from;
-}
-
 }  // namespace lull

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "renderer/base/color.h"
-#include "renderer/film/film.h"
+#include "renderer/film/pixel_plane.h"
 #include "renderer/transport/first_hit.h"
 
 namespace lull {
@@ -68,33 +68,15 @@ struct AovPixel {
     bool operator==(const AovPixel&) const = default;
 };
 
-// Holds these pixels for the region of a Film, which has their sample counts. Different pixels can
-// be changed by different threads at the same time.
-class AovFilm {
+// These pixels of the region of a Film, which has their sample counts.
+class AovFilm : public PixelPlane<AovPixel> {
   public:
-    AovFilm(const PixelRect& region, const AovSet& wanted)
-        : region(region), wanted(wanted), pixels(size_t(std::max<int64_t>(0, region.Area()))) {}
+    AovFilm(const PixelRect& region, const AovSet& wanted) : PixelPlane(region), wanted(wanted) {}
 
-    const PixelRect& Region() const { return region; }
     const AovSet& Wanted() const { return wanted; }
-    AovPixel& At(const Vec2i& p) { return pixels[Index(p)]; }
-    const AovPixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
-    std::span<const AovPixel> Pixels() const { return pixels; }
-
-    // Appends the pixels of a rectangle, row by row.
-    void Copy(const PixelRect&, std::vector<AovPixel>* to) const;
-    // Sets them; returns what follows them in `from`.
-    const AovPixel* Set(const AovPixel* from, const PixelRect&);
 
   private:
-    size_t Index(const Vec2i& p) const {
-        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
-               size_t(p.x() - region.min.x());
-    }
-
-    PixelRect region;
     AovSet wanted;
-    std::vector<AovPixel> pixels;
 };
 
 }  // namespace lull

@@ -16,6 +16,19 @@ void Store(const Rgb& c, float* to) {
     for (int i = 0; i < 3; ++i) to[i] = c[i];
 }
 
+// Returns the tile that each pixel along an axis of `size` pixels is in.
+std::vector<int> TilesAlong(int size, const TileGrid& grid) {
+    std::vector<int> tiles;
+    int tile = -1;
+    for (int i = 0; i < size; ++i) {
+        tile += i % grid.blockSize % grid.tileSize == 0;
+        tiles.push_back(tile);
+    }
+    return tiles;
+}
+
+int CountOf(const std::vector<int>& tiles) { return tiles.empty() ? 0 : tiles.back() + 1; }
+
 }  // namespace
 
 uint32_t HalfCount(uint32_t count) {
@@ -32,69 +45,48 @@ Rgb FilmPixel::HalfMean() const {
     return half > 0 ? MeanOf(halfSum, half) : Mean();
 }
 
-std::vector<Film::Place> Film::PlacesOf(int size, const TileGrid& grid) {
-    std::vector<Place> places;
-    uint32_t tile = 0;
-    for (int i = 0; i < size; ++i) {
-        const int inBlock = i % grid.blockSize + 1;
-        const bool isLast =
-            inBlock % grid.tileSize == 0 || inBlock == grid.blockSize || i + 1 == size;
-        places.push_back({tile, isLast});
-        tile += isLast;
-    }
-    return places;
-}
-
 Film::Film(const PixelRect& region, const FilmOptions& options)
-    : region(region),
-      hasHalf(options.withHalf),
-      columns(PlacesOf(region.Width(), options.grid)),
-      rows(PlacesOf(region.Height(), options.grid)),
-      tilesInRow(columns.empty() ? 0 : columns.back().tile + 1),
-      tiles(rows.empty() ? 0 : tilesInRow * (rows.back().tile + 1)),
-      sums(columns.size() * rows.size()),
-      halfSums(hasHalf ? sums.size() : 0) {}
+    : columns(TilesAlong(region.Width(), options.grid)),
+      rows(TilesAlong(region.Height(), options.grid)),
+      tiles({{0, 0}, {CountOf(columns), CountOf(rows)}}),
+      sums(region) {
+    if (options.withHalf) halfSums.emplace(region);
+}
 
 int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
     constexpr int64_t sum = sizeof(std::array<double, 3>);
     const auto tilesAlong = [&](int size) {
-        const std::vector<Place> places = PlacesOf(size, options.grid);
-        return places.empty() ? 0 : int64_t(places.back().tile) + 1;
+        return int64_t(CountOf(TilesAlong(size, options.grid)));
     };
     return region.Area() * (options.withHalf ? 2 * sum : sum) +
-           tilesAlong(region.Width()) * tilesAlong(region.Height()) * int64_t(sizeof(Tile));
-}
-
-void Film::DropHalf() {
-    hasHalf = false;
-    decltype(halfSums)().swap(halfSums);  // an assigned list would leave its memory allocated
+           tilesAlong(region.Width()) * tilesAlong(region.Height()) * int64_t(sizeof(TileSamples));
 }
 
 FilmPixel Film::At(const Vec2i& p) const {
-    const size_t i = Index(p);
-    const Place &column = columns[size_t(p.x() - region.min.x())],
-                &row = rows[size_t(p.y() - region.min.y())];
-    const Tile& tile = tiles[TileIndex(column, row)];
-    FilmPixel pixel{sums[i], {}, tile.count, column.isLast && row.isLast ? tile.rejected : 0};
-    if (hasHalf) pixel.halfSum = halfSums[i];
+    FilmPixel pixel{.sum = sums.At(p), .count = tiles.At(TileOf(p)).count};
+    if (halfSums) pixel.halfSum = halfSums->At(p);
     return pixel;
 }
 
-void Film::Set(const Vec2i& p, const FilmPixel& pixel) {
-    const size_t i = Index(p);
-    const Place &column = columns[size_t(p.x() - region.min.x())],
-                &row = rows[size_t(p.y() - region.min.y())];
-    sums[i] = pixel.sum;
-    if (hasHalf) halfSums[i] = pixel.halfSum;
-    Tile& tile = tiles[TileIndex(column, row)];
-    if (column.isLast && row.isLast)
-        tile = {pixel.count, pixel.rejected};
-    else
-        tile.rejected += pixel.rejected;
+FilmTile Film::Tile(const PixelRect& pixels) { return {this, pixels}; }
+
+FilmTile::FilmTile(Film* film, const PixelRect& pixels)
+    : film(film), tiles(film->TilesIn(pixels)), count(film->tiles.At(tiles.min).count) {}
+
+FilmTile::~FilmTile() {
+    for (int y = tiles.min.y(); y < tiles.max.y(); ++y)
+        for (int x = tiles.min.x(); x < tiles.max.x(); ++x) film->tiles.At({x, y}).count = count;
+}
+
+void FilmTile::Set(const Vec2i& p, const FilmPixel& pixel) {
+    film->sums.At(p) = pixel.sum;
+    if (film->halfSums) film->halfSums->At(p) = pixel.halfSum;
+    film->tiles.At(film->TileOf(p)).rejected += pixel.rejected;
+    count = pixel.count;
 }
 
 void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
-    if (withHalf && !hasHalf) throw std::logic_error("the sums of the half are not kept");
+    if (withHalf && !HasHalf()) throw std::logic_error("the sums of the half are not kept");
     view->width = rect.Width();
     view->height = rect.Height();
     view->mean.resize(size_t(rect.Area()) * 3);
@@ -111,32 +103,32 @@ void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
 template <typename Visit>
 void Film::ForEachPixel(Visit visit) const {
     size_t i = 0;
-    for (const Place& row : rows)
-        for (const Place& column : columns) visit(i++, tiles[TileIndex(column, row)]);
+    for (const int row : rows)
+        for (const int column : columns) visit(i++, tiles.At({column, row}).count);
 }
 
 std::vector<float> Film::MeanImage() const {
-    std::vector<float> image(sums.size() * 3);
+    std::vector<float> image(sums.Pixels().size() * 3);
     ForEachPixel(
-        [&](size_t i, const Tile& tile) { Store(MeanOf(sums[i], tile.count), &image[3 * i]); });
+        [&](size_t i, uint32_t count) { Store(MeanOf(sums.Pixels()[i], count), &image[3 * i]); });
     return image;
 }
 
 std::vector<float> Film::SppImage() const {
-    std::vector<float> image(sums.size());
-    ForEachPixel([&](size_t i, const Tile& tile) { image[i] = float(tile.count); });
+    std::vector<float> image(sums.Pixels().size());
+    ForEachPixel([&](size_t i, uint32_t count) { image[i] = float(count); });
     return image;
 }
 
 int64_t Film::SampleCount() const {
     int64_t n = 0;
-    ForEachPixel([&](size_t, const Tile& tile) { n += tile.count; });
+    ForEachPixel([&](size_t, uint32_t count) { n += count; });
     return n;
 }
 
 int64_t Film::RejectedCount() const {
     int64_t n = 0;
-    for (const Tile& tile : tiles) n += tile.rejected;
+    for (const TileSamples& tile : tiles.Pixels()) n += tile.rejected;
     return n;
 }
 

@@ -1,22 +1,12 @@
 // Sums up the samples of every pixel.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <vector>
 
-#include "renderer/base/math.h"
+#include "renderer/film/pixel_plane.h"
 
 namespace lull {
-
-// Holds the pixels [min, max).
-struct PixelRect {
-    Vec2i min = {0, 0}, max = {0, 0};
-
-    int Width() const { return max.x() - min.x(); }
-    int Height() const { return max.y() - min.y(); }
-    int64_t Area() const { return int64_t(Width()) * Height(); }
-    bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
-};
 
 // Says whether sample `index` belongs to the half on which noise is estimated: the bits at its
 // odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
@@ -68,7 +58,9 @@ struct FilmOptions {
     bool withHalf = true;  // keeps the sums of the half; false: they are zero and never read
 };
 
-// Holds the pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
+class FilmTile;
+
+// The pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
 // more with the half, and 8 a tile. Different tiles can be changed by different threads at the same
 // time.
 class Film {
@@ -77,16 +69,16 @@ class Film {
     // Returns the size of such a film in bytes.
     static int64_t Bytes(const PixelRect& region, const FilmOptions&);
 
-    const PixelRect& Region() const { return region; }
-    bool HasHalf() const { return hasHalf; }
+    const PixelRect& Region() const { return sums.Region(); }
+    bool HasHalf() const { return halfSums.has_value(); }
     // Forgets the sums of the half.
-    void DropHalf();
+    void DropHalf() { halfSums.reset(); }
 
-    // Return and set a pixel. A tile's sample count is stored with its last pixel, so all pixels of
-    // a tile must be set, row by row. Rejected samples are counted by tile: At() returns them at
-    // its last pixel, and Set() adds those of other pixels.
+    // Returns a pixel; its `rejected` is 0, as those are counted by tile.
     FilmPixel At(const Vec2i& p) const;
-    void Set(const Vec2i& p, const FilmPixel&);
+    // Opens a rectangle of whole tiles with the same number of samples, to add as many to each of
+    // its pixels.
+    FilmTile Tile(const PixelRect& pixels);
 
     // Fills `view` with the means of `rect`, which lies inside Region(); `halfMean` is left empty
     // unless it is wanted. Throws std::logic_error if it is wanted and the film has no half.
@@ -100,39 +92,63 @@ class Film {
 
     // Returns the number, below TileCount(), of the tile that a pixel is in.
     size_t TileAt(const Vec2i& p) const {
-        return TileIndex(columns[size_t(p.x() - region.min.x())],
-                         rows[size_t(p.y() - region.min.y())]);
+        const Vec2i tile = TileOf(p);
+        return size_t(tile.y()) * size_t(tiles.Region().Width()) + size_t(tile.x());
     }
-    size_t TileCount() const { return tiles.size(); }
+    size_t TileCount() const { return tiles.Pixels().size(); }
+
+    // Calls visit(name, plane, part) for each plane that a film, which may be const, consists of;
+    // `part` is a rectangle of whole tiles, `pixels`, in the coordinates of the plane.
+    template <typename AnyFilm, typename Visit>
+    static void ForEachPlane(AnyFilm& film, const PixelRect& pixels, const Visit& visit) {
+        visit("tiles", film.tiles, film.TilesIn(pixels));
+        visit("sums", film.sums, pixels);
+        if (film.halfSums) visit("half_sums", *film.halfSums, pixels);
+    }
 
   private:
-    struct Tile {
-        uint32_t count = 0, rejected = 0;
+    friend class FilmTile;
+    struct TileSamples {
+        uint32_t count = 0;     // of each pixel
+        uint32_t rejected = 0;  // of all pixels
     };
-    // Says which tile along an axis a coordinate is in, and whether it is the last in that tile.
-    struct Place {
-        uint32_t tile;
-        bool isLast;
-    };
-    static std::vector<Place> PlacesOf(int size, const TileGrid&);
+    using Sums = PixelPlane<std::array<double, 3>>;
 
-    // Calls visit(index, tile) for every pixel.
+    // Calls visit(index, count) for every pixel, row by row.
     template <typename Visit>
     void ForEachPixel(Visit) const;
-    size_t Index(const Vec2i& p) const {
-        return size_t(p.y() - region.min.y()) * size_t(region.Width()) +
-               size_t(p.x() - region.min.x());
+    Vec2i TileOf(const Vec2i& p) const {
+        const Vec2i at = p - Region().min;
+        return {columns[size_t(at.x())], rows[size_t(at.y())]};
     }
-    size_t TileIndex(const Place& column, const Place& row) const {
-        return size_t(row.tile) * tilesInRow + column.tile;
+    PixelRect TilesIn(const PixelRect& pixels) const {
+        return {TileOf(pixels.min), TileOf(pixels.max - Vec2i(1, 1)) + Vec2i(1, 1)};
     }
 
-    PixelRect region;
-    bool hasHalf;
-    std::vector<Place> columns, rows;
-    size_t tilesInRow;
-    std::vector<Tile> tiles;
-    std::vector<std::array<double, 3>> sums, halfSums;
+    std::vector<int> columns, rows;  // of tiles: that of each column and row of pixels
+    PixelPlane<TileSamples> tiles;
+    Sums sums;
+    std::optional<Sums> halfSums;
+};
+
+// Takes the pixels of a tile further, in any order. When it ends, the tile has as many samples as
+// the pixels that were set, which are all.
+class FilmTile {
+  public:
+    FilmTile(Film* film, const PixelRect& pixels);
+    ~FilmTile();
+    FilmTile(const FilmTile&) = delete;
+    FilmTile& operator=(const FilmTile&) = delete;
+
+    // Returns a pixel, with the count that it had when the tile was opened.
+    FilmPixel At(const Vec2i& p) const { return film->At(p); }
+    // Sets its sums, and adds what was rejected since then to the tile's.
+    void Set(const Vec2i& p, const FilmPixel&);
+
+  private:
+    Film* film;
+    PixelRect tiles;
+    uint32_t count;
 };
 
 }  // namespace lull

@@ -1,25 +1,19 @@
-// What a render collects of its samples beside the film. Checkpoints, undo and messages between
-// ranks know it by the functions here alone.
+// What a render collects of its samples beside the film.
 #pragma once
 
 #include <functional>
 
 #include "renderer/film/aov_film.h"
 #include "renderer/film/feature_film.h"
+#include "renderer/film/film.h"
 #include "renderer/film/matte_film.h"
 #include "renderer/transport/path_tracer.h"
-#include "stopping/base/hdf5_file.h"
-#include "stopping/base/state.h"
 
 namespace lull {
 
 // As SampleSource, and says what the sample's path has met first.
 using AovSource =
     std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
-
-// Returns the scene as such a source of samples, the same ones as those of SamplesOf(), and for as
-// long.
-AovSource AovSamplesOf(const Scene&, PathOptions, const AovSet& wanted);
 
 struct Layers {
     // Of the film's region; null: not collected.
@@ -34,18 +28,30 @@ struct Layers {
         return (!aovs || aovs->Region() == region) && (!features || features->Region() == region) &&
                (!mattes || mattes->alpha.Region() == region);
     }
-    // Takes the next sample of a pixel and adds it to the layers, of which there are some.
-    PathSample Take(Sampler&, const Vec2i& pixel, uint32_t index) const;
+    // Adds sample `index` of a pixel, whose path met this first.
+    void Add(const Vec2i& pixel, uint32_t index, const FirstHit& hit, const Rgb& radiance) const {
+        if (aovs) aovs->At(pixel).Add(hit, radiance);
+        if (features) features->At(pixel).Add(hit, radiance, InHalf(index));
+        if (mattes) mattes->Add(pixel, hit, radiance);
+    }
 };
 
-// Append the pixels of a rectangle, and set them to what was appended; they do nothing where there
-// are no layers. GetLayers() throws std::runtime_error where the bytes end too early.
-void PutLayers(const Layers&, const PixelRect&, StateWriter*);
-void GetLayers(StateReader*, const PixelRect&, const Layers&);
+// Calls visit(name, plane, part) for each plane of a film, which may be const, and of the layers;
+// `part` is a rectangle of whole tiles, `pixels`, in the coordinates of the plane.
+template <typename AnyFilm, typename Visit>
+void ForEachPlane(AnyFilm& film, const Layers& layers, const PixelRect& pixels,
+                  const Visit& visit) {
+    Film::ForEachPlane(film, pixels, visit);
+    if (layers.aovs) visit("aovs", *layers.aovs, pixels);
+    if (layers.features) visit("features", *layers.features, pixels);
+    if (!layers.mattes) return;
+    visit("alpha", layers.mattes->alpha, pixels);
+    if (layers.mattes->crypto) visit("crypto", *layers.mattes->crypto, pixels);
+}
 
-// Write and read the pixels of a rectangle as arrays of a checkpoint, where there are layers. Throw
-// std::runtime_error; ReadLayers() also where the file has none.
-void WriteLayers(const Layers&, const PixelRect&, Hdf5Group*);
-void ReadLayers(const Hdf5Group&, const PixelRect&, const Layers&);
+// Append the pixels of whole tiles, and set them to what was appended for the same planes.
+// GetPlanes() throws std::runtime_error where the bytes end too early.
+void PutPlanes(const Film&, const Layers&, const PixelRect& pixels, StateWriter*);
+void GetPlanes(StateReader*, const PixelRect& pixels, Film*, const Layers&);
 
 }  // namespace lull

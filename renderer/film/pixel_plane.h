@@ -1,14 +1,25 @@
-// Holds sums of any kind beside a Film, pixel by pixel.
+// Sums of any kind, pixel by pixel.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
-#include "renderer/film/film.h"
+#include "renderer/base/math.h"
+#include "stopping/base/state.h"
 
 namespace lull {
 
-// Holds a Pixel, value-initialised, for each of a region. Different ones can be changed by
+// The pixels [min, max).
+struct PixelRect {
+    Vec2i min = {0, 0}, max = {0, 0};
+
+    int Width() const { return max.x() - min.x(); }
+    int Height() const { return max.y() - min.y(); }
+    int64_t Area() const { return int64_t(Width()) * Height(); }
+    bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
+};
+
+// A Pixel, value-initialised, for each of a region. Different ones can be changed by
 // different threads at the same time.
 template <typename Pixel>
 class PixelPlane {
@@ -19,21 +30,20 @@ class PixelPlane {
     const PixelRect& Region() const { return region; }
     Pixel& At(const Vec2i& p) { return pixels[Index(p)]; }
     const Pixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
-    const std::vector<Pixel>& Pixels() const { return pixels; }
+    const std::vector<Pixel>& Pixels() const { return pixels; }  // row by row
 
-    // Returns the pixels of a rectangle, row by row, and sets them.
-    std::vector<Pixel> Copy(const PixelRect& rect) const {
-        std::vector<Pixel> copy;
-        for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-            const Pixel* row = &At({rect.min.x(), y});
-            copy.insert(copy.end(), row, row + rect.Width());
-        }
-        return copy;
-    }
-    void Set(const std::vector<Pixel>& from, const PixelRect& rect) {
+    // Appends the pixels of a rectangle inside the region as bytes, row by row.
+    void Put(const PixelRect& rect, StateWriter* writer) const {
         for (int y = rect.min.y(); y < rect.max.y(); ++y)
-            std::copy_n(&from[size_t(y - rect.min.y()) * size_t(rect.Width())], rect.Width(),
-                        &At({rect.min.x(), y}));
+            writer->PutAll(std::span(&At({rect.min.x(), y}), size_t(rect.Width())));
+    }
+    // Returns how many bytes that takes.
+    static int64_t Bytes(const PixelRect& rect) { return rect.Area() * int64_t(sizeof(Pixel)); }
+    // Sets them to what Put() has appended. Throws std::runtime_error where the bytes end too
+    // early.
+    void Get(const PixelRect& rect, StateReader* reader) {
+        for (int y = rect.min.y(); y < rect.max.y(); ++y)
+            reader->GetAll(std::span(&At({rect.min.x(), y}), size_t(rect.Width())));
     }
 
   private:

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string_view>
 
 #include "renderer/files/file_io.h"
+#include "renderer/render/block_judge_internal.h"
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
@@ -15,7 +17,7 @@ namespace lull {
 
 namespace {
 
-constexpr const char* kFormat = "lull checkpoint 1";
+constexpr std::string_view kFormat = "lull checkpoint 2", kOlderFormat = "lull checkpoint 1";
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
@@ -63,65 +65,47 @@ BlockResult UnpackBooks(std::span<const std::byte> bytes) {
     return result;
 }
 
-// Calls visit(place) for the pixels of a rectangle, row by row.
-template <typename Visit>
-void ForEachPixel(const PixelRect& rect, Visit visit) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y)
-        for (int x = rect.min.x(); x < rect.max.x(); ++x) visit(Vec2i(x, y));
+void AddBytes(Hdf5Group& group, const std::string& name, std::span<const std::byte> bytes) {
+    group.AddArray<std::byte>(name, std::array{int64_t(bytes.size())}, bytes);
 }
 
-void WritePixels(Hdf5Group& group, const PixelRect& rect, const Film& film) {
-    std::vector<double> sums, halfSums;
-    std::vector<int32_t> counts, rejected;
-    ForEachPixel(rect, [&](const Vec2i& p) {
-        const FilmPixel pixel = film.At(p);
-        sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
-        if (film.HasHalf())
-            halfSums.insert(halfSums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
-        counts.push_back(int32_t(pixel.count));
-        rejected.push_back(int32_t(pixel.rejected));
-    });
-    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
-    group.AddArray<double>("sum", shape, sums);
-    if (film.HasHalf()) group.AddArray<double>("half_sum", shape, halfSums);
-    group.AddArray<int32_t>("count", std::span(shape).first(2), counts);
-    group.AddArray<int32_t>("rejected", std::span(shape).first(2), rejected);
+std::vector<std::byte> BytesOf(const Hdf5Group& group, const std::string& name) {
+    return group.Array<std::byte>(name, group.Shape(name));
 }
 
-void ReadPixels(const Hdf5Group& group, const PixelRect& rect, Film* film) {
-    const std::array<int64_t, 3> shape = {rect.Height(), rect.Width(), 3};
-    if (film->HasHalf() && !group.HasArray("half_sum"))
+void WritePlanes(Hdf5Group group, const PixelRect& rect, const Film& film, const Layers& layers) {
+    ForEachPlane(film, layers, rect,
+                 [&](const char* name, const auto& plane, const PixelRect& part) {
+                     StateWriter writer;
+                     plane.Put(part, &writer);
+                     AddBytes(group, name, writer.bytes);
+                 });
+}
+
+void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film, const Layers& layers) {
+    const PixelRect& all = film->Region();
+    if ((rect.min.array() < all.min.array()).any() || (rect.max.array() > all.max.array()).any() ||
+        (rect.min.array() >= rect.max.array()).any())
+        throw Error("it has pixels outside the image");
+    if (film->HasHalf() && !group.HasArray("half_sums"))
         throw Error(
             "it was written without the sums of the half of the samples, which are needed here; "
             "begin anew, with --half-buffer on");
-    const auto sums = group.Array<double>("sum", shape);
-    const auto halfSums =
-        film->HasHalf() ? group.Array<double>("half_sum", shape) : std::vector<double>();
-    const auto counts = group.Array<int32_t>("count", std::span(shape).first(2));
-    const auto rejected = group.Array<int32_t>("rejected", std::span(shape).first(2));
-    size_t i = 0;
-    ForEachPixel(rect, [&](const Vec2i& p) {
-        FilmPixel pixel;
-        std::copy_n(&sums[3 * i], 3, pixel.sum.begin());
-        if (film->HasHalf()) std::copy_n(&halfSums[3 * i], 3, pixel.halfSum.begin());
-        if (counts[i] < 0 || rejected[i] < 0 || rejected[i] > counts[i])
-            throw Error("it has impossible counts of samples");
-        pixel.count = uint32_t(counts[i]);
-        pixel.rejected = uint32_t(rejected[i]);
-        film->Set(p, pixel);
-        ++i;
+    ForEachPlane(*film, layers, rect, [&](const char* name, auto& plane, const PixelRect& part) {
+        const auto bytes = group.Array<std::byte>(name, std::array{plane.Bytes(part)});
+        StateReader reader(bytes);
+        plane.Get(part, &reader);
     });
-    i = 0;
-    ForEachPixel(rect, [&](const Vec2i& p) {
-        if (film->At(p).count != uint32_t(counts[i++]))
-            throw Error("the pixels of a tile have different counts of samples");
-    });
+    if (MostSamples(rect, *film) < 0) throw Error("it has impossible counts of samples");
 }
 
-bool HasSamples(const Film& film, const PixelRect& rect) {
-    bool any = false;
-    ForEachPixel(rect, [&](const Vec2i& p) { any |= film.At(p).count > 0; });
-    return any;
+void CheckFormat(const Hdf5Group& root) {
+    const std::string format = root.HasAttribute("format") ? root.String("format") : "";
+    if (format == kOlderFormat)
+        throw Error(
+            "it was written by an older lull; go on with that one, or remove the file to begin "
+            "anew");
+    if (format != kFormat) throw Error("it is no checkpoint of this version of the program");
 }
 
 std::vector<std::string> Lines(const RenderIdentity& identity) {
@@ -221,22 +205,16 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
                      const RenderState& state, const Film& film, const Layers& layers,
                      std::span<const std::byte> guide) try {
     Hdf5Group root = Hdf5Group::CreateInMemory();
-    root.SetString("format", kFormat);
+    root.SetString("format", std::string(kFormat));
     root.SetStrings("identity", Lines(identity));
     root.AddArray<double>("seconds", std::array<int64_t, 1>{1}, std::array{state.seconds});
-    if (!guide.empty()) root.AddArray<std::byte>("guide", std::array{int64_t(guide.size())}, guide);
+    if (!guide.empty()) AddBytes(root, "guide", guide);
     for (size_t i = 0; i < state.blocks.size(); ++i) {
         Hdf5Group group = root.MakeGroup(GroupName(i));
-        const auto addBytes = [&](const char* name, const std::vector<std::byte>& bytes) {
-            group.AddArray<std::byte>(name, std::array{int64_t(bytes.size())}, bytes);
-        };
-        addBytes("books", PackBooks(state.blocks[i]));
-        addBytes("criterion", state.criteria[i]);
+        AddBytes(group, "books", PackBooks(state.blocks[i]));
+        AddBytes(group, "criterion", state.criteria[i]);
         const PixelRect& rect = state.blocks[i].block.pixels;
-        if (!HasSamples(film, rect)) continue;
-        Hdf5Group pixels = group.MakeGroup("pixels");
-        WritePixels(pixels, rect, film);
-        WriteLayers(layers, rect, &pixels);
+        if (MostSamples(rect, film) > 0) WritePlanes(group.MakeGroup("pixels"), rect, film, layers);
     }
     std::vector<std::byte> bytes = root.Image();
     Seal(&bytes);
@@ -252,28 +230,18 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
                            MayDiffer mayDiffer) try {
     CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
-    if (!root.HasAttribute("format") || root.String("format") != kFormat)
-        throw Error("it is no checkpoint of this version of the program");
+    CheckFormat(root);
     const RenderIdentity found = ParseIdentity(root.Strings("identity"));
     CheckIdentity(found, identity, mayDiffer);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
-    if (guide && root.HasArray("guide"))
-        *guide = root.Array<std::byte>("guide", root.Shape("guide"));
+    if (guide && root.HasArray("guide")) *guide = BytesOf(root, "guide");
     for (size_t i = 0; root.HasGroup(GroupName(i)); ++i) {
         const Hdf5Group group = root.Group(GroupName(i));
-        const auto bytes = [&](const char* name) {
-            return group.Array<std::byte>(name, group.Shape(name));
-        };
-        state.blocks.push_back(UnpackBooks(bytes("books")));
-        state.criteria.push_back(bytes("criterion"));
-        if (!group.HasGroup("pixels")) continue;
-        const PixelRect &rect = state.blocks.back().block.pixels, &all = film->Region();
-        if ((rect.min.array() < all.min.array()).any() ||
-            (rect.max.array() > all.max.array()).any())
-            throw Error("it has pixels outside the image");
-        ReadPixels(group.Group("pixels"), rect, film);
-        ReadLayers(group.Group("pixels"), rect, layers);
+        state.blocks.push_back(UnpackBooks(BytesOf(group, "books")));
+        state.criteria.push_back(BytesOf(group, "criterion"));
+        if (group.HasGroup("pixels"))
+            ReadPlanes(group.Group("pixels"), state.blocks.back().block.pixels, film, layers);
     }
     if (mayDiffer == MayDiffer::Stops) GoOnTo(identity, found, &state);
     return state;

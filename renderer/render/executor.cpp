@@ -18,10 +18,11 @@ template <typename Source>
 int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film* film,
                    SampleSpread* spread) {
     int64_t samples = 0;
+    FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
         for (int x = tile.pixels.min.x(); x < tile.pixels.max.x(); ++x) {
             const Vec2i pixel(x, y);
-            FilmPixel sums = film->At(pixel);
+            FilmPixel sums = pixels.At(pixel);
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             double sum = 0, squares = 0;  // of luminance
             for (uint32_t k = first; k < end; ++k) {
@@ -35,7 +36,7 @@ int64_t RenderTile(const Source& source, const Tile& tile, Sampler sampler, Film
                 spread->vertices += sample.vertices;
                 ++spread->samples;
             }
-            film->Set(pixel, sums);
+            pixels.Set(pixel, sums);
             if (spread && end > first) {
                 spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
                 spread->freedom += end - first - 1;
@@ -126,7 +127,10 @@ int64_t Executor::TakeSamples(const Tile& tile) {
         options.learner ? options.learner->SpreadOf(*film, tile.pixels) : nullptr;
     if (!options.layers) return RenderTile(source, tile, sampler, film, spread);
     const auto withLayers = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-        return options.layers.Take(s, pixel, index);
+        FirstHit hit;
+        const PathSample sample = options.layers.source(s, pixel, index, &hit);
+        options.layers.Add(pixel, index, hit, sample.radiance);
+        return sample;
     };
     return RenderTile(withLayers, tile, sampler, film, spread);
 }

@@ -5,6 +5,7 @@
 
 #include "renderer/denoise/denoise.h"
 #include "renderer/film/feature_film.h"
+#include "renderer/film/film.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {

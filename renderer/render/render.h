@@ -124,6 +124,9 @@ RenderResult Render(const SampleSource&, const RenderOptions&, Film*,
 SampleSource SamplesOf(const Scene&, const PathOptions&);
 // The same, traced as the learner says at the time, which must outlive it too.
 SampleSource SamplesOf(const Scene&, const GuideLearner&);
+
+// Return the same samples with what they have met first, as far as layers that are wanted need it.
+AovSource AovSamplesOf(const Scene&, PathOptions, const AovSet& wanted);
 AovSource AovSamplesOf(const Scene&, const GuideLearner&, const AovSet& wanted);
 
 }  // namespace lull

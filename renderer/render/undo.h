@@ -23,16 +23,9 @@ class PassUndo {
   private:
     struct Pixels {
         std::vector<PixelRect> tiles;
-        std::vector<FilmPixel> values;  // tile by tile, each row by row
-        std::vector<std::byte> layers;  // the same, by PutLayers()
+        std::vector<std::byte> planes;  // tile by tile, by PutPlanes()
     };
     std::map<int, Pixels> kept;
 };
-
-// Appends the pixels of a rectangle, row by row.
-void CopyPixels(const Film&, const PixelRect&, std::vector<FilmPixel>* to);
-// Sets the pixels of a rectangle, row by row, which are whole tiles; returns what comes after those
-// in `from`.
-const FilmPixel* SetPixels(const FilmPixel* from, const PixelRect&, Film*);
 
 }  // namespace lull

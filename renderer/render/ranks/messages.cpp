@@ -1,5 +1,4 @@
 #include "renderer/render/ranks/messages.h"
-#include "renderer/render/undo.h"
 
 namespace lull {
 
@@ -75,23 +74,7 @@ std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles
                                   const Layers& layers) {
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
-    std::vector<FilmPixel> pixels;
-    std::vector<double> sums;
-    for (const PixelRect& tile : tiles) {
-        pixels.clear();
-        CopyPixels(film, tile, &pixels);
-        sums.clear();
-        uint32_t rejected = 0;
-        for (const FilmPixel& pixel : pixels) {
-            sums.insert(sums.end(), pixel.sum.begin(), pixel.sum.end());
-            if (film.HasHalf()) sums.insert(sums.end(), pixel.halfSum.begin(), pixel.halfSum.end());
-            rejected += pixel.rejected;
-        }
-        writer.Put(pixels.back().count);
-        writer.Put(rejected);
-        writer.PutAll(std::span<const double>(sums));
-        PutLayers(layers, tile, &writer);
-    }
+    for (const PixelRect& tile : tiles) PutPlanes(film, layers, tile, &writer);
     return std::move(writer.bytes);
 }
 
@@ -138,18 +121,7 @@ int GetBlock(StateReader& reader, size_t blocks) {
 
 void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
                const Layers& layers) {
-    for (const PixelRect& tile : tiles) {
-        std::vector<FilmPixel> pixels(size_t(tile.Area()));
-        const auto count = reader.Get<uint32_t>();
-        pixels.back().rejected = reader.Get<uint32_t>();
-        for (FilmPixel& pixel : pixels) {
-            pixel.count = count;
-            reader.GetAll(std::span<double>(pixel.sum));
-            if (film->HasHalf()) reader.GetAll(std::span<double>(pixel.halfSum));
-        }
-        SetPixels(pixels.data(), tile, film);
-        GetLayers(&reader, tile, layers);
-    }
+    for (const PixelRect& tile : tiles) GetPlanes(&reader, tile, film, layers);
     reader.Finish();
 }
 

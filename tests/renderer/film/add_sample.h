@@ -1,4 +1,4 @@
-// Adds samples to films in tests.
+// Adds samples to films in tests, whose tiles are single pixels.
 #pragma once
 
 #include "renderer/film/film.h"
@@ -6,9 +6,10 @@
 namespace lull {
 
 inline void AddTo(Film* film, const Vec2i& p, const Rgb& radiance, bool rejected = false) {
-    FilmPixel pixel = film->At(p);
+    FilmTile tile = film->Tile({p, p + Vec2i(1, 1)});
+    FilmPixel pixel = tile.At(p);
     pixel.Add(radiance, rejected);
-    film->Set(p, pixel);
+    tile.Set(p, pixel);
 }
 
 }  // namespace lull

@@ -128,22 +128,5 @@ TEST(AovFilm, NoiseIsTheStandardErrorInLightness) {
     }
 }
 
-TEST(AovFilm, CopiesAndSetsRectangles) {
-    AovFilm from({{0, 0}, {5, 4}}, ParseAovs("depth")), to({{0, 0}, {5, 4}}, ParseAovs("depth"));
-    for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 5; ++x) from.At({x, y}).depth = 10 * y + x;
-    std::vector<AovPixel> pixels;
-    const PixelRect a = {{1, 1}, {3, 3}}, b = {{4, 0}, {5, 4}};
-    from.Copy(a, &pixels);
-    from.Copy(b, &pixels);
-    ASSERT_EQ(pixels.size(), 8u);
-    to.Set(to.Set(pixels.data(), a), b);
-    for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 5; ++x) {
-            const bool copied = x == 4 || (x >= 1 && x < 3 && y >= 1 && y < 3);
-            EXPECT_EQ(to.At({x, y}).depth, copied ? 10 * y + x : 0);
-        }
-}
-
 }  // namespace
 }  // namespace lull

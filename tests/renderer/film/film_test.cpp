@@ -113,13 +113,14 @@ void AddByTiles(Film* film, const TileGrid& grid, int samples) {
     };
     forEachPart(all, grid.blockSize, [&](const PixelRect& block) {
         forEachPart(block, grid.tileSize, [&](const PixelRect& tile) {
+            FilmTile pixels = film->Tile(tile);
             forEachPart(tile, 1, [&](const PixelRect& pixel) {
-                FilmPixel sums = film->At(pixel.min);
+                FilmPixel sums = pixels.At(pixel.min);
                 const uint32_t end = sums.count + uint32_t(samples);
                 while (sums.count < end)
                     sums.Add(Rgb(float(pixel.min.x()), float(pixel.min.y()), float(sums.count)),
                              (pixel.min.x() + pixel.min.y()) % 3 == 0);
-                film->Set(pixel.min, sums);
+                pixels.Set(pixel.min, sums);
             });
         });
     });
@@ -146,6 +147,28 @@ TEST(Film, KeepsTheSameByTiles) {
         EXPECT_EQ(byTile.MeanImage(), byPixel.MeanImage());
         EXPECT_EQ(byTile.SppImage(), byPixel.SppImage());
     }
+}
+
+TEST(Film, TakesThePixelsOfATileInAnyOrder) {
+    const PixelRect region{{0, 0}, {6, 6}}, second{{4, 0}, {6, 4}};
+    const std::vector<Vec2i> places = {{5, 3}, {4, 0}, {4, 2}, {5, 1},
+                                       {4, 1}, {5, 0}, {4, 3}, {5, 2}};
+    Film film(region, {.grid = {.blockSize = 6, .tileSize = 4}});
+    for (const uint32_t end : {3u, 5u}) {
+        FilmTile tile = film.Tile(second);
+        for (const Vec2i& p : places) {
+            FilmPixel pixel = tile.At(p);
+            EXPECT_EQ(pixel.count, end == 3 ? 0u : 3u);  // though others have more already
+            while (pixel.count < end) pixel.Add(Rgb(float(p.x()), float(p.y()), 1), p.x() == 4);
+            tile.Set(p, pixel);
+        }
+    }
+    EXPECT_EQ(film.RejectedCount(), 4 * 5);
+    EXPECT_EQ(film.SampleCount(), 8 * 5);
+    for (const Vec2i& p : places)
+        EXPECT_EQ(film.At(p).sum, (std::array<double, 3>{5. * p.x(), 5. * p.y(), 5}));
+    EXPECT_EQ(film.At({3, 0}).count, 0u);
+    EXPECT_EQ(film.At({4, 4}).count, 0u);
 }
 
 TEST(Film, LeavesOutTheHalfWhereItIsNotWanted) {

@@ -35,16 +35,5 @@ TEST(MatteFilm, SharesPixelsAmongObjects) {
     EXPECT_EQ(pixel.objects.back().number, 105u);
 }
 
-TEST(MatteFilm, CopiesRectangles) {
-    MatteFilm film({{2, 3}, {5, 6}}, true), other({{2, 3}, {5, 6}}, true);
-    film.Add({3, 4}, HitOf(5), Rgb::Zero());
-    film.Add({4, 5}, HitOf(6), Rgb::Zero());
-    const PixelRect part = {{3, 4}, {5, 6}};
-    other.alpha.Set(film.alpha.Copy(part), part);
-    other.crypto->Set(film.crypto->Copy(part), part);
-    EXPECT_EQ(other.alpha.Pixels(), film.alpha.Pixels());
-    EXPECT_EQ(other.crypto->Pixels(), film.crypto->Pixels());
-}
-
 }  // namespace
 }  // namespace lull

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <random>
 
+#include "stopping/base/checksum.h"
+#include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -183,6 +185,35 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
     EXPECT_EQ(again.MeanImage(), whole.MeanImage());
     EXPECT_TRUE(
         Contains(ErrorOf([&] { ReadCheckpoint(path, kIdentity, &whole); }), "--half-buffer on"));
+}
+
+TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
+    const TemporaryDirectory directory;
+    const auto fileOf = [&](const char* format) {
+        Hdf5Group root = Hdf5Group::CreateInMemory();
+        root.SetString("format", format);
+        std::vector<std::byte> bytes = root.Image();
+        Seal(&bytes);
+        return directory.Write("c.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    };
+    Film film(kRegion);
+    const auto errorOf = [&](const std::string& path) {
+        return ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
+    };
+    const std::string path = fileOf("lull checkpoint 1"), error = errorOf(path);
+    EXPECT_TRUE(Contains(error, path + ": it was written by an older lull; ")) << error;
+    EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is no checkpoint"));
+}
+
+// Sizes are checked before anything is read, whoever has sealed the file.
+TEST(Checkpoint, RefusesPlanesOfAnotherSize) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.checkpoint");
+    WriteSmallCheckpoint(path);
+    Film film(kRegion, {.grid = {.blockSize = 50, .tileSize = 8}});
+    const std::string error = ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
+    EXPECT_TRUE(Contains(error, path)) << error;
+    EXPECT_TRUE(Contains(error, "'tiles': it does not have the shape 392")) << error;
 }
 
 TEST(Checkpoint, RefusesDamagedFiles) {

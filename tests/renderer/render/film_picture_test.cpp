@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/film/layers.h"
+#include "renderer/render/checkpoint.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
@@ -34,16 +35,9 @@ struct FeatureRender {
     }
 };
 
-bool SameFeatures(const FeatureFilm& a, const FeatureFilm& b) {
-    for (int y = kPictureRegion.min.y(); y < kPictureRegion.max.y(); ++y)
-        for (int x = kPictureRegion.min.x(); x < kPictureRegion.max.x(); ++x)
-            if (!(a.At({x, y}) == b.At({x, y}))) return false;
-    return true;
-}
-
 TEST(FeatureFilm, IsTheSameForAnyThreads) {
     const FeatureRender one(1), three(3);
-    EXPECT_TRUE(SameFeatures(one.features, three.features));
+    EXPECT_EQ(one.features.Pixels(), three.features.Pixels());
     // The film beside it is what it is without.
     Film film(kPictureRegion);
     RenderOptions options;
@@ -55,24 +49,22 @@ TEST(FeatureFilm, IsTheSameForAnyThreads) {
     EXPECT_TRUE(SamePixels(one.film, film));
 }
 
-TEST(FeatureFilm, GoesThroughStatesAndCheckpoints) {
+TEST(FeatureFilm, GoesThroughCheckpoints) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("c.h5");
     FeatureRender render(1);
-    const Layers from{.features = &render.features};
-    FeatureFilm sent(kPictureRegion), filed(kPictureRegion), none(kPictureRegion);
+    RenderState state;
+    state.blocks.push_back({.block = {.pixels = kPictureRegion}, .decisions = {}});
+    state.criteria.resize(1);
+    WriteCheckpoint(path, {}, state, render.film, {.features = &render.features});
+    Film film(kPictureRegion);
+    FeatureFilm features(kPictureRegion);
+    ReadCheckpoint(path, {}, &film, {.features = &features});
+    EXPECT_TRUE(SamePixels(film, render.film));
+    EXPECT_EQ(features.Pixels(), render.features.Pixels());
 
-    StateWriter writer;
-    PutLayers(from, kPictureRegion, &writer);
-    StateReader reader(writer.bytes);
-    GetLayers(&reader, kPictureRegion, {.features = &sent});
-    EXPECT_TRUE(SameFeatures(sent, render.features));
-
-    Hdf5Group group = Hdf5Group::CreateInMemory();
-    WriteLayers(from, kPictureRegion, &group);
-    ReadLayers(group, kPictureRegion, {.features = &filed});
-    EXPECT_TRUE(SameFeatures(filed, render.features));
-    EXPECT_FALSE(SameFeatures(none, render.features));
-    EXPECT_THROW(ReadLayers(Hdf5Group::CreateInMemory(), kPictureRegion, {.features = &filed}),
-                 std::runtime_error);
+    WriteCheckpoint(path, {}, state, render.film);
+    EXPECT_THROW(ReadCheckpoint(path, {}, &film, {.features = &features}), Error);
 }
 
 TEST(PictureOf, HasBothHalvesOfTheMean) {

@@ -68,7 +68,7 @@ TEST(GuideTally, TellsNoiseInLightness) {
         for (int x = 0; x < 32; ++x) {
             FilmPixel pixel;
             pixel.Add(x < 16 ? Rgb(0.5f, 0.5f, 0.5f) : Rgb(2, 2, 2), false);  // which is white
-            film.Set({x, y}, pixel);
+            film.Tile(film.Region()).Set({x, y}, pixel);
         }
     GuideTally tally;
     tally.unguided.assign(film.TileCount(),
