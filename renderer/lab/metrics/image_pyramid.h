@@ -1,0 +1,23 @@
+// Halves and doubles images, as a Laplacian pyramid needs it.
+#pragma once
+
+#include <vector>
+
+namespace lull {
+
+// Holds a value at each pixel, row by row.
+struct Plane {
+    int width = 0, height = 0;
+    std::vector<float> values;
+};
+
+// Returns the image at half the resolution, rounded up, with the kernel (1, 5, 8, 5, 1) / 20 and
+// its border mirrored: Burt, Adelson: The Laplacian Pyramid as a Compact Image Code, IEEE
+// Transactions on Communications 31(4), 1983, with a = 0.4. Pixel (x, y) is centred where pixel
+// (2 x, 2 y) was.
+Plane Reduce(const Plane&);
+
+// Interpolates back to `width` x `height`, of which the image is what Reduce() returns the size of.
+Plane Expand(const Plane&, int width, int height);
+
+}  // namespace lull

@@ -1,0 +1,51 @@
+// Predicts where a person sees that two still pictures differ, from published vision science.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "renderer/film/film.h"
+#include "renderer/lab/metrics/contrast_sensitivity.h"
+#include "renderer/lab/metrics/display_model.h"
+#include "renderer/lab/metrics/image_pyramid.h"
+
+namespace lull {
+
+// Holds how visible the difference is in one band of spatial frequencies: for each opponent channel
+// a value at each place, 0 where there is none and about 1 where a pattern is just seen. The
+// planes are Reduce()d `level` times.
+struct VisibleBand {
+    double frequency = 0;  // cycles per degree
+    int level = 0;
+    std::array<Plane, kOpponentChannels> difference;
+};
+
+// From fine to coarse; the last band is what is left of the pyramid.
+struct VisibleDifference {
+    int width = 0, height = 0;  // of the pictures
+    std::vector<VisibleBand> bands;
+};
+
+// Compares two pictures of linear RGB (row-major triples), as ColorVideoVDP compares still ones:
+// Mantiuk, Hanji, Ashraf, Asano, Chapiro: ColorVideoVDP: A visual difference predictor for image,
+// video and display distortions, ACM TOG 43(4), 2024, with the constants of its version 0.5.6.
+// Sensitivity is that of castleCSF itself. The pictures are looked at on a display; beyond what it
+// shows, values are clamped, and NaN is black. Throws Error if sizes do not fit.
+VisibleDifference FindVisibleDifference(std::span<const float> image,
+                                        std::span<const float> reference, int width, int height,
+                                        const DisplayModel&);
+
+// Returns the visible difference of a part of the picture, in pixels; not empty. This is the
+// paper's Q: 0 where both are the same; a grating at threshold has 0.2 to 2.
+double Pool(const VisibleDifference&, const PixelRect&);
+double Pool(const VisibleDifference&);
+
+// Returns the visible difference at each pixel, in units of Pool().
+std::vector<float> VisibleMap(const VisibleDifference&);
+
+// Returns the quality of the paper's scale for a pooled difference: 10 where none is seen, and one
+// less where three in four people prefer the reference (just-objectionable differences, JOD).
+double Quality(double pooled);
+
+}  // namespace lull
