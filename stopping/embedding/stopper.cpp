@@ -146,6 +146,14 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
         Require(judge.answer.stop || spp > judge.answer.spp,
                 "spp must increase: a picture at " + std::to_string(spp) + " spp after one at " +
                     std::to_string(judge.answer.spp));
+    PictureValues values;
+    for (int i = 0; i < int(judges.size()); ++i)
+        values.Add(CheckValues(i, picture, grid.blocks[size_t(i)], spp));
+    // What is left of a picture once blocks have stopped may be its brightest part.
+    if (std::ranges::none_of(judges, [](const Judge& j) { return j.answer.stop == 1; })) {
+        const std::string fault = FaultOfExposure(values);
+        Require(fault.empty(), fault);
+    }
     // Isolated: this thread has all locks, and must not take up a task that waits for one.
     tbb::this_task_arena::isolate([&] {
         ForEachIndex(int(judges.size()),
@@ -165,8 +173,22 @@ lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int sp
     Require(answer.stop || spp > answer.spp, "spp must increase: block " + std::to_string(block) +
                                                  " was shown at " + std::to_string(answer.spp) +
                                                  " spp, and now at " + std::to_string(spp));
-    Look(block, picture, {0, 0, rect.width, rect.height}, spp);
+    const lull_rect whole{0, 0, rect.width, rect.height};
+    CheckValues(block, picture, whole, spp);
+    Look(block, picture, whole, spp);
     return answer;
+}
+
+// Returns the values of a block's mean; none if it is not going to be looked at.
+PictureValues Stopper::CheckValues(int block, const lull_picture& picture, const lull_rect& part,
+                                   int spp) const {
+    const Judge& judge = judges[size_t(block)];
+    if (judge.answer.stop || judge.criterion->Need(spp) == ViewNeed::Nothing) return {};
+    const PictureValues values = ValuesOf(picture, picture.mean, part);
+    std::string fault = FaultOfValues(values);
+    if (fault.empty() && picture.half) fault = FaultOfValues(ValuesOf(picture, picture.half, part));
+    Require(fault.empty(), "block " + std::to_string(block) + ": " + fault);
+    return values;
 }
 
 void Stopper::Look(int block, const lull_picture& picture, const lull_rect& part, int spp) {
