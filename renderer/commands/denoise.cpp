@@ -7,6 +7,7 @@
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
+#include "renderer/denoise/dependence.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoiser_channels.h"
@@ -63,9 +64,12 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
 
 // Throws where nothing says what is noise.
 void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
-    if (!options.half.empty() && picture.colour.a.values == picture.colour.b.values)
-        throw Error(options.half + ": it has the same pixels as " + options.input +
-                    "; render once more, with another --seed");
+    if (!options.half.empty()) {
+        const std::string dependence = DependenceOf(picture.colour);
+        if (!dependence.empty())
+            throw Error(
+                fmt::format("{} and {}: {} (--seed)", options.input, options.half, dependence));
+    }
     const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
     if (spp && std::ranges::min(spp->values) < float(leastDenoisedSpp))
         throw Error(

@@ -21,23 +21,27 @@ namespace {
 constexpr int kLeastRest =
     40;  // pixels; less at the right and at the bottom is no block of its own
 
+constexpr const char* kColourName = "a or b";
+
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
 // Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
-Floats ToFloats(const py::array& array, const char* name, int channels, py::ssize_t height,
+Floats ToFloats(const py::array& array, const std::string& name, int channels, py::ssize_t height,
                 py::ssize_t width) {
     const bool isFlat = channels == 1 && array.ndim() == 2;
     if (!(isFlat || array.ndim() == 3) || array.shape(0) != height || array.shape(1) != width ||
         (!isFlat && array.shape(2) < channels))
-        throw py::value_error(std::string(name) + " has the shape " + ShapeOf(array) +
-                              "; needed are " + std::to_string(height) + " x " +
-                              std::to_string(width) + " x " + std::to_string(channels));
+        throw py::value_error(name + " has the shape " + ShapeOf(array) + "; needed are " +
+                              std::to_string(height) + " x " + std::to_string(width) + " x " +
+                              std::to_string(channels));
     if (array.dtype().kind() != 'f')
-        throw py::value_error(std::string(name) + " has the type " +
-                              py::str(array.dtype()).cast<std::string>() +
+        throw py::value_error(name + " has the type " + py::str(array.dtype()).cast<std::string>() +
                               "; linear floats are needed");
     const py::array wanted = isFlat ? array : FirstChannels(array, channels);
-    if (channels == 3) WarnOfValues(wanted, name);  // depths may be infinite
+    if (name == kColourName)
+        WarnOfColours(wanted, name);
+    else if (channels == 3)
+        WarnOfValues(wanted, name);  // depths may be infinite
     return Floats(wanted);
 }
 
@@ -106,7 +110,7 @@ Denoised Denoise(const py::array& a, const py::array& b, const py::object& albed
         throw py::value_error("blocks of " + std::to_string(block) + " pixels; at least " +
                               std::to_string(kLeastRest) + " are needed");
     const py::ssize_t height = a.shape(0), width = a.shape(1);
-    const Halves colour(a, b, "a or b", 3, height, width);
+    const Halves colour(a, b, kColourName, 3, height, width);
     const auto albedos = Halves::Read(albedo, "albedo", 3, height, width),
                normals = Halves::Read(normal, "normal", 3, height, width),
                depths = Halves::Read(depth, "depth", 1, height, width);

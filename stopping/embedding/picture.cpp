@@ -24,9 +24,14 @@ struct LinearTable {
 };
 
 // Values need not be aligned: strides are in bytes.
-float FromFloat(const std::byte* at) {
+float AsItIs(const std::byte* at) {
     float value;
     std::memcpy(&value, at, sizeof(value));
+    return value;
+}
+
+float FromFloat(const std::byte* at) {
+    const float value = AsItIs(at);
     return std::isfinite(value) ? value : 0;
 }
 
@@ -87,6 +92,15 @@ std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
     const Strides strides = StridesOf(picture);
     return picture.format == LULL_SRGB8 ? ReadWith(FromSrgb8, strides, bytes, part)
                                         : ReadWith(FromFloat, strides, bytes, part);
+}
+
+PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part) {
+    PictureValues values;
+    if (picture.format == LULL_SRGB8) return values;
+    const std::vector<float> rgb =
+        ReadWith(AsItIs, StridesOf(picture), static_cast<const std::byte*>(origin), part);
+    for (size_t i = 0; i < rgb.size(); i += 3) values.Add(rgb[i], rgb[i + 1], rgb[i + 2]);
+    return values;
 }
 
 }  // namespace lull

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lull/stopping.h"
+#include "stopping/signals/picture_values.h"
 
 namespace lull {
 
@@ -16,5 +17,9 @@ void CheckPicture(const lull_picture& picture, int width, int height, bool needs
 // range that is rounded to them, so that EncodeSrgb8() returns the same codes.
 std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
                               const lull_rect& part);
+
+// Counts the values of a part of a picture that begins at `origin`. None of 8-bit codes, all of
+// which are possible.
+PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part);
 
 }  // namespace lull

@@ -154,6 +154,14 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
         Require(!state.criterion || state.answer.stop || spp > state.answer.spp,
                 "spp must increase: a picture at " + std::to_string(spp) + " spp after one at " +
                     std::to_string(state.answer.spp));
+    PictureValues values;
+    for (int i = 0; i < int(states.size()); ++i)
+        if (states[size_t(i)].criterion) values.Add(CheckValues(i, picture, RectOf(i), spp));
+    // What is left of a picture once blocks have stopped may be its brightest part.
+    if (std::ranges::none_of(states, [](const BlockState& s) { return s.answer.stop == 1; })) {
+        const std::string fault = FaultOfExposure(values);
+        Require(fault.empty(), fault);
+    }
     // Isolated: this thread has all locks, and must not take up a task that waits for one.
     tbb::this_task_arena::isolate([&] {
         ForEachIndex(int(states.size()), [&](int i) {
@@ -175,8 +183,22 @@ lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int sp
     Require(answer.stop || spp > answer.spp, "spp must increase: block " + std::to_string(block) +
                                                  " was shown at " + std::to_string(answer.spp) +
                                                  " spp, and now at " + std::to_string(spp));
-    Check(block, picture, {0, 0, rect.width, rect.height}, spp);
+    const lull_rect whole{0, 0, rect.width, rect.height};
+    CheckValues(block, picture, whole, spp);
+    Check(block, picture, whole, spp);
     return answer;
+}
+
+// Returns the values of a block's mean; none if no check is due.
+PictureValues Stopper::CheckValues(int block, const lull_picture& picture, const lull_rect& part,
+                                   int spp) const {
+    const BlockState& state = states[size_t(block)];
+    if (state.answer.stop || state.criterion->Need(spp) == ViewNeed::Nothing) return {};
+    const PictureValues values = ValuesOf(picture, picture.mean, part);
+    std::string fault = FaultOfValues(values);
+    if (fault.empty() && picture.half) fault = FaultOfValues(ValuesOf(picture, picture.half, part));
+    Require(fault.empty(), "block " + std::to_string(block) + ": " + fault);
+    return values;
 }
 
 void Stopper::Check(int block, const lull_picture& picture, const lull_rect& part, int spp) {

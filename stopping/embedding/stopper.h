@@ -11,6 +11,7 @@
 #include "lull/stopping.h"
 #include "stopping/rules/block_grid.h"
 #include "stopping/rules/rule.h"
+#include "stopping/signals/picture_values.h"
 
 namespace lull {
 
@@ -26,7 +27,8 @@ class Stopper {
     bool Done() const;
 
     // Throw std::invalid_argument, before anything has changed, for a picture that does not fit the
-    // settings or the block, and for an spp that is not above the block's last.
+    // settings or the block, for values that no picture has (PictureValues) where they would be
+    // looked at, and for an spp that is not above the block's last.
     std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
     lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
     lull_answer Answer(int block) const;
@@ -43,6 +45,8 @@ class Stopper {
 
     BlockState MakeState(int block) const;
     std::vector<std::unique_lock<std::mutex>> LockAll() const;
+    PictureValues CheckValues(int block, const lull_picture& picture, const lull_rect& part,
+                              int spp) const;
     void Check(int block, const lull_picture& picture, const lull_rect& part, int spp);
 
     std::shared_ptr<const Rule> rule;

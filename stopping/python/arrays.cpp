@@ -25,4 +25,19 @@ void WarnOfValues(const py::array& values, const std::string& name) {
         Warn(name + " has values that are not finite; they count as 0");
 }
 
+void WarnOfColours(const py::array& values, const std::string& name) {
+    constexpr double manyNegative = 0.05, most = 0.5;
+    WarnOfValues(values, name);
+    const auto share = [&](const char* comparison, int limit) {
+        const py::object holds = py::module_::import("numpy").attr(comparison)(values, limit);
+        return holds.attr("mean")().cast<double>();
+    };
+    if (share("less", 0) > manyNegative)
+        Warn(name + " has many negative values, which count as 0; linear radiance is needed");
+    if (share("greater", 1) > most)
+        Warn(name +
+             " is mostly above 1, the display's white; divide pictures of 0 to 255 by 255 "
+             "and undo their gamma, or scale it to how it is shown");
+}
+
 }  // namespace lull

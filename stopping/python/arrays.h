@@ -17,7 +17,9 @@ std::string ShapeOf(const pybind11::array& array);
 // Returns the first channels of an array of rows, columns and channels, in the same memory.
 pybind11::array FirstChannels(const pybind11::array& pixels, int count);
 
-// Warns of values that are not finite, which count as 0.
+// Warn of values that are not finite, which count as 0; of colours also where many are negative, or
+// most above white, as in pictures of 0 to 255.
 void WarnOfValues(const pybind11::array& values, const std::string& name);
+void WarnOfColours(const pybind11::array& values, const std::string& name);
 
 }  // namespace lull

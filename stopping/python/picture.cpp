@@ -22,7 +22,7 @@ py::array ToPixels(const py::array& array, const std::string& name, int width, i
     if (array.dtype().kind() != 'f')
         throw py::value_error(name + " has the type " + py::str(array.dtype()).cast<std::string>() +
                               "; float32 (linear) or uint8 (sRGB) is needed");
-    WarnOfValues(FirstChannels(array, 3), name);
+    WarnOfColours(FirstChannels(array, 3), name);
     return py::isinstance<py::array_t<float>>(array) ? array : py::array_t<float>(array);
 }
 

@@ -116,6 +116,28 @@ TEST(Denoising, SaysWhatIsWrong) {
         {"65537", [](Pictures* p) { p->noisy.height = 65537; }},
         {"both halves", [](Pictures* p) { p->noisy.colour.b = nullptr; }},
         {"the same colours", [](Pictures* p) { p->noisy.colour.b = p->noisy.colour.a; }},
+        {"the same colours", [](Pictures* p) { p->b = p->a; }},
+        {"the same noise",
+         [](Pictures* p) {
+             std::mt19937 generator(2);
+             std::normal_distribution<float> gauss(0.4f, 0.1f);
+             for (size_t i = 0; i < 3 * kPixels; ++i)
+                 p->a[i] = std::abs(gauss(generator)), p->b[i] = 1.001f * p->a[i];
+         }},
+        {"all in the first",
+         [](Pictures* p) {
+             for (size_t i = 0; i < 3 * kPixels; ++i) p->b[i] = (p->a[i] + p->b[i]) / 2;
+         }},
+        {"first half: 100 % of the pixels are brighter",
+         [](Pictures* p) {
+             for (float& v : p->a) v *= 255;
+         }},
+        {"second half: 100 % of the pixels have values that are not finite",
+         [](Pictures* p) { p->b.assign(3 * kPixels, std::numeric_limits<float>::quiet_NaN()); }},
+        {"negative",
+         [](Pictures* p) {
+             for (float& v : p->b) v -= 0.4f;
+         }},
         {"albedo", [](Pictures* p) { std::swap(p->noisy.albedo.a, p->noisy.albedo.b); }},
         {"room", [](Pictures* p) { p->output.colour = nullptr; }},
         {"block 0", [](Pictures* p) { p->block.x = 31; }},

@@ -53,6 +53,9 @@ class DenoisingTest(unittest.TestCase):
         a[1, 2, 0] = np.nan
         with self.assertWarnsRegex(UserWarning, "a or b has values that are not finite"):
             clean = lull_denoising.denoise(a, b)
+        for message, factor in ("mostly above 1", 5), ("negative", np.where(np.arange(WIDTH) % 5, 1, -1)[None, :, None]):
+            with self.assertWarnsRegex(UserWarning, "a or b .*" + message):
+                lull_denoising.denoise(np.float32(factor * np.nan_to_num(a)), np.float32(factor * b))
         self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 130 x 70 pixels: visible error [\d.]+ in")
 
     def test_says_what_is_wrong(self):
@@ -64,6 +67,10 @@ class DenoisingTest(unittest.TestCase):
                 ("uint8", lambda: lull_denoising.denoise(np.uint8(a), b)),
                 ("H x W x 3", lambda: lull_denoising.denoise(a[0], b)),
                 ("the same colours", lambda: lull_denoising.denoise(a, a)),
+                ("the same colours", lambda: lull_denoising.denoise(a, a.copy())),
+                ("brighter than 4 times", lambda: lull_denoising.denoise(255 * a, 255 * b)),
+                ("not finite", lambda: lull_denoising.denoise(a, np.nan * b)),
+                ("negative", lambda: lull_denoising.denoise(-a, b)),
                 ("39 pixels", lambda: lull_denoising.denoise(a, b, block=39))):
             with self.assertRaisesRegex(ValueError, message):
                 call()

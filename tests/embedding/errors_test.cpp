@@ -94,6 +94,50 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
     EXPECT_EQ(lull_stopper_needs_half(MakeStopper(SettingsOf(60, 50, "entropy")).get()), 0);
 }
 
+TEST(StopperErrors, RefusesValuesThatNoPictureHas) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    BlockImage calm = ImageAt(4000, 120, 50);
+    lull_settings settings = SettingsOf(120, 50, "entropy:9");
+    settings.block = 60;
+    const StopperHandle stopper = MakeStopper(settings),
+                        undisturbed = MakeStopper(SettingsOf(60, 50, "entropy:9"));
+    std::vector<float> original = calm.mean;
+    const auto refuse = [&](const char* part) {
+        lull_answer answers[2] = {};
+        const lull_picture picture = PictureOf(calm);
+        ExpectError(LULL_BAD_ARGUMENT, lull_stopper_observe(stopper.get(), &picture, 40, answers),
+                    part);
+        calm.mean = original;
+    };
+    for (float& v : calm.mean) v *= 255;
+    refuse("brighter than 4 times");
+    for (size_t i = 0; i < calm.mean.size(); ++i)
+        if (i / 3 % 120 >= 60) calm.mean[i] = nan;
+    refuse("block 1: 100 % of the pixels have values that are not finite");
+    for (float& v : calm.mean) v -= 1;
+    refuse("negative");
+    std::vector<float> half = calm.halfMean;
+    calm.halfMean.assign(half.size(), nan);
+    refuse("not finite");
+    calm.halfMean = half;
+    // A few such values are black, and a block may be a window; nothing has changed.
+    calm.mean[5] = nan;
+    for (size_t i = 0; i < calm.mean.size(); ++i)
+        if (i / 3 % 120 >= 80) calm.mean[i] *= 100;
+    lull_answer answers[2] = {};
+    const lull_picture picture = PictureOf(calm);
+    EXPECT_EQ(lull_stopper_observe(stopper.get(), &picture, 40, answers), LULL_OK)
+        << lull_error_message();
+    EXPECT_EQ(answers[1].spp, 40);
+    BlockImage bright = ImageAt(4000);
+    for (std::vector<float>* image : {&bright.mean, &bright.halfMean})
+        for (float& v : *image) v *= 100;
+    const lull_picture window = PictureOf(bright);
+    lull_answer answer = {};
+    EXPECT_EQ(lull_stopper_observe_block(undisturbed.get(), 0, &window, 40, &answer), LULL_OK)
+        << lull_error_message();
+}
+
 TEST(StopperErrors, RefusesNullPointers) {
     const StopperHandle owner = MakeStopper(SettingsOf(60, 50, "entropy"));
     lull_stopper *stopper = owner.get(), *made = nullptr;

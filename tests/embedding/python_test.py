@@ -139,6 +139,11 @@ class StopperTest(unittest.TestCase):
             stopper.observe(image, 40, half=np.uint8(image))
         with self.assertRaisesRegex(ValueError, "half of the samples"):
             lull.Stopper(WIDTH, HEIGHT, model="noise").observe(image, 40)
+        for wrong, message in ((255 * image, "brighter than 4 times"), (np.nan * image, "not finite"), (-image, "negative")):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with self.assertRaisesRegex(ValueError, message):
+                    stopper.observe(wrong, 40)
         stopper.observe(image, 40)
         with self.assertRaisesRegex(ValueError, "spp must increase"):
             stopper.observe(image, 40)
@@ -182,6 +187,9 @@ class StopperTest(unittest.TestCase):
             answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(image, 40, half)
         self.assertEqual(numbers(answer), numbers(
             lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)))
+        for message, other in ("mostly above 1", black + 1), ("negative", black - 0.3):
+            with self.assertWarnsRegex(UserWarning, "image .*" + message):
+                lull.Stopper(WIDTH, HEIGHT).observe_block(0, np.float32(other), 40)
         half[0, 0, 2] = np.inf
         with self.assertWarnsRegex(UserWarning, "half has values"):
             lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)

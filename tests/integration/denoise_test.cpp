@@ -135,7 +135,7 @@ TEST(DenoiseCommand, SaysWhatIsMissing) {
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop denoised", {"--denoise"});
     ASSERT_TRUE(Succeeds(directory, "cp a.exr again.exr"));
     ExpectFailure(directory, "denoise a.exr --half again.exr -o out.exr",
-                  {"again.exr", "same pixels", "--seed"});
+                  {"again.exr", "the same colours", "--seed"});
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "renderer/denoise/denoiser.h"
+#include "renderer/denoise/dependence.h"
+#include "stopping/signals/picture_values.h"
 
 namespace lull {
 
@@ -69,6 +71,20 @@ Halves ReadFeatures(const lull_noisy_picture& noisy, int y0, int y1) {
     return rows;
 }
 
+// Throws where colours cannot be those of a picture, or its halves not judge each other.
+void CheckColours(const Halves& colour) {
+    for (const Planes* half : {&colour.a, &colour.b}) {
+        PictureValues values;
+        for (size_t i = 0; i < half->Area(); ++i)
+            values.Add(half->Plane(0)[i], half->Plane(1)[i], half->Plane(2)[i]);
+        const std::string name = half == &colour.a ? "the first half: " : "the second half: ";
+        for (const std::string& fault : {FaultOfValues(values), FaultOfExposure(values)})
+            Require(fault.empty(), name + fault);
+    }
+    const std::string dependence = DependenceOf(colour);
+    Require(dependence.empty(), dependence);
+}
+
 NoisyPicture Read(const lull_noisy_picture& noisy) {
     Require(std::min(noisy.width, noisy.height) >= 1 &&
                 std::max(noisy.width, noisy.height) <= kLargestSide,
@@ -76,16 +92,16 @@ NoisyPicture Read(const lull_noisy_picture& noisy) {
                 " pixels; 1 to 65,536 are possible");
     Require(noisy.colour.a && noisy.colour.b,
             "the colours of both halves of the samples are needed");
-    Require(noisy.colour.a != noisy.colour.b,
-            "both halves have the same colours; their difference shows what is noise");
     CheckFeature("albedo", noisy.albedo);
     CheckFeature("normal", noisy.normal);
     CheckFeature("depth", noisy.depth);
-    const auto read = [&](int y0, int y1) { return ReadFeatures(noisy, y0, y1); };
-    NoisyPicture picture{{}, FilterFeatures(noisy.width, noisy.height, read), {}};
+    NoisyPicture picture;
     picture.colour.a = picture.colour.b = Planes(noisy.width, noisy.height, kColours);
     Copy(noisy.colour.a, noisy.colour, 0, kColours, 0, &picture.colour.a);
     Copy(noisy.colour.b, noisy.colour, 0, kColours, 0, &picture.colour.b);
+    CheckColours(picture.colour);
+    const auto read = [&](int y0, int y1) { return ReadFeatures(noisy, y0, y1); };
+    picture.features = FilterFeatures(noisy.width, noisy.height, read);
     return picture;
 }
 

@@ -54,7 +54,9 @@ typedef enum lull_status {
 
 typedef enum lull_format {
     LULL_LINEAR_FLOAT = 0, /* float, linear R, G, B with Rec. 709 primaries; 1 is the display's
-                              white. Values not finite count as black. */
+                              white. Values not finite count as black; blocks with more than a
+                              tenth of them, or a quarter of negative pixels, are refused, and so
+                              are first pictures most of whose lit pixels are above 4. */
     LULL_SRGB8 = 1         /* unsigned char, sRGB, as in a PNG. A half in 8 bits is rounded, which
                               looks like a little noise to rules that read it. */
 } lull_format;

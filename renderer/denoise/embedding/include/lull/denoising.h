@@ -42,7 +42,9 @@ typedef struct lull_halves {
 
 /* Holds what is known of a picture. Of all but the colours, `b` may be NULL, where there is one
  * image without noise, and both may, where there is none; the more there is, the sharper the
- * result. Values that are not finite count as 0. */
+ * result. Values that are not finite or negative count as 0. Refused are colours of which more than
+ * a tenth are not finite, a quarter negative, or half of what is lit above 4; and halves that are
+ * the same, or whose noise is seen to be. */
 typedef struct lull_noisy_picture {
     int width, height;  /* from 1 to 65,536 */
     lull_halves colour; /* linear R, G, B with Rec. 709 primaries, 1 is the display's white; not
