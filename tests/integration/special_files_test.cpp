@@ -31,7 +31,7 @@ TEST(SpecialFiles, AreNotWaitedFor) {
          {"render scene.pbrt --spp 2 -o f.exr", "render scene.pbrt --spp 2 --report f.json",
           "render scene.pbrt --spp 20 --checkpoint f.h5 --resume",
           "render scene.pbrt --stop learned:f.h5", "render scene.pbrt --stop thresholds:f.csv",
-          "render scene.pbrt --stop thresholds:/dev/zero", "evaluate f.h5 --human f.csv",
+          "render scene.pbrt --stop thresholds:/dev/zero", "evaluate f.h5 --human f.csv --rivals",
           "train f.h5 --human f.csv -o m.h5", "judge --collect f.json -o t.csv"}) {
         const Outcome outcome = RunShell(directory, kLimit + std::string(command));
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;

@@ -38,15 +38,15 @@ TEST(FeatureFilm, GoesThroughCheckpoints) {
     RenderState state;
     state.blocks.push_back({.block = {.pixels = kPictureRegion}, .decisions = {}});
     state.criteria.resize(1);
-    WriteCheckpoint(path, {}, state, render.film, {.features = &render.features});
+    WriteCheckpoint(path, {{"seed", "1"}}, state, render.film, {.features = &render.features});
     Film film(kPictureRegion);
     FeatureFilm features(kPictureRegion);
-    ReadCheckpoint(path, {}, &film, {.features = &features});
+    ReadCheckpoint(path, {{"seed", "1"}}, &film, {.features = &features});
     EXPECT_TRUE(SamePixels(film, render.film));
     EXPECT_EQ(features.Pixels(), render.features.Pixels());
 
-    WriteCheckpoint(path, {}, state, render.film);
-    EXPECT_THROW(ReadCheckpoint(path, {}, &film, {.features = &features}), Error);
+    WriteCheckpoint(path, {{"seed", "1"}}, state, render.film);
+    EXPECT_THROW(ReadCheckpoint(path, {{"seed", "1"}}, &film, {.features = &features}), Error);
 }
 
 TEST(PictureOf, HasBothHalvesOfTheMean) {

@@ -263,7 +263,7 @@ TEST(ModelFile, RefusesFilesCutShort) {
 }
 
 TEST(ModelFile, RefusesOtherFiles) {
-    ExpectError("/no/such/file.h5", "cannot be read");
+    ExpectError("/no/such/file.h5", "No such file");
     const ScratchFile text(".h5", "this is no HDF5 file");
     ExpectError(text.path, "HDF5");
     const ScratchFile empty(".h5");

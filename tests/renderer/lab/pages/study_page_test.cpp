@@ -63,7 +63,7 @@ TEST(MakeStudyPage, ShowsAnOwnTextAndNoMarkup) {
     EXPECT_EQ(ReadStudyPage(folder.Write("s.html", page))["id"], StudyId(TwoBlocks()));
     EXPECT_TRUE(Contains(MakeStudyPage(TwoBlocks(), {}), "id=\"own-text\">\"\"</script>"));
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.Write("e.md", "")); }), "e.md: "));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.File("none")); }), "none: "));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.File("none")); }), "none': "));
     const std::string large = folder.Write("large.md", std::string(200000, 'a'));
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(large); }), "200000 bytes"));
 }
