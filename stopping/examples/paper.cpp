@@ -83,14 +83,14 @@ int main(int argc, char** argv) {
         // network's probability of noise, and the vote: all of it in one call.
         if (lull_stopper_observe(stopper, &picture, spp, answers.data()) != LULL_OK)
             return Fail(file, lull_error_message());
-        int stopped = 0, judged = 0;
+        int stopped = 0, checked = 0;
         double sum = 0;
         for (const lull_answer& a : answers) {
-            stopped += a.stop, judged += a.judged;
-            sum += a.judged ? a.probability : 0;
+            stopped += a.stop, checked += a.checked;
+            sum += a.checked ? a.probability : 0;
         }
         std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
-        if (judged > 0) std::printf(", P(noise) %.2f on average", sum / judged);
+        if (checked > 0) std::printf(", P(noise) %.2f on average", sum / checked);
         std::printf("\n");
         if (lull_stopper_done(stopper)) break;
     }
