@@ -18,8 +18,8 @@ std::string Percent(size_t part, size_t whole) {
 
 void PictureValues::Add(float r, float g, float b) {
     ++pixels;
-    const double y = luminanceWeights[0] * double(r) + luminanceWeights[1] * double(g) +
-                     luminanceWeights[2] * double(b);
+    const double y = kLuminanceWeights[0] * double(r) + kLuminanceWeights[1] * double(g) +
+                     kLuminanceWeights[2] * double(b);
     if (!std::isfinite(y)) {
         ++notFinite;
         return;
