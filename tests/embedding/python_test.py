@@ -195,7 +195,7 @@ class StopperTest(unittest.TestCase):
             lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)
 
     def test_says_what_it_is(self):
-        stopper = lull.Stopper(WIDTH, HEIGHT, rule="fixed:80", block=40)
+        stopper = lull.Stopper(WIDTH, HEIGHT, rule="fixed:80")
         self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 0 of 1 blocks stopped>")
         image, _ = picture(40)
         self.assertEqual(repr(stopper.observe(image, 40)), "<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>")

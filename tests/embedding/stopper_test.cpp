@@ -214,10 +214,10 @@ TEST(Stopper, CutsPicturesIntoTheBlocksOfRenders) {
 
 // The block at the right is 30 pixels wide, and noisier.
 TEST(Stopper, LetsSmallBlocksFollowTheirNeighbour) {
-    lull_settings settings = SettingsOf(90, 60, "lnoise:1");
+    lull_settings settings = SettingsOf(90, 60, "lnoise:5");
     settings.block = 60;
     const StopperHandle whole = MakeStopper(settings), pieces = MakeStopper(settings);
-    const StopperHandle alone = MakeStopper(SettingsOf(60, 60, "lnoise:1"));
+    const StopperHandle alone = MakeStopper(SettingsOf(60, 60, "lnoise:5"));
     bool hasStopped = false;
     for (int spp = 20; spp <= 400 && !hasStopped; spp += 20) {
         const BlockImage image = ImageAt(spp, 60, 60);
