@@ -86,8 +86,8 @@ int main(int argc, char** argv) {
         int stopped = 0, judged = 0;
         double sum = 0;
         for (const lull_answer& a : answers) {
-            stopped += a.stop, judged += a.judged;
-            sum += a.judged ? a.probability : 0;
+            stopped += a.stop, judged += a.checked;
+            sum += a.checked ? a.probability : 0;
         }
         std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
         if (judged > 0) std::printf(", P(noise) %.2f on average", sum / judged);

@@ -57,7 +57,7 @@ def thresholds_of(pictures, model="paper", block=200):
         # Entropies of the sub-blocks (Eq. 3), the window of k of them, its normalisation, the network's
         # probability of noise, and the vote: all of it in one call.
         answer = stopper.observe(image, spp)
-        judged = answer.probability[answer.judged]
+        judged = answer.probability[answer.checked]
         text = f", P(noise) {judged.mean():.2f} on average" if judged.size else ""
         print(f"{spp:6} spp: {answer.stopped.sum()} of {answer.stopped.size} blocks have stopped{text}")
         if answer.stop:
