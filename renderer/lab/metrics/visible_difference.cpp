@@ -259,7 +259,7 @@ VisibleDifference FindVisibleDifference(std::span<const float> image,
     return result;
 }
 
-double Pool(const VisibleDifference& difference, const PixelRect& rect) {
+double PooledDifference(const VisibleDifference& difference, const PixelRect& rect) {
     // The mean square over places, then the fourth power over bands and channels.
     double pooled = 0;
     for (const VisibleBand& band : difference.bands) {
@@ -280,8 +280,8 @@ double Pool(const VisibleDifference& difference, const PixelRect& rect) {
     return kStillWeight * std::pow(pooled, 0.25);
 }
 
-double Pool(const VisibleDifference& difference) {
-    return Pool(difference, {{0, 0}, {difference.width, difference.height}});
+double PooledDifference(const VisibleDifference& difference) {
+    return PooledDifference(difference, {{0, 0}, {difference.width, difference.height}});
 }
 
 std::vector<float> VisibleMap(const VisibleDifference& difference) {

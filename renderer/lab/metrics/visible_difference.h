@@ -38,10 +38,10 @@ VisibleDifference FindVisibleDifference(std::span<const float> image,
 
 // Returns the visible difference of a part of the picture, in pixels; not empty. This is the
 // paper's Q: 0 where both are the same; a grating at threshold has 0.2 to 2.
-double Pool(const VisibleDifference&, const PixelRect&);
-double Pool(const VisibleDifference&);
+double PooledDifference(const VisibleDifference&, const PixelRect&);
+double PooledDifference(const VisibleDifference&);
 
-// Returns the visible difference at each pixel, in units of Pool().
+// Returns the visible difference at each pixel, in units of PooledDifference().
 std::vector<float> VisibleMap(const VisibleDifference&);
 
 // Returns the quality of the paper's scale for a pooled difference: 10 where none is seen, and one

@@ -10,13 +10,6 @@
 namespace lull {
 namespace {
 
-bool SameFeatures(const FeatureFilm& a, const FeatureFilm& b) {
-    for (int y = kPictureRegion.min.y(); y < kPictureRegion.max.y(); ++y)
-        for (int x = kPictureRegion.min.x(); x < kPictureRegion.max.x(); ++x)
-            if (!(a.At({x, y}) == b.At({x, y}))) return false;
-    return true;
-}
-
 TEST(FeatureFilm, IsTheSameForAnyThreads) {
     const FeatureRender one(1), three(3);
     EXPECT_EQ(one.features.Pixels(), three.features.Pixels());

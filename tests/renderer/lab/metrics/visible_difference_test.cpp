@@ -59,7 +59,7 @@ VisibleDifference Find(const Picture& image, const Picture& reference,
 }
 
 double Pooled(const Picture& image, const Picture& reference, const DisplayModel& display = {}) {
-    return Pool(Find(image, reference, display));
+    return PooledDifference(Find(image, reference, display));
 }
 
 // A display in the dark that shows no more than what it is told.
@@ -70,7 +70,7 @@ DisplayModel DarkRoom(double peak, double ppd) {
 TEST(VisibleDifference, IsZeroForTheSamePicture) {
     const Picture noisy = AddNoise(Grey(70, 0.5), 0.7);
     const VisibleDifference difference = Find(noisy, noisy);
-    EXPECT_EQ(Pool(difference), 0);
+    EXPECT_EQ(PooledDifference(difference), 0);
     for (const float v : VisibleMap(difference)) EXPECT_EQ(v, 0);
 }
 
@@ -84,7 +84,7 @@ TEST(VisibleDifference, HasAKnownValue) {
     }
     const VisibleDifference difference =
         FindVisibleDifference(image, reference, kExampleWidth, kExampleHeight, {});
-    EXPECT_NEAR(Pool(difference), 11.37628, 1e-3);
+    EXPECT_NEAR(PooledDifference(difference), 11.37628, 1e-3);
 }
 
 // Contrast is 1 / sensitivity. Q grows with its power of 2.26, so that this range is one of 8 dB.
@@ -155,9 +155,9 @@ TEST(VisibleDifference, SeesColour) {
 TEST(VisibleDifference, IsWhereThePicturesDiffer) {
     const Picture flat = Grey(256, 0.5), noisy = AddNoise(flat, 0.05, 0, 64);
     const VisibleDifference difference = Find(noisy, flat);
-    const double noisyBlock = Pool(difference, {{0, 0}, {64, 256}});
-    EXPECT_GT(noisyBlock, 10 * Pool(difference, {{192, 0}, {256, 256}}));
-    EXPECT_GT(noisyBlock, Pool(difference));
+    const double noisyBlock = PooledDifference(difference, {{0, 0}, {64, 256}});
+    EXPECT_GT(noisyBlock, 10 * PooledDifference(difference, {{192, 0}, {256, 256}}));
+    EXPECT_GT(noisyBlock, PooledDifference(difference));
     const std::vector<float> map = VisibleMap(difference);
     ASSERT_EQ(map.size(), size_t(256 * 256));
     double noisyMean = 0, flatMean = 0;
@@ -173,8 +173,9 @@ TEST(VisibleDifference, IsWhereThePicturesDiffer) {
 TEST(Pool, AveragesItsParts) {
     const Picture flat = Grey(128, 0.5);
     const VisibleDifference difference = Find(Grating(128, 0.5, 0.05, 4, 40), flat);
-    const double whole = Pool(difference), left = Pool(difference, {{0, 0}, {64, 128}}),
-                 right = Pool(difference, {{64, 0}, {128, 128}});
+    const double whole = PooledDifference(difference),
+                 left = PooledDifference(difference, {{0, 0}, {64, 128}}),
+                 right = PooledDifference(difference, {{64, 0}, {128, 128}});
     EXPECT_NEAR(whole, std::sqrt((left * left + right * right) / 2), 0.01 * whole);
 }
 
@@ -192,7 +193,7 @@ TEST(VisibleDifference, IsFiniteForAllFloats) {
         image.values[i] = odd[i / 5 % std::size(odd)];
     for (const auto& [a, b] : {std::pair{image, reference}, {reference, image}, {image, image}}) {
         const VisibleDifference difference = Find(a, b);
-        EXPECT_TRUE(std::isfinite(Pool(difference)));
+        EXPECT_TRUE(std::isfinite(PooledDifference(difference)));
         for (const float v : VisibleMap(difference)) EXPECT_TRUE(std::isfinite(v) && v >= 0);
     }
     // Values beyond what the display shows do not differ.
@@ -206,9 +207,9 @@ TEST(VisibleDifference, TakesAnySize) {
         const std::vector<float> a(size_t(width * height * 3), 0.5f),
             b(size_t(width * height * 3), 0.25f);
         const VisibleDifference difference = FindVisibleDifference(a, b, width, height, {});
-        EXPECT_TRUE(std::isfinite(Pool(difference)));
+        EXPECT_TRUE(std::isfinite(PooledDifference(difference)));
         EXPECT_EQ(VisibleMap(difference).size(), size_t(width * height));
-        EXPECT_GE(Pool(difference, {{width - 1, height - 1}, {width, height}}), 0);
+        EXPECT_GE(PooledDifference(difference, {{width - 1, height - 1}, {width, height}}), 0);
     }
     EXPECT_THROW(FindVisibleDifference({}, {}, 0, 0, {}), Error);
     EXPECT_THROW(FindVisibleDifference(std::vector<float>(3), std::vector<float>(6), 1, 1, {}),
@@ -225,7 +226,7 @@ TEST(VisibleDifference, IsTheSameBitsOnAnyThread) {
             threads.emplace_back([&] { difference = Find(noisy, flat); });
     }
     for (const VisibleDifference& difference : found) {
-        EXPECT_EQ(Pool(difference), Pool(expected));
+        EXPECT_EQ(PooledDifference(difference), PooledDifference(expected));
         EXPECT_EQ(VisibleMap(difference), VisibleMap(expected));
     }
 }
