@@ -187,7 +187,7 @@ class StopperTest(unittest.TestCase):
             answer = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(image, 40, half)
         self.assertEqual(numbers(answer), numbers(
             lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)))
-        for message, other in ("mostly above 1", black + 1), ("negative", black - 0.3):
+        for message, other in ("mostly above 1", black + 1), ("negative", black - 0.2):
             with self.assertWarnsRegex(UserWarning, "image .*" + message):
                 lull.Stopper(WIDTH, HEIGHT).observe_block(0, np.float32(other), 40)
         half[0, 0, 2] = np.inf

@@ -175,7 +175,7 @@ TEST(Stopper, CountsWhatIsNotFiniteAsBlack) {
     const float odd[] = {std::numeric_limits<float>::quiet_NaN(),
                          std::numeric_limits<float>::infinity(),
                          -std::numeric_limits<float>::infinity()};
-    for (size_t i = 0; i < black.mean.size(); i += 17) {
+    for (size_t i = 0; i < black.mean.size(); i += 53) {
         black.mean[i] = black.halfMean[i] = 0;
         strange.mean[i] = odd[i % 3];
         strange.halfMean[i] = odd[(i + 1) % 3];
@@ -271,7 +271,7 @@ TEST(Stopper, StopsEachBlockByItself) {
     settings.block = 50;
     const StopperHandle whole = MakeStopper(settings), pieces = MakeStopper(settings);
     for (int spp = 20; spp <= 100; spp += 20) {
-        BlockImage image = ImageAt(spp, 100, 50, 20);
+        BlockImage image = ImageAt(spp, 100, 50, 1);
         for (int y = 0; y < 50; ++y)
             for (int i = 0; i < 150; ++i)
                 image.Mean(0, y)[i] = image.HalfMean(0, y)[i] = spp > 60 ? float(i % 7) : 0.3f;
