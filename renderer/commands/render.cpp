@@ -249,7 +249,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
 }
 
 // Says how the render ended, writes all files, and says how it goes on.
-ExitCode Write(const PreparedRender& p, const RenderResult& result, Session* session) {
+ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.render.settings;
     const Talk talk = TalkOf(settings);
     const int64_t rejected = session->TheFilm().RejectedCount();

@@ -45,8 +45,14 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     ExtraLayers extra = MakeExtraLayers(render.layers, film, render.description, origin.scene);
     extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
     ResultFiles results;
-    WriteImage({files.exr, files.png}, origin, film, render.denoised, render.layers.mattes, result,
-               std::move(extra), render.pictures, &results);
+    const int64_t clamped =
+        WriteImage({files.exr, files.png}, origin, film, render.denoised, render.layers.mattes,
+                   result, std::move(extra), render.pictures, &results);
+    if (clamped > 0)
+        render.warnings.Add({}, "values clamped to 65504",
+                            fmt::format("{} in the EXR, as 16 bits hold no more; leave out "
+                                        "--exr-half to keep them",
+                                        clamped));
     results.Write(files.sppMap,
                   [&](const std::string& file) { WriteSppMap(file, provenance, result); });
     // Of an interrupted render nobody knows at which spp its blocks would have stopped.

@@ -27,7 +27,7 @@ struct FinishedRender {
     const Film& film;
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;
-    const Warnings& warnings;
+    Warnings& warnings;  // for the report; clamped values are added
     CollectedLayers layers;
     const DenoisedImage* denoised;          // null: the image is the means of the film
     const std::vector<ExrChannel>& halves;  // what can be denoised later

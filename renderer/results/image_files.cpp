@@ -84,11 +84,11 @@ PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
 
 // Writes means R, G, B as those of an EXR, with the samples of each pixel, and the values of the
 // channels after these four.
-void WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
-              const RowSource& spp) {
+int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
+                 const RowSource& spp) {
     const size_t stride = exr.channels.size();
     std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
-    WriteExr(file, exr, [&](int y, std::span<float> row) {
+    return WriteExr(file, exr, [&](int y, std::span<float> row) {
         means(y, rgb);
         spp(y, counts);
         for (size_t x = 0; x < counts.size(); ++x) {
@@ -179,9 +179,10 @@ RowSource MeansOf(const RgbImage& image) {
     };
 }
 
-void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
-                const DenoisedImage* denoised, const MatteFilm* mattes, const RenderResult& result,
-                ExtraLayers extra, const PictureFormat& format, ResultFiles* results) {
+int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
+                   const DenoisedImage* denoised, const MatteFilm* mattes,
+                   const RenderResult& result, ExtraLayers extra, const PictureFormat& format,
+                   ResultFiles* results) {
     ExrImage exr = MakeExr(origin, film, result);
     if (denoised) {
         std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
@@ -196,13 +197,16 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Fi
         colours = WithoutBackground(colours, denoised != nullptr, film, *mattes);
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
-    results->Write(files.exr,
-                   [&](const std::string& file) { WriteExr(file, exr, colours, SppOf(film)); });
+    int64_t clamped = 0;
+    results->Write(files.exr, [&](const std::string& file) {
+        clamped = WriteExr(file, exr, colours, SppOf(film));
+    });
     results->Write(files.png, [&](const std::string& file) {
         WritePng(file, format.isTransparent ? WithAlpha(colours, film, *mattes) : colours,
                  film.Region().Width(), film.Region().Height(),
                  MakePngFormat(format, origin.scene.film.exposure));
     });
+    return clamped;
 }
 
 void WriteImage(const PictureFiles& files, const PictureOrigin& origin,

@@ -33,10 +33,11 @@ struct PictureOrigin {
 
 // Writes the image of a render, each file whole or not at all: the means of the film or, where
 // there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
-// `mattes` are asked for where the format is transparent.
-void WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
-                const MatteFilm* mattes, const RenderResult&, ExtraLayers extra,
-                const PictureFormat&, ResultFiles*);
+// `mattes` are asked for where the format is transparent. Returns how many values were clamped to
+// 16 bits.
+int64_t WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
+                   const MatteFilm* mattes, const RenderResult&, ExtraLayers extra,
+                   const PictureFormat&, ResultFiles*);
 
 // Returns the rows of an image, which must outlive that.
 RowSource MeansOf(const RgbImage&);

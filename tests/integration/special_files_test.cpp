@@ -1,6 +1,9 @@
 // Tests what is no regular file, names that would command a terminal, and writers that meet.
 #include <sys/stat.h>
 
+#include <algorithm>
+
+#include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/dataset.h"
 #include "tests/integration/run_lull.h"
 
@@ -37,6 +40,32 @@ TEST(SpecialFiles, AreNotWaitedFor) {
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
         EXPECT_TRUE(Contains(outcome.err, "not a regular file")) << command << "\n" << outcome.err;
     }
+}
+
+TEST(HalfExr, IsClampedWithOneWarning) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText("AreaLightSource \"area\" \"rgb L\" [1e5 1e5 1e5] " +
+                                            std::string(kSphere)));
+    const Outcome outcome = RunLull(directory, "render scene.pbrt --spp 2 --exr-half -o a.exr");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::string warning = "values clamped to 65504: ";
+    const size_t first = outcome.err.find(warning);
+    EXPECT_NE(first, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(warning, first + 1), std::string::npos) << outcome.err;
+}
+
+TEST(Transparent, IsNeverNegativeWhereDenoised) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome outcome =
+        RunLull(directory,
+                "render scene.pbrt --resolution 48x48 --spp 20 --denoise --transparent -o a.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const ExrImage image = ReadExr(directory.File("a.exr"));
+    const std::vector<float>& alpha = image.Find("A")->values;
+    EXPECT_TRUE(std::ranges::any_of(alpha, [](float a) { return a > 0 && a < 1; }));
+    for (const char* name : {"R", "G", "B"})
+        EXPECT_GE(std::ranges::min(image.Find(name)->values), 0) << name;
 }
 
 TEST(Messages, AreShortAndCommandNoTerminal) {
