@@ -13,8 +13,8 @@ struct GaborPatch {
     double luminance = 100;  // of the background, cd/m2, > 0
 };
 
-// Returns 1 / contrast at which half of all people see a patch that is modulated along one opponent
-// direction; the contrast is the channel's amplitude (opponent.h) over the luminance of the
+// Returns 1 / contrast at the threshold of a patch that is modulated along one opponent
+// direction; the contrast is the channel's amplitude over the luminance of the
 // background. Ashraf, Mantiuk, Chapiro, Wuerger: castleCSF - A contrast sensitivity function of
 // color, area, spatiotemporal frequency, luminance and eccentricity, Journal of Vision 24(4), 2024,
 // with the parameters of its implementation, version 0.2.4, at 0 Hz and no eccentricity. The

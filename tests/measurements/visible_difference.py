@@ -1,0 +1,201 @@
+"""Compares the metric of visible differences with what people saw.
+
+    python3 visible_difference.py sensitivity PROGRAM data_individual.csv    # castleCSF's data: thresholds of single people
+    python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # the blocks whose recordings people judged
+
+PROGRAM is the target `visible_difference`. FOLDER has NAME.exr or NAME-BLOCK.exr of 800x800 pixels or of one block, rendered
+with --denoise --denoise-layers; all else is made from them: the denoised picture stands for that of 10,000 spp, and the noise
+that one of fewer has beside it is drawn from the differences of both halves in the 5x5 pixels around, many times, and scaled
+to the variance v (1 / spp - 1 / 10,000). One number for all blocks, set on the other viewpoints, says where it is seen no more.
+"""
+
+import argparse
+import collections
+import csv
+import itertools
+import os
+import subprocess
+
+import numpy as np
+
+CAP, PASS, SIDE = 10000, 20, 200
+BLOCKS = {'classroom': [0, 4, 9, 12, 13, 14, 15], 'coffee-splash': range(16), 'living-room': [0, 4, 5, 7, 9, 13, 14, 15],
+          'staircase2': range(16)}
+LADDER = [250, 500, 1000, 2000, 4000, 7000, 9500]
+
+
+def decibels(ratio):
+    return 20 * np.log10(ratio)
+
+
+def barten(u, area, luminance):
+    """P. G. J. Barten: Formula for the contrast sensitivity of the human eye, Proc. SPIE 5294, 2004, equation 11."""
+    return 5200 * np.exp(-0.0016 * u * u * (1 + 100 / luminance) ** 0.08) / np.sqrt(
+        (1 + 144 / area + 0.64 * u * u) * (63 / luminance ** 0.83 + 1 / (1 - np.exp(-0.02 * u * u))))
+
+
+def sensitivity(o):
+    with open(o.data, encoding='latin1') as f:
+        rows = [r for r in csv.DictReader(f) if r['dataset'] == 'modelfest']
+    patches = np.array([[float(r[k]) for k in ('s_frequency', 'area', 'luminance')] for r in rows])
+    measured = np.array([float(r['sensitivity']) for r in rows])
+    people = np.array([r['observer'] for r in rows])
+    text = '\n'.join(' '.join(repr(float(v)) for v in p) for p in patches)
+    out = subprocess.run([o.program, 'sensitivity'], input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
+    predicted = np.array([[float(v) for v in line.split()] for line in out.splitlines()])[:, 0]
+    for name, model in (('castleCSF', predicted), ('Barten', barten(*patches.T))):
+        error = decibels(measured / model)
+        means = [error[people == p].mean() for p in sorted(set(people))]
+        within = np.sqrt(np.mean([error[people == p].var() for p in sorted(set(people))]))
+        print(f'{name}: {len(error)} thresholds of {len(means)} people, measured over predicted: mean {error.mean():.2f} dB, '
+              f'RMS {np.sqrt(np.mean(error ** 2)):.2f}, scatter {error.std():.2f} (between people {np.std(means):.2f}, '
+              f'within {within:.2f})')
+        for f in sorted(set(patches[:, 0])):
+            print(f'  {f:g} cycles a degree: {error[patches[:, 0] == f].mean():.1f}', end='')
+        print()
+
+
+def read(path):
+    import OpenImageIO as oiio
+    image = oiio.ImageBuf(path)
+    names = image.spec().channelnames
+    pixels = np.asarray(image.get_pixels(oiio.FLOAT), np.float32)
+    return lambda prefix: pixels[:, :, [names.index(prefix + c) for c in 'RGB']], float(image.spec().get_float_attribute('spp')), names
+
+
+def noise(difference, random, count=32):
+    """Returns noise of the local covariance of `difference`, closer to normal than that."""
+    h, w, _ = difference.shape
+    y, x = np.mgrid[:h, :w]
+    total = np.zeros_like(difference)
+    for _ in range(count):
+        rows = np.abs(y + random.integers(-2, 3, (h, w)))
+        columns = np.abs(x + random.integers(-2, 3, (h, w)))
+        rows, columns = np.minimum(rows, 2 * h - 2 - rows), np.minimum(columns, 2 * w - 2 - columns)
+        total += difference[rows, columns] * random.choice([-1, 1], (h, w, 1))
+    return total / np.sqrt(count)
+
+
+def load_blocks(o):
+    """Returns for each block its viewpoint, the threshold of people, the clean picture and the noise of one sample a pixel."""
+    with open(o.human) as f:
+        human = {line.split(';')[0]: [int(v) for v in line.strip().split(';')[1:] if v] for line in f}
+    blocks = []
+    for name, numbers in BLOCKS.items():
+        whole = os.path.join(o.folder, name + '.exr')
+        for b in numbers:
+            path = whole if os.path.exists(whole) else os.path.join(o.folder, f'{name}-{b}.exr')
+            layer, spp = read(path)
+            x, y = (b % 4 * SIDE, b // 4 * SIDE) if path == whole else (0, 0)
+            part = lambda prefix: layer(prefix)[y:y + SIDE, x:x + SIDE]
+            difference = (part('halfA.') - part('halfB.')) / 2 * np.sqrt(spp)
+            random = np.random.default_rng([o.seed, b])
+            blocks.append((name, b, human[f'p3d_{name}-view0_part6'][b], part(''), noise(difference, random)))
+    return blocks
+
+
+def pooled(o, viewing, clean, pictures):
+    data = np.ascontiguousarray(np.stack([clean, *pictures]), np.float32)
+    h, w, _ = clean.shape
+    out = subprocess.run([o.program, viewing, str(w), str(h), str(SIDE)], input=data.tobytes(), stdout=subprocess.PIPE,
+                         check=True).stdout.decode()
+    return np.array([float(line.split()[0]) for line in out.splitlines()])
+
+
+def curve(o, viewing, block):
+    """Returns the logarithms of the visible differences at the spp of LADDER."""
+    _, _, _, clean, sample = block
+    return np.log(pooled(o, viewing, clean, [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]))
+
+
+def deviation(spp):
+    return np.log(np.sqrt(1 / np.minimum(np.asarray(spp, float), CAP - 1) - 1 / CAP))
+
+
+def stop(values, limit):
+    """Returns the first multiple of PASS at which the curve is below a limit."""
+    x = deviation(LADDER)
+    slope = (values[0] - values[-1]) / (x[0] - x[-1])
+    if np.log(limit) >= values[0]:
+        at = x[0] + (np.log(limit) - values[0]) / slope
+    elif np.log(limit) <= values[-1]:
+        at = x[-1] + (np.log(limit) - values[-1]) / slope
+    else:
+        at = np.interp(np.log(limit), values[::-1], x[::-1])
+    spp = 1 / (np.exp(2 * at) + 1 / CAP)
+    return int(np.clip(np.ceil(spp / PASS) * PASS, PASS, CAP))
+
+
+def critical_error(human, stops):
+    """As `lull evaluate` has it, at 2 %."""
+    half = PASS * int(CAP / PASS * 2 / 200)
+    x = np.arange(PASS, CAP + 1, 40)
+    wrong = []
+    for h, s in zip(human, stops):
+        lo, hi = (CAP, CAP) if h >= CAP else (h - half, h + half)
+        wrong.append(~(((x <= lo) & (x <= s)) | ((x >= hi) & (x >= s)) | ((lo < x) & (x < hi))))
+    return np.mean(wrong)
+
+
+def best(human, choices, stops_of):
+    return min(choices, key=lambda c: np.mean([critical_error(human[v], stops_of(v, c)) for v in human]))
+
+
+def correlation(a, b):
+    return np.corrcoef(np.log(a), np.log(b))[0, 1] if np.std(np.log(b)) > 0 else float('nan')
+
+
+def report(o, viewing, blocks):
+    views = list(BLOCKS)
+    human = {v: [b[2] for b in blocks if b[0] == v] for v in views}
+    curves = {v: [curve(o, viewing, b) for b in blocks if b[0] == v] for v in views}
+    limits = np.geomspace(0.2, 300, 150)
+    stops_of = lambda v, limit: [stop(c, limit) for c in curves[v]]
+    accepted = {v: [np.exp(np.interp(deviation(h), deviation(LADDER)[::-1], c[::-1])) for h, c in zip(human[v], curves[v])
+                    if h < CAP] for v in views}
+    rows = []
+    for v in views:
+        others = {w: human[w] for w in views if w != v}
+        limit = best(others, limits, stops_of)
+        stops = stops_of(v, limit)
+        rows.append((v, limit, 100 * critical_error(human[v], stops), correlation(human[v], stops), np.mean(human[v]), np.mean(stops),
+                     np.median(accepted[v])))
+    every = np.concatenate([accepted[v] for v in views])
+    limit = best(human, limits, stops_of)
+    print(f'{viewing}: critical error {np.mean([r[2] for r in rows]):.1f} %, with one limit for all, {limit:.3g}, '
+          f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
+          f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
+    for v, limit, error, r, h, s, a in rows:
+        print(f'    {v:<14} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
+              f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)
+    if o.blocks:
+        for b, c in zip(blocks, itertools.chain(*(curves[v] for v in views))):
+            print('   ', b[0], b[1], b[2], stop(c, limit), ' '.join(f'{v:.3g}' for v in np.exp(c)))
+
+
+def judge_blocks(o):
+    blocks = load_blocks(o)
+    human = collections.defaultdict(list)
+    for b in blocks:
+        human[b[0]].append(b[2])
+    constants = range(PASS, CAP + 1, PASS)
+    print('the best constant of each viewpoint: %.1f %%' % np.mean(
+        [100 * min(critical_error(h, [c] * len(h)) for c in constants) for h in human.values()]))
+    for viewing in o.viewing.split(';'):
+        report(o, viewing, blocks)
+
+
+if __name__ == '__main__':
+    p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    commands = p.add_subparsers(required=True)
+    s = commands.add_parser('sensitivity')
+    s.add_argument('program'), s.add_argument('data')
+    s.set_defaults(run=sensitivity)
+    s = commands.add_parser('blocks')
+    s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
+    s.add_argument('--viewing', default=';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 60) for cd in (80, 120, 200)))
+    s.add_argument('--blocks', action='store_true', help='a line a block')
+    s.add_argument('--seed', type=int, default=1)
+    s.set_defaults(run=judge_blocks)
+    o = p.parse_args()
+    o.run(o)
