@@ -37,13 +37,14 @@ static void PrintDifferences(const DisplayModel& display, int width, int height,
     while (read(&picture)) {
         const VisibleDifference difference =
             FindVisibleDifference(picture, reference, width, height, display);
-        fmt::print("{:.6g}", Pool(difference));
+        fmt::print("{:.6g}", PooledDifference(difference));
         for (int y = 0; y < height; y += block)
             for (int x = 0; x < width; x += block)
                 fmt::print(
                     " {:.6g}",
-                    Pool(difference,
-                         {{x, y}, {std::min(x + block, width), std::min(y + block, height)}}));
+                    PooledDifference(
+                        difference,
+                        {{x, y}, {std::min(x + block, width), std::min(y + block, height)}}));
         fmt::print("\n");
     }
 }
