@@ -24,7 +24,7 @@ TEST(Reach, RefusesCamerasTooFarAway) {
           "\nCamera \"perspective\" \"float lensradius\" [5e18]",
           "Scale 1e-20 1e-20 1e-20\nCamera \"orthographic\""})
         EXPECT_TRUE(
-            Contains(ErrorIn(options, "Shape \"sphere\""), "far.pbrt:2: rays of the camera"))
+            Contains(ErrorIn(options, "Shape \"sphere\""), "test.pbrt:2: rays of the camera"))
             << options;
     EXPECT_EQ(ErrorIn("LookAt 0 0 1e11 0 0 0 0 1 0\nCamera \"perspective\"", "Shape \"sphere\""),
               "");
@@ -32,23 +32,23 @@ TEST(Reach, RefusesCamerasTooFarAway) {
 
 TEST(Reach, RefusesShapesTooFarAway) {
     EXPECT_TRUE(Contains(ErrorIn("", "Shape \"sphere\" \"float radius\" [1e18]"),
-                         "far.pbrt:3: Shape \"sphere\" reaches farther than 1e+12"));
+                         "test.pbrt:3: Shape \"sphere\" reaches farther than 1e+12"));
     EXPECT_TRUE(Contains(ErrorIn("",
                                  "Translate 0 0 1e30\nShape \"trianglemesh\" \"integer "
                                  "indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"),
-                         "far.pbrt:4: Shape \"trianglemesh\" reaches"));
+                         "test.pbrt:4: Shape \"trianglemesh\" reaches"));
 }
 
 TEST(Reach, RefusesInstancesThatNoRayCanBeFollowedInto) {
     EXPECT_TRUE(
         Contains(ErrorIn("", kObject + std::string("Scale 1e-19 1 1\nObjectInstance \"a\"")),
-                 "far.pbrt:7: the instance's transform changes sizes"));
+                 "test.pbrt:7: the instance's transform changes sizes"));
     // Its determinant is no longer a float.
     EXPECT_TRUE(Contains(
         ErrorIn("", kObject + std::string("Scale 1e-15 1e-15 1e-15\nObjectInstance \"a\"")),
-        "far.pbrt:7: the instance's transform changes sizes"));
+        "test.pbrt:7: the instance's transform changes sizes"));
     EXPECT_TRUE(Contains(ErrorIn("", kObject + std::string("Scale 1 1 1e19\nObjectInstance \"a\"")),
-                         "far.pbrt:7: the instance reaches farther"));
+                         "test.pbrt:7: the instance reaches farther"));
     EXPECT_EQ(ErrorIn("", kObject + std::string("Scale 1e-3 1e3 1\nObjectInstance \"a\"")), "");
 }
 
@@ -56,7 +56,7 @@ TEST(Reach, RefusesLightsTooFarAway) {
     for (const char* kind : {"point", "spot", "goniometric", "projection"})
         EXPECT_TRUE(
             Contains(ErrorIn("", "Translate 0 0 1e18\nLightSource \"" + std::string(kind) + "\""),
-                     "far.pbrt:4: LightSource \"" + std::string(kind) + "\" lies farther"))
+                     "test.pbrt:4: LightSource \"" + std::string(kind) + "\" lies farther"))
             << kind;
 }
 
@@ -70,7 +70,7 @@ TEST(Reach, IsThatOfAllInstances) {
     EXPECT_TRUE(Contains(ErrorIn("LookAt 0 0 1e13 0 0 0 0 1 0\nCamera \"perspective\"",
                                  kObject + std::string("Scale 1e-6 1e-6 1e-6\nObjectInstance "
                                                        "\"a\"")),
-                         "far.pbrt:2: rays of the camera"));
+                         "test.pbrt:2: rays of the camera"));
 }
 
 // Triangles are what they are at any size: their normals come from products of two lengths, whose
