@@ -28,7 +28,8 @@ std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecordi
     for (const std::string& name : without)
         if (std::erase_if(rows, [&](const ThresholdsRow& row) { return row.name == name; }) == 0 &&
             std::ranges::find(viewpoints, name, &ViewpointRecording::name) == viewpoints.end())
-            throw std::runtime_error(fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
+            throw std::runtime_error(
+                fmt::format("--without: there is no viewpoint '{}'", Printable(name)));
     std::vector<std::string> unknown;
     std::vector<LabelledBlock> blocks = JoinHuman(viewpoints, rows, &unknown);
     for (const std::string& name : unknown)

@@ -18,9 +18,7 @@ struct Planes {
 
     explicit Planes(bool withHalf = true)
         : film(kRegion, {.grid = {.blockSize = 20, .tileSize = 8}, .withHalf = withHalf}) {}
-    Layers TheLayers() {
-        return {.aovs = &aovs, .features = &features, .mattes = &mattes};
-    }
+    Layers TheLayers() { return {.aovs = &aovs, .features = &features, .mattes = &mattes}; }
     // Adds a sample to each pixel of a tile, different in all of them.
     void AddTo(const PixelRect& pixels) {
         FilmTile tile = film.Tile(pixels);

@@ -83,8 +83,7 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
 TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     const Blocks blocks;
     // Both settings of cycles are wrong by half; the coarser comes first.
-    const Rival cycles =
-        Find(EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40), "cycles");
+    const Rival cycles = Find(EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40), "cycles");
     EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
     EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.blocks[1].human / 2);
