@@ -1,5 +1,8 @@
 #include "renderer/base/error.h"
 
+#include <fmt/format.h>
+
+#include <iterator>
 #include <utility>
 
 namespace lull {
@@ -10,7 +13,6 @@ std::string FileLoc::Prefix() const {
 }
 
 std::string OneLine(const std::string& text) {
-    constexpr char kDigits[] = "0123456789abcdef";
     std::string line;
     bool isBetween = false;
     for (const char c : text) {
@@ -20,7 +22,7 @@ std::string OneLine(const std::string& text) {
         }
         if (std::exchange(isBetween, false) && !line.empty()) line += "; ";
         if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f)
-            line += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+            fmt::format_to(std::back_inserter(line), "\\x{:02x}", byte);
         else
             line += c;
     }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
+#include "renderer/files/open_file_internal.h"
 
 namespace lull {
 
@@ -70,13 +71,6 @@ bool Create(const fs::path& name, OutputFile* file) {
     file->fd = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file->fd >= 0) file->temporary = name;
     return file->fd >= 0;
-}
-
-// Says whether the name is that of the open file.
-bool IsNamed(int fd, const fs::path& name) {
-    struct stat opened, named;
-    return fstat(fd, &opened) == 0 && lstat(name.c_str(), &named) == 0 &&
-           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
 // Creates the file and locks it. Where somebody is faster to lock it, it is theirs to remove, and

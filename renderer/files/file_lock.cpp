@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
+#include "renderer/files/open_file_internal.h"
 
 namespace lull {
 
@@ -27,13 +28,6 @@ std::string NameOfLock(const std::string& path) {
 
 [[noreturn]] void Fail(const std::string& name) {
     throw Error(fmt::format("cannot lock \"{}\": {}", name, std::strerror(errno)));
-}
-
-// Says whether the open file still has its name: who had the lock before has removed it.
-bool IsNamed(int fd, const std::string& name) {
-    struct stat opened, named;
-    return fstat(fd, &opened) == 0 && lstat(name.c_str(), &named) == 0 &&
-           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
 // Returns the locked file; -1 where another process has it and `mode` is not to wait.
