@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs what is missing, checks the format, builds and runs all tests; then builds the unit tests
+# Installs missing packages, checks the format and the phrases, builds and runs all tests; then builds the unit tests
 # once more with address and undefined-behaviour sanitizers and runs them. Fails if anything fails;
 # the last line says how many tests were skipped in both builds, and why.
 set -euo pipefail
@@ -12,6 +12,9 @@ install_browser
 
 echo "== format"
 find renderer stopping tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
+
+echo "== phrases"
+bash cmake/check_phrases.sh
 
 for preset in release sanitize; do
     echo "== $preset"

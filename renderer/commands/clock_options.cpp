@@ -35,7 +35,7 @@ std::string ClockOptions::Text() const {
 void AddClockOptions(CLI::App& app, ClockOptions* options) {
     auto* time = app.add_option("--time", options->time,
                                 "End after this time, such as 90s, 10m or 1h30m, with files "
-                                "written; until then the noisiest block goes on")
+                                "written; until then the noisiest block continues")
                      ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
                      ->type_name("TIME");
     app.add_option("--until", options->until, "The same, when the clock here shows this")

@@ -38,7 +38,7 @@ std::string WayOf(const PathStep& step) {
                                     ? std::string("as in a mirror or clear glass")
                                     : fmt::format("with density {:.5g} per sr", step.pdf);
     return fmt::format(
-        "     goes on {}towards {}, {}\n",
+        "     continues {}towards {}, {}\n",
         step.isTransmission && step.kind == PathStep::Kind::Surface ? "through it " : "",
         Numbers(step.direction), density);
 }
@@ -50,8 +50,8 @@ std::string EndOf(const PathLog& log, const Scene& scene) {
     if (last.kind == PathStep::Kind::Sky) return "";
     if (const int maxDepth = MaxDepth(scene.integrator); int(log.steps.size()) > maxDepth)
         return fmt::format("It ends at the greatest depth, {} bounces.\n", maxDepth);
-    return last.goesOn ? "It ends by chance, as little light could come this way.\n"
-                       : "It ends here: nothing goes on.\n";
+    return last.goesOn ? "Terminated by Russian roulette.\n"
+                       : "It ends here: nothing is scattered.\n";
 }
 
 bool ParsePixel(const std::string& text, Vec2i* pixel) {

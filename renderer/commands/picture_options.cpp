@@ -28,9 +28,10 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         ->capture_default_str();
     app.add_flag("--exr-half", options->format.exrHalf,
                  "Colours and normals of the EXR take 16 bits, up to 65504, instead of 32");
-    app.add_option("--display", options->display,
-                   "Show the render as it goes on in the viewer tev, or another that speaks its\n"
-                   "protocol and listens there; with --denoise, blocks as they were last denoised")
+    app.add_option(
+           "--display", options->display,
+           "Show the render in a viewer with tev's protocol at this address, while it runs;\n"
+           "with --denoise, blocks as they were last denoised")
         ->check([](const std::string& text) -> std::string {
             try {
                 ParseDisplayAddress(text);
@@ -41,7 +42,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         })
         ->type_name("HOST:PORT");
     app.add_option("--preview", options->preview,
-                   "Write the image as far as it is, as OUT.exr and OUT.png, every so many seconds")
+                   "Write the current image to OUT.exr and OUT.png every SECONDS")
         ->check(CLI::Range(0.1, 1e6))
         ->type_name("SECONDS");
 }

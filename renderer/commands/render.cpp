@@ -79,9 +79,10 @@ void ReadRule(PreparedRender* p) {
 void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warnings& warnings) {
     for (const Block& block : MakeBlocks(region, schedule))
         if (!block.votes && block.leader < 0)
-            warnings.Add({}, fmt::format("block of less than {} pixels a side goes on to the cap, "
-                                         "as it is too small to be judged",
-                                         schedule.smallestSide));
+            warnings.Add({},
+                         fmt::format("block of less than {} pixels a side continues to the cap, "
+                                     "as it is too small to be judged",
+                                     schedule.smallestSide));
 }
 
 // Says how the film is kept: whoever goes on from a checkpoint may look at the half. Throws Error

@@ -21,7 +21,7 @@ void ShareAmongRanks(Job* ranks, SessionOptions* options) {
     options->render.peers = ranks->ThePeers();
     options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
         ranks->Warn(
-            fmt::format("rank {} does not answer; if it has died, --resume goes on from the "
+            fmt::format("rank {} does not answer; if it has died, --resume continues from the "
                         "last checkpoint, with any number of ranks",
                         fmt::join(silent, ", ")));
     };

@@ -82,8 +82,7 @@ void PrintCapped(const Provenance& provenance, const RenderResult& result) {
     if (cap > 0)
         Say("--cap {} would probably be enough for all\n", cap);
     else
-        Say("nobody can tell yet which cap would be enough; --cap {} would show more\n",
-            2 * provenance.schedule.cap);
+        Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
 }
 
 // Says what was missing when the time was up. Of blocks within their first pass nobody knows the

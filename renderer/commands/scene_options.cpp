@@ -113,18 +113,18 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
         "sees them: trilinear or EWA, from smaller copies, which need memory");
     app.add_option("--exposure", options->exposure,
-                   "Brighten the image by so many stops: all values, those of the EXR as well,\n"
-                   "are multiplied by 2 to that power, which its header tells")
+                   "Exposure compensation in stops: multiply all values by 2^EV, also in the EXR,\n"
+                   "whose header records it [0]")
         ->check(CLI::Range(-100., 100.))
         ->type_name("EV");
     auto* environment =
         app.add_option(
                "--environment", options->environment,
-               "Surround the scene by this latitude-longitude image of radiance instead of\n"
-               "what surrounded it; its top is glTF's +y, or where the camera's up nearly is")
+               "Replace the environment map by this latitude-longitude image of radiance; its\n"
+               "top is glTF's +y, or the axis nearest to the camera's up vector")
             ->type_name("FILE.exr|.hdr");
     app.add_option("--environment-rotation", options->environmentRotation,
-                   "Turn it by so many degrees, counterclockwise as seen from the top")
+                   "Rotate it by DEG degrees, counterclockwise as seen from the top [0]")
         ->needs(environment)
         ->check(CLI::Range(-360., 360.))
         ->type_name("DEG");

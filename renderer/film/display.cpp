@@ -106,7 +106,7 @@ struct Display::State {
     bool Warn(const std::string& why) {
         if (!hasWarned && !ended)
             warn(
-                fmt::format("no viewer at {}:{}: {}; the render goes on, and looks for it now and "
+                fmt::format("no viewer at {}:{}: {}; the render continues and retries now and "
                             "then",
                             address.host, address.port, why));
         hasWarned = true;

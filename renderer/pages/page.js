@@ -3,8 +3,9 @@
 //   kind, title, cap, width, height, notes [text], warnings {kind: count}, provenance {}
 //   blocks [{x, y, width, height, end?, decisions? {threshold, spp [], value [], votes []},
 //            curves? {spp [], entropy [], noise []}}], in pixels of the image, row by row
-//   images [{name, label, rule, src, flipSrc?, figures?, seams?, cost?, saved?,
-//            blocks [{spp, seconds, ruleSeconds, estimated, and figures}]}]
+//   images [{name, label, rule, src, flipSrc?, visibleDifferenceSrc?, visibleBlocks?, figures?, seams?, cost?,
+//            saved?,          blocks [{spp, seconds, ruleSeconds, estimated, and figures}]}]
+//   viewing {name, pixelsPerDegree, threshold}: for visible differences, with the visibility threshold
 //   reference: the name of the image that the others are compared with
 //   totals (render); againstHuman, estimates, verifications (compare)
 //   bench {samplers [], points [{rule, setting, sampler, spp, seconds, sharesReference, and

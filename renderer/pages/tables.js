@@ -2,7 +2,8 @@
 // Fills in what was computed of a block, and the tables.
 
 const figureNames = [["rmse", "RMSE"], ["relMse", "relMSE"], ["rmseLightness", "RMSE of L"],
-                     ["psnr", "PSNR, dB"], ["ssim", "SSIM"], ["flip", "FLIP"]];
+                     ["psnr", "PSNR, dB"], ["ssim", "SSIM"], ["flip", "FLIP"],
+                     ["visibleDifference", "visible difference"]];
 // An image that is the same as the reference has an infinite PSNR, which JSON cannot hold.
 const showFigure = (figures, name) =>
   name === "psnr" && figures && figures.psnr === null && figures.rmseLightness === 0 ? "\u221e" : show(figures && figures[name], name === "ssim" ? 5 : 4);
@@ -25,7 +26,7 @@ function showBlock(data, i) {
   const rows = [];
   const add = (label, has, text) => { if (images.some(m => has(m.blocks[i]))) rows.push([label, ...images.map(m => has(m.blocks[i]) ? text(m.blocks[i]) : "\u2013")]); };
   add("samples per pixel", b => isNumber(b.spp), b => showCount(b.spp));
-  add("seconds of processors", b => b.seconds > 0, b => (b.estimated ? "~" : "") + showSeconds(b.seconds));
+  add("CPU time", b => b.seconds > 0, b => (b.estimated ? "~" : "") + showSeconds(b.seconds));
   add("of the rule", b => b.ruleSeconds > 0, b => showSeconds(b.ruleSeconds));
   for (const [name, label] of figureNames) add(label, b => name in b, b => showFigure(b, name));
   const difference = differenceToHuman(data, i);
@@ -35,7 +36,7 @@ function showBlock(data, i) {
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
   if (block.visibleError) rows.push(["visible error, denoised", `about ${block.visibleError.estimate.toFixed(2)}, probably at most ${block.visibleError.upper.toFixed(2)}`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["would probably have stopped at", `${showCount(block.neededSpp)} spp`]);
-  if (isNumber(block.neededSeconds)) rows.push(["seconds of processors it would have needed", `~${showSeconds(block.neededSeconds)}`]);
+  if (isNumber(block.neededSeconds)) rows.push(["CPU time needed (estimate)", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));
 
   const lines = data.images.filter(m => m.blocks && m.blocks[i] && m.name !== data.reference && isNumber(m.blocks[i].spp))
@@ -74,19 +75,21 @@ function showSummary(data) {
   add("mean spp", i => i.cost && show(i.cost.samples / (data.width * data.height), 4));
   add("samples", i => i.cost && showCount(i.cost.samples));
   add("samples saved", i => saved(i) && showShare(i.saved.samples));
-  add("seconds of processors", i => i.cost && i.cost.seconds > 0 && roughly(i.cost.estimated, showSeconds(i.cost.seconds)));
+  add("CPU time", i => i.cost && i.cost.seconds > 0 && roughly(i.cost.estimated, showSeconds(i.cost.seconds)));
   add("seconds saved", i => saved(i) && roughly(i.saved.estimated, showShare(i.saved.seconds)));
   add("of the rule", i => i.cost && i.cost.seconds > 0 && showShare(i.cost.ruleSeconds / (i.cost.seconds + i.cost.ruleSeconds)));
   for (const [name, label] of figureNames) add(label, i => i.figures && showFigure(i.figures, name));
+  add("blocks that differ visibly", i => i.figures && `${i.visibleBlocks} of ${data.blocks.length}`);
   add("seams", i => i.seams && show(i.seams.ratio, 3));
   if (rows.length) parent.append(makeTable("", ["", ...images.map(i => i.name)], rows));
   const notes = [];
-  if (images.some(i => i.figures)) notes.push("Errors are against the reference; PSNR, SSIM and FLIP of the 8-bit image.");
+  if (images.some(i => i.figures)) notes.push("Errors are against the reference; PSNR, SSIM, FLIP and visible differences of the 8-bit image.",
+    `Visible differences: ColorVideoVDP with the sensitivity of castleCSF, on a display of ${data.viewing.name}. A block differs visibly above ${show(data.viewing.threshold)}.`);
   if (images.some(i => i.seams)) notes.push("Seams: how much more the noise level jumps across borders of blocks than inside them; 1 is not at all.");
   if (images.some(i => i.cost && i.cost.estimated || i.saved && i.saved.estimated)) notes.push("~ marks what is estimated from the seconds that a block took for the samples it had.");
   if (notes.length) parent.append(make("p", {class: "small"}, notes.join(" ")));
   const h = data.againstHuman;
-  if (h) parent.append(make("p", {}, `Automatic against human: ${h.earlier} blocks earlier, ${h.later} later, ${showCount(h.meanDistance)} spp apart in the mean; ${showShare(Math.abs(h.savedSamples))} ${h.savedSamples < 0 ? "more" : "fewer"} samples.`));
+  if (h) parent.append(make("p", {}, `Automatic against human: ${h.earlier} blocks earlier, ${h.later} later, ${showCount(h.meanDistance)} spp apart on average; ${showShare(Math.abs(h.savedSamples))} ${h.savedSamples < 0 ? "more" : "fewer"} samples.`));
   const e = data.estimates;
   if (e && e.blocks) parent.append(make("p", {}, `The seconds to the cap, estimated where ${e.blocks} blocks stopped, are ${showShare(e.total)} off the measured in all and ${showShare(e.worst)} at the worst.`));
   const v = data.verifications || [];
@@ -110,7 +113,7 @@ function showTotals(data) {
     ["median", showCount(t.medianSpp) + " spp"],
     ["samples", showCount(t.samples) + (t.samplesSaved >= 5e-4 ? `; ${showShare(t.samplesSaved)} fewer than with ${showCount(data.cap)} spp everywhere` : "")],
     ["time", showSeconds(t.seconds)],
-    ["time of processors", showSeconds(t.threadSeconds) + (t.secondsSaved >= 5e-4 ? `, about ${showShare(t.secondsSaved)} less than to the cap` : "")],
+    ["CPU time", showSeconds(t.threadSeconds) + (t.secondsSaved >= 5e-4 ? `, about ${showShare(t.secondsSaved)} less than to the cap` : "")],
     ["of that the rule", `${showSeconds(t.criterionSeconds)}, ${showShare(t.criterionSeconds / t.threadSeconds)}`],
     ...(t.rejectedSamples ? [["samples rejected", showCount(t.rejectedSamples)]] : [])]));
 }

@@ -3,7 +3,7 @@
 // are side by side.
 
 const view = {a: 0, b: 1, mode: "one", overlay: "grid", zoom: 0, divide: 0.5, block: 0};
-let layers = [];  // pictures that can be shown: [{label, src, isMap}]
+let layers = [];  // pictures that can be shown: [{label, src, ends?}], with the ends of a map's scale
 const stages = [];
 let flickering = 0;  // the timer of pictures that take turns
 
@@ -14,7 +14,10 @@ const flickerMs = 500;
 function makeLayers(data) {
   for (const image of data.images) if (image.src) layers.push({label: image.label, src: image.src});
   for (const image of data.images)
-    if (image.flipSrc) layers.push({label: "FLIP error of " + image.name, src: image.flipSrc, isMap: true});
+    if (image.flipSrc) layers.push({label: "FLIP error of " + image.name, src: image.flipSrc, ends: ["0", "FLIP: difference that people see", "1"]});
+  for (const image of data.images)
+    if (image.visibleDifferenceSrc) layers.push({label: "Visible difference of " + image.name, src: image.visibleDifferenceSrc,
+      ends: ["0", `visible difference; visibility threshold ${show(data.viewing.threshold)} in the middle`, "\u221e"]});
 }
 
 // The numbers that an overlay colours: values, their places in [0, 1], colours and words for them.
@@ -166,11 +169,11 @@ function showLegend(data) {
   const legend = byId("legend");
   legend.replaceChildren();
   const numbers = overlayNumbers(data);
-  const isMap = [view.a, view.mode === "one" ? view.a : view.b].some(i => layers[i].isMap);
-  if (!numbers && !isMap) return;
+  const map = [view.a, view.mode === "one" ? view.a : view.b].map(i => layers[i]).find(l => l.ends);
+  if (!numbers && !map) return;
   const colour = numbers ? numbers.colour : viridis;
   const stops = [...Array(17).keys()].map(i => colour(i / 16)).join(",");
-  const ends = numbers ? numbers.ends : ["0", "FLIP: difference that people see", "1"];
+  const ends = (numbers || map).ends;
   legend.append(make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
     make("div", {class: "ends"}, ...ends.map(e => make("span", {}, e))));
 }

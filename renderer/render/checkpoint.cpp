@@ -91,7 +91,7 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film, const
     if (film->HasHalf() && !group.HasArray("half_sums"))
         throw Error(
             "it was written without the sums of the half of the samples, which are needed here; "
-            "begin anew");
+            "start again");
     ForEachPlane(*film, layers, rect, [&](const char* name, auto& plane, const PixelRect& part) {
         const auto bytes = group.Array<std::byte>(name, std::array{plane.Bytes(part)});
         StateReader reader(bytes);
@@ -104,8 +104,8 @@ void CheckFormat(const Hdf5Group& root) {
     const std::string format = root.HasAttribute("format") ? root.String("format") : "";
     if (format == kOlderFormat)
         throw Error(
-            "it was written by an older lull; go on with that one, or remove the file to begin "
-            "anew");
+            "it was written by an older lull; go on with that one, or remove the file to start "
+            "again");
     if (format != kFormat) throw Error("it is no checkpoint of this version of the program");
 }
 
@@ -144,7 +144,7 @@ void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, Ma
         else if (found.contains(key) != wanted.contains(key) || ValueIn(found, key) != value)
             throw Error(fmt::format(
                 "it belongs to a render with another {} ({} there, {} here); go on with the same, "
-                "or remove the file to begin anew",
+                "or remove the file to start again",
                 key, ValueIn(found, key), ValueIn(wanted, key)));
 }
 
@@ -158,7 +158,7 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
         if (block.spp > cap)
             throw Error(fmt::format(
                 "it has blocks of {} spp, more than the cap of {}; give a larger --cap, or remove "
-                "the file to begin anew",
+                "the file to start again",
                 block.spp, cap));
         if (isNewRule) {
             result.decisions.clear();

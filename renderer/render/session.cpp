@@ -86,7 +86,7 @@ void Session::Resume() {
 GuideFigures Session::Guidance() const {
     if (learner) return learner->Figures();
     GuideFigures figures;
-    figures.why = WhyNotGuided(scene, options.estimator).value_or("nobody asked for it");
+    figures.why = WhyNotGuided(scene, options.estimator).value_or("not requested");
     return figures;
 }
 

@@ -212,7 +212,7 @@ std::string ReprOf(const lull_answer& a) {
                                   ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
                                   : py::str();
     return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
-        .format(a.stop ? "stopped" : "goes on", a.spp, votes, a.value, a.threshold);
+        .format(a.stop ? "stopped" : "active", a.spp, votes, a.value, a.threshold);
 }
 
 std::string ReprOf(const Answer& answer) {

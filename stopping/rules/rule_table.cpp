@@ -27,7 +27,7 @@ constexpr RuleEntry kRules[] = {
     {.name = "learned",
      .argument = "[:NAME|:MODEL.h5]",
      .standard = nullptr,
-     .stops = "when a network has said \"no noise\" three times in a row",
+     .stops = "when a network finds no visible noise at three consecutive checks",
      .compares = RuleTrend::Probability,
      .takesCaution = true,
      .replay = Replay::Decides,
@@ -36,8 +36,8 @@ constexpr RuleEntry kRules[] = {
     {.name = "entropy",
      .argument = "[:T]",
      .standard = "0.64",
-     .stops = "when the visible noise, measured by how far SVD-entropy has fallen since half as "
-              "many samples, was below T@ in lightness three times in a row",
+     .stops = "when its visible noise, measured by the drop in SVD-entropy from n/2 to n spp, is "
+              "below T@ in L* at three consecutive checks",
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .replay = Replay::Decides,
@@ -75,8 +75,7 @@ constexpr RuleEntry kRules[] = {
     {.name = "lnoise",
      .argument = "[:T]",
      .standard = "0.65",
-     .stops = "when its noise in lightness (0 to 100), reduced where there is texture, was below "
-              "T@ three times in a row",
+     .stops = "when its noise in L*, masked by texture, is below T@ at three consecutive checks",
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .replay = Replay::Decides,

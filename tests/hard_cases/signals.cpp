@@ -285,7 +285,7 @@ std::vector<HardCase> SignalCases() {
             {"signals", "every rule on black, saturated, firefly and checkered blocks",
              "NaN that is below every threshold, or never", AnySignal},
             {"signals", "one pixel of 10,000 flickers by one 8-bit code",
-             "a rule waits for ever for what nobody sees", Flicker},
+             "a rule waits for ever for an invisible change", Flicker},
             {"signals", "pure texture before the rule entropy, blocks of 40 and 200 pixels",
              "fine detail taken for noise", PureTexture},
             {"signals",

@@ -66,6 +66,31 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
     EXPECT_EQ(one["images"][2]["cost"]["samples"], 100 * 90 * 160);
 }
 
+TEST(Compare, SaysHowManyBlocksDifferVisibly) {
+    const SceneDirectory directory;
+    for (const char* spp : {"20", "160"})
+        RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
+                               spp + ".exr");
+    const std::string files = "compare --automatic at20.exr --reference at160.exr --block 40 ";
+    const Outcome near = RunLull(directory, files + "--viewing 200cd,20ppd -o near");
+    ASSERT_EQ(near.exitCode, 0) << near.err;
+    EXPECT_TRUE(Contains(near.out, " blocks differ visibly at 20 pixels a degree\n")) << near.out;
+    RunLull(directory, files + "--viewing 200cd,90ppd -o far");
+    const Json json = directory.Read("near.compare.json"), image = json["images"][0];
+    EXPECT_EQ(json["viewing"]["name"], "200cd,20ppd,250lux");
+    EXPECT_GT(image["figures"]["visibleDifference"],
+              directory.Read("far.compare.json")["images"][0]["figures"]["visibleDifference"]);
+    int visible = 0;
+    for (const Json& block : image["blocks"])
+        visible +=
+            block["visibleDifference"].get<double>() > json["viewing"]["threshold"].get<double>();
+    EXPECT_EQ(image["visibleBlocks"], visible);
+
+    const Outcome bad = RunLull(directory, files + "--viewing 200 -o bad");
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_TRUE(Contains(bad.err, "100cd,40ppd,250lux")) << bad.err;
+}
+
 TEST(Compare, MakesTheDenoisedImageOfARender) {
     const SceneDirectory directory;
     const Outcome outcome =
@@ -114,7 +139,7 @@ TEST(Compare, TakesPicturesForDisplays) {
             EXPECT_TRUE(figures["rmse"].is_null());
             EXPECT_TRUE(figures["relMse"].is_null());
         }
-        for (const char* figure : {"rmseLightness", "psnr", "ssim", "flip"}) {
+        for (const char* figure : {"rmseLightness", "psnr", "ssim", "flip", "visibleDifference"}) {
             EXPECT_EQ(image["figures"][figure], expected["figures"][figure]) << names << figure;
             EXPECT_EQ(image["blocks"][1][figure], expected["blocks"][1][figure]);
         }

@@ -12,6 +12,7 @@ to the variance v (1 / spp - 1 / 10,000). One number for all blocks, set on the 
 import argparse
 import collections
 import csv
+import functools
 import itertools
 import os
 import subprocess
@@ -55,12 +56,13 @@ def sensitivity(o):
         print()
 
 
+@functools.lru_cache(1)
 def read(path):
     import OpenImageIO as oiio
     image = oiio.ImageBuf(path)
     names = image.spec().channelnames
     pixels = np.asarray(image.get_pixels(oiio.FLOAT), np.float32)
-    return lambda prefix: pixels[:, :, [names.index(prefix + c) for c in 'RGB']], float(image.spec().get_float_attribute('spp')), names
+    return lambda *channels: pixels[:, :, [names.index(c) for c in channels]]
 
 
 def noise(difference, random, count=32):
@@ -85,12 +87,12 @@ def load_blocks(o):
         whole = os.path.join(o.folder, name + '.exr')
         for b in numbers:
             path = whole if os.path.exists(whole) else os.path.join(o.folder, f'{name}-{b}.exr')
-            layer, spp = read(path)
             x, y = (b % 4 * SIDE, b // 4 * SIDE) if path == whole else (0, 0)
-            part = lambda prefix: layer(prefix)[y:y + SIDE, x:x + SIDE]
-            difference = (part('halfA.') - part('halfB.')) / 2 * np.sqrt(spp)
+            colour = lambda layer: read(path)(*(layer + c for c in 'RGB'))[y:y + SIDE, x:x + SIDE]
+            spp = read(path)('spp')[y:y + SIDE, x:x + SIDE]
+            difference = (colour('halfA.') - colour('halfB.')) / 2 * np.sqrt(spp)
             random = np.random.default_rng([o.seed, b])
-            blocks.append((name, b, human[f'p3d_{name}-view0_part6'][b], part(''), noise(difference, random)))
+            blocks.append((name, b, human[f'p3d_{name}-view0_part6'][b], colour(''), noise(difference, random)))
     return blocks
 
 
@@ -159,13 +161,15 @@ def report(o, viewing, blocks):
         limit = best(others, limits, stops_of)
         stops = stops_of(v, limit)
         rows.append((v, limit, 100 * critical_error(human[v], stops), correlation(human[v], stops), np.mean(human[v]), np.mean(stops),
-                     np.median(accepted[v])))
+                     np.median(accepted[v]), stops))
+    together = correlation(np.concatenate([human[v] for v in views]), np.concatenate([r[-1] for r in rows]))
     every = np.concatenate([accepted[v] for v in views])
     limit = best(human, limits, stops_of)
-    print(f'{viewing}: critical error {np.mean([r[2] for r in rows]):.1f} %, with one limit for all, {limit:.3g}, '
+    print(f'{viewing}: critical error {np.mean([r[2] for r in rows]):.1f} %, correlation of logarithms {together:.2f}, within '
+          f'viewpoints {np.mean([r[3] for r in rows]):.2f}; with one limit for all, {limit:.3g}, '
           f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
           f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
-    for v, limit, error, r, h, s, a in rows:
+    for v, limit, error, r, h, s, a, _ in rows:
         print(f'    {v:<14} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
               f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)
     if o.blocks:
@@ -193,7 +197,7 @@ if __name__ == '__main__':
     s.set_defaults(run=sensitivity)
     s = commands.add_parser('blocks')
     s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
-    s.add_argument('--viewing', default=';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 60) for cd in (80, 120, 200)))
+    s.add_argument('--viewing', default=';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 50, 60) for cd in (80, 100, 200)))
     s.add_argument('--blocks', action='store_true', help='a line a block')
     s.add_argument('--seed', type=int, default=1)
     s.set_defaults(run=judge_blocks)

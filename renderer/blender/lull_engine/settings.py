@@ -34,7 +34,7 @@ class LullSettings(bpy.types.PropertyGroup):
         name="Stop", default='DEFAULT',
         items=(('DEFAULT', "When noise is invisible", "Each block when people would no longer see "
                 "noise there"),
-               ('SAMPLES', "At a number of samples", "Every pixel gets so many"),
+               ('SAMPLES', "At a number of samples", "Every pixel gets this sample count"),
                ('RULE', "By another rule", "As `lull render --stop` takes it")))
     spp: IntProperty(name="Samples", default=64, min=1, max=1 << 24,
                      description="Samples per pixel, the same for all")

@@ -23,7 +23,7 @@ OpenImageFunction* LoadModule() {
     if (!function)
         throw std::runtime_error(
             fmt::format("it is neither PNG nor OpenEXR, and all other formats are read by \"{}\", "
-                        "which cannot be loaded ({}); install lull anew, or convert the image",
+                        "which cannot be loaded ({}); reinstall lull, or convert the image",
                         path, dlerror()));
     return reinterpret_cast<OpenImageFunction*>(function);
 }

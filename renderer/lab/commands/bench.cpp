@@ -14,6 +14,7 @@
 #include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
 #include "renderer/input/scene_hash.h"
+#include "renderer/lab/commands/viewing_option.h"
 #include "renderer/lab/comparison/bench.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/lab/pages/bench_page.h"
@@ -30,6 +31,7 @@ struct Options {
     std::vector<std::string> samplers = {"sobol", "random"};
     std::vector<std::string> rules;  // beside those that are always measured
     bool denoise = false;
+    DisplayModel display;
     std::string reference, external, output, report;
 };
 
@@ -72,6 +74,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("RULE");
     app.add_flag("--denoise", o->denoise,
                  "Also measure `denoised`, and images that are denoised where it stops");
+    AddViewingOption(app, &o->display);
     app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
     app.add_option("--external", o->external, "Images of other renderers: name,seconds,file.exr")
         ->type_name("E.csv");
@@ -231,8 +234,9 @@ void AddPoints(const Variant& variant, const ObservedRender& observed, const Gui
     const int threads = observed.result.threads;
     if (makesReference) bench->reference = TakeWholeImage(observed).image;
     PointCounter counter(bench->rules.size(), bench->options.render);
-    for (BenchPoint point : MeasurePoints(observed, bench->rules, *bench->reference, threads,
-                                          [&] { counter.Add(); })) {
+    for (BenchPoint point :
+         MeasurePoints(observed, bench->rules, *bench->reference, bench->options.display, threads,
+                       [&] { counter.Add(); })) {
         point.sampler = NameOf(variant);
         point.sharesReference = makesReference;
         point.seconds += guidance.seconds;
@@ -275,7 +279,7 @@ std::vector<std::string> Notes(const Options& options) {
             "other images, so that their errors are understated near the cap.",
             options.samplers.front()));
     notes.push_back(
-        "Seconds are the measured seconds of processors, of the samples and of the rule, divided "
+        "Seconds are the measured CPU time, of the samples and of the rule, divided "
         "by the number of threads.");
     if (options.guide.mode != GuideMode::Off)
         notes.push_back(
@@ -289,9 +293,10 @@ void WriteBench(const Bench& bench, const std::vector<std::string>& names) {
     WriteFileAtomically(options.output + ".csv", BenchCsv(bench.points));
     fmt::print("{}.csv\n", options.output);
     if (options.report.empty()) return;
-    WriteFileAtomically(options.report,
-                        MakeBenchPage(SceneName(options.render.scene.file), bench.render.provenance,
-                                      bench.points, names, *bench.reference, Notes(options)));
+    WriteFileAtomically(
+        options.report,
+        MakeBenchPage(SceneName(options.render.scene.file), bench.render.provenance, bench.points,
+                      names, *bench.reference, options.display, Notes(options)));
     fmt::print("{}\n", options.report);
 }
 
@@ -310,8 +315,8 @@ ExitCode RunBench(Options options, Job* ranks) {
     }
     if (const auto code = bench->render.End(isInterrupted)) return *code;
     for (size_t i = 0; i < bench->external.size(); ++i)
-        bench->points.push_back(
-            MeasureExternal(bench->external[i], bench->externalImages[i], *bench->reference));
+        bench->points.push_back(MeasureExternal(bench->external[i], bench->externalImages[i],
+                                                *bench->reference, options.display));
     WriteBench(*bench, names);
     for (const Variant& variant : variants)
         std::filesystem::remove(CheckpointName(options, variant));

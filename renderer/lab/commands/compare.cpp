@@ -77,6 +77,7 @@ ExitCode CompareFiles(CompareOptions options) {
     ComparisonReport report;
     report.title = std::filesystem::path(options.reference).filename().string();
     report.comparison = ComparisonOf(std::move(files), options.reference, options.render.schedule);
+    report.comparison.display = options.display;
     Measure(&report.comparison);
     WriteReport(options, report, {});
     return kDone;
@@ -222,6 +223,7 @@ void AddImages(const ObservedRender& observed, Compared* compared) {
     for (ComparedImage& image : compared->fromFiles) comparison.images.push_back(std::move(image));
     if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
         std::swap(comparison.images.back(), *(comparison.images.end() - 2));
+    comparison.display = options.display;
     Measure(&comparison);
     if (options.snapshots)
         report->estimates = CompareEstimates(comparison.images.front(), comparison.images.back());

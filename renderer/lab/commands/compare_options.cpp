@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/lab/commands/viewing_option.h"
+
 namespace lull {
 
 namespace {
@@ -19,10 +21,10 @@ counted as the rule's.
 
 Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
 lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
-8-bit image that a display shows; "seams", how much more the noise jumps across the borders of
+8-bit image that a display shows; "visible", its visible difference (ColorVideoVDP, Mantiuk et al.
+2024) on --viewing, 0 for equal images; "seams", how much more the noise jumps across the borders of
 blocks than inside (1: not at all). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for
-displays, of which there are no linear figures. Seconds are of processors; "~" marks those that are
-estimated.
+displays, of which there are no linear figures. Seconds are CPU time; "~" marks estimates.
 
 Files, beside each other:
   OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
@@ -63,6 +65,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.add_flag("--denoise", o->denoise,
                  "Also make the image that `lull render --denoise` gives, \"denoised\"")
         ->needs(scene);
+    AddViewingOption(app, &o->display);
     app.add_option("--verify", o->verify,
                    "Render the automatic image by itself as well, on each of these numbers of\n"
                    "threads (0: all), and measure what the rule costs and saves")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/commands/render_settings.h"
+#include "renderer/lab/metrics/display_model.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -11,6 +12,7 @@ struct CompareOptions {
     std::string rule = kDefaultRule;
     std::string human, automatic, reference;  // empty: none
     std::string output, report;
+    DisplayModel display;
     bool snapshots = false, denoise = false;
     std::vector<int> verify;  // numbers of threads
 };

@@ -14,11 +14,13 @@ std::string ImageLine(const Comparison& comparison, const ComparedImage& image) 
     std::string line = fmt::format("{:<12}", image.name);
     if (image.figures) {
         const ErrorFigures& f = *image.figures;
-        line += fmt::format(" {:>9} {:>9} {:>7.3f} {:>7} {:>8} {:>7.4f}", Figure("{:.4g}", f.rmse),
-                            Figure("{:.3g}", f.relMse), f.rmseLightness, Figure("{:.2f}", f.psnr),
-                            Figure("{:.5f}", f.ssim), f.flip);
+        line += fmt::format(" {:>9} {:>9} {:>7.3f} {:>7} {:>8} {:>7.4f} {:>7}",
+                            Figure("{:.4g}", f.rmse), Figure("{:.3g}", f.relMse), f.rmseLightness,
+                            Figure("{:.2f}", f.psnr), Figure("{:.5f}", f.ssim), f.flip,
+                            Figure("{:.3g}", f.visibleDifference));
     } else {
-        line += fmt::format(" {:>9} {:>9} {:>7} {:>7} {:>8} {:>7}", "-", "-", "-", "-", "-", "-");
+        line += fmt::format(" {:>9} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7}", "-", "-", "-", "-", "-",
+                            "-", "-");
     }
     line += fmt::format(" {:>6}", image.seams ? Figure("{:.2f}", image.seams->Ratio()) : "-");
     if (image.costs.empty()) return line;
@@ -32,6 +34,13 @@ std::string ImageLine(const Comparison& comparison, const ComparedImage& image) 
     return line;
 }
 
+std::string VisibleBlocksLine(const Comparison& comparison, const ComparedImage& image) {
+    const int visible = CountVisibleBlocks(image);
+    return fmt::format("{}: {} of {} blocks differ{} visibly at {} pixels a degree", image.name,
+                       visible, comparison.blocks.size(), visible == 1 ? "s" : "",
+                       comparison.display.pixelsPerDegree);
+}
+
 std::string Percent(const Json& share) {
     return share.is_number() ? fmt::format("{:.1f} %", 100 * share.get<double>()) : "unknown";
 }
@@ -40,12 +49,15 @@ std::string Percent(const Json& share) {
 
 std::string ComparisonTable(const ComparisonReport& report) {
     const Comparison& comparison = report.comparison;
-    std::string text = fmt::format(
-        "{:<12} {:>9} {:>9} {:>7} {:>7} {:>8} {:>7} {:>6} {:>9} {:>9} {:>6}\n", "image", "RMSE",
-        "relMSE", "RMSE L", "PSNR", "SSIM", "FLIP", "seams", "mean spp", "seconds", "rule");
+    std::string text =
+        fmt::format("{:<12} {:>9} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6} {:>9} {:>9} {:>6}\n",
+                    "image", "RMSE", "relMSE", "RMSE L", "PSNR", "SSIM", "FLIP", "visible", "seams",
+                    "mean spp", "seconds", "rule");
     for (const ComparedImage& image : comparison.images)
         text += ImageLine(comparison, image) + "\n";
 
+    for (const ComparedImage& image : comparison.images)
+        if (image.figures) text += VisibleBlocksLine(comparison, image) + "\n";
     const Json json = ComparisonJson(report);
     for (const Json& image : json["images"])
         if (image.contains("saved") && image["name"] != json["reference"])
@@ -55,12 +67,11 @@ std::string ComparisonTable(const ComparisonReport& report) {
                 Percent(image["saved"]["samples"]),
                 image["saved"]["seconds"].is_null()
                     ? ""
-                    : fmt::format(" and {} of the seconds of processors{}",
-                                  Percent(image["saved"]["seconds"]),
+                    : fmt::format(" and {} of the CPU time{}", Percent(image["saved"]["seconds"]),
                                   image["saved"]["estimated"].get<bool>() ? " (estimated)" : ""));
     if (const Json& human = json["againstHuman"]; human.is_object())
         text += fmt::format(
-            "automatic against human: {} blocks earlier, {} later, {:.0f} spp apart in the mean; "
+            "automatic against human: {} blocks earlier, {} later, {:.0f} spp apart on average; "
             "{} {} samples\n",
             human["earlier"].get<int>(), human["later"].get<int>(),
             human["meanDistance"].get<double>(),

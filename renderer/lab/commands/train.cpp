@@ -66,7 +66,7 @@ ExitCode RunTrain(const TrainOptions& options) {
         [&](const BlockSplit& split) { return PrintTo(&printer, talk, split, options.quiet); });
     if (!result) {
         if (!options.quiet && !checkpoint.Path().empty())
-            talk.Note("interrupted; --resume goes on from " + checkpoint.Path());
+            talk.Note("interrupted; --resume continues from " + checkpoint.Path());
         return kInterrupted;
     }
     const ScoreOptions judge{.grid = plan.settings.n};

@@ -51,8 +51,8 @@ std::vector<std::string> BenchRules(int passLength, int cap) {
 
 std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
                                       const std::vector<ObservedRule>& rules,
-                                      const RgbImage& reference, int threads,
-                                      const std::function<void()>& onPoint) {
+                                      const RgbImage& reference, const DisplayModel& display,
+                                      int threads, const std::function<void()>& onPoint) {
     std::vector<BenchPoint> points(rules.size());
     std::mutex mutex;  // guards onPoint
     const double pixels = double(render.context.film->Region().Area());
@@ -72,7 +72,7 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
         }
         point.spp = samples / pixels;
         point.seconds = point.threadSeconds / threads;
-        point.figures = Average(CompareImages(image.image, reference));
+        point.figures = Average(CompareImages(image.image, reference, display));
         const std::lock_guard lock(mutex);
         if (onPoint) onPoint();
     };
@@ -88,14 +88,15 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
 std::string BenchCsv(const std::vector<BenchPoint>& points) {
     std::string text =
         "rule,setting,sampler,spp,seconds,thread_seconds,rule_seconds,shares_reference,"
-        "rmse_lightness,relmse,ssim,flip,rmse,psnr\n";
+        "rmse_lightness,relmse,ssim,flip,rmse,psnr,visible_difference\n";
     for (const BenchPoint& p : points) {
         const ErrorFigures& f = p.figures;
         text += fmt::format(
-            "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.8g},{:.6g},{:.6g},{:.6g}\n",
+            "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.8g},{:.6g},{:.6g},{:.6g},{:."
+            "6g}\n",
             p.rule, p.setting, p.sampler, p.spp, p.seconds, p.threadSeconds, p.ruleSeconds,
             p.sharesReference ? "yes" : "no", f.rmseLightness, f.relMse, f.ssim, f.flip, f.rmse,
-            f.psnr);
+            f.psnr, f.visibleDifference);
     }
     return text;
 }
@@ -125,11 +126,11 @@ std::vector<ExternalImage> ReadExternalImages(const std::string& csv) {
 }
 
 BenchPoint MeasureExternal(const ExternalImage& external, const RgbImage& image,
-                           const RgbImage& reference) {
+                           const RgbImage& reference, const DisplayModel& display) {
     BenchPoint point;
     point.rule = external.name;
     point.seconds = external.seconds;
-    point.figures = Average(CompareImages(image, reference));
+    point.figures = Average(CompareImages(image, reference, display));
     return point;
 }
 

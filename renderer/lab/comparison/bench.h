@@ -26,11 +26,11 @@ std::vector<int> FixedLadder(int passLength, int cap);
 // setting over a range of it.
 std::vector<std::string> BenchRules(int passLength, int cap);
 
-// Returns a point for each rule, each compared with the reference. Seconds are those of `threads`
-// threads that are always busy. `onPoint` is called after each, by one thread at a time; it may be
-// empty.
+// Returns a point for each rule, each compared with the reference as a display shows both. Seconds
+// are those of `threads` threads that are always busy. `onPoint` is called after each, by one
+// thread at a time; it may be empty.
 std::vector<BenchPoint> MeasurePoints(const ObservedRender&, const std::vector<ObservedRule>& rules,
-                                      const RgbImage& reference, int threads,
+                                      const RgbImage& reference, const DisplayModel&, int threads,
                                       const std::function<void()>& onPoint);
 
 // Returns the points as a CSV with a line of column names.
@@ -48,6 +48,7 @@ struct ExternalImage {
 std::vector<ExternalImage> ReadExternalImages(const std::string& csv);
 
 // Returns the point of an image that has been read; it must have the reference's size.
-BenchPoint MeasureExternal(const ExternalImage&, const RgbImage& image, const RgbImage& reference);
+BenchPoint MeasureExternal(const ExternalImage&, const RgbImage& image, const RgbImage& reference,
+                           const DisplayModel&);
 
 }  // namespace lull

@@ -151,17 +151,24 @@ void Measure(Comparison* comparison) {
     const RgbImage* reference = hasReference ? &comparison->images.back().image : nullptr;
     for (ComparedImage& image : comparison->images) {
         if (reference && &image.image != reference) {
-            const ErrorMaps maps = CompareImages(image.image, *reference);
+            const ErrorMaps maps = CompareImages(image.image, *reference, comparison->display);
             image.figures = Average(maps);
             for (const PixelRect& block : blocks)
                 image.blockFigures.push_back(Average(maps, block));
             if (image.isDisplay || comparison->images.back().isDisplay) ForgetLinear(&image);
             image.flip = maps.flip;
+            image.visibleDifference = VisibleMap(maps.visibleDifference);
             if (image.noise.empty()) image.noise = LightnessError(image.image, *reference);
         }
         if (!image.noise.empty())
             image.seams = MeasureSeams(image.noise, image.image.width, blocks);
     }
+}
+
+int CountVisibleBlocks(const ComparedImage& image) {
+    return int(std::ranges::count_if(image.blockFigures, [](const ErrorFigures& figures) {
+        return figures.visibleDifference > kVisibilityThreshold;
+    }));
 }
 
 TotalCost SumCosts(const Comparison& comparison, const ComparedImage& image) {

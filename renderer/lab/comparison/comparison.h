@@ -33,7 +33,7 @@ struct ComparedImage {
     // Set by Measure(); the reference has no figures.
     std::optional<ErrorFigures> figures;
     std::vector<ErrorFigures> blockFigures;
-    std::vector<float> flip;
+    std::vector<float> flip, visibleDifference;  // at each pixel
     std::optional<Seams> seams;
 };
 
@@ -43,6 +43,7 @@ struct Comparison {
     int cap = 0;                        // 0: not known
     std::vector<ComparedImage> images;  // the last is the reference, if there is one
     bool hasReference = false;
+    DisplayModel display;  // for visible differences
 
     const ComparedImage* Find(const std::string& name) const;
     // Returns a block's place within the images.
@@ -55,6 +56,10 @@ Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
 // Fills in figures by the reference, and seams. If the noise of an image is not known, its error in
 // lightness stands for it. Throws Error if images differ in size.
 void Measure(Comparison*);
+
+// Returns the number of blocks with a visible difference above kVisibilityThreshold. The image must
+// have figures.
+int CountVisibleBlocks(const ComparedImage&);
 
 // Adds up what the blocks took.
 struct TotalCost {

@@ -41,9 +41,20 @@ double MeanOf(const std::vector<float>& map, int width, const PixelRect& rect) {
     return count > 0 ? sum / double(count) : std::numeric_limits<double>::quiet_NaN();
 }
 
+// Decodes 8-bit sRGB values.
+std::vector<float> LinearValues(std::span<const uint8_t> srgb) {
+    std::array<float, 256> linear;
+    for (int i = 0; i < 256; ++i) linear[size_t(i)] = float(DecodeSrgb(i / 255.0));
+    std::vector<float> values;
+    values.reserve(srgb.size());
+    for (const uint8_t v : srgb) values.push_back(linear[v]);
+    return values;
+}
+
 }  // namespace
 
-ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference) {
+ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference,
+                        const DisplayModel& display) {
     if (image.width != reference.width || image.height != reference.height)
         throw Error(fmt::format("an image of {}x{} pixels cannot be compared with one of {}x{}",
                                 image.width, image.height, reference.width, reference.height));
@@ -67,6 +78,8 @@ ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference) {
     }
     maps.ssim = SsimMap(a, b, image.width, image.height);
     maps.flip = FlipMap(a, b, image.width, image.height, DefaultPixelsPerDegree());
+    maps.visibleDifference =
+        FindVisibleDifference(LinearValues(a), LinearValues(b), image.width, image.height, display);
     return maps;
 }
 
@@ -77,7 +90,8 @@ ErrorFigures Average(const ErrorMaps& maps, const PixelRect& rect) {
             .rmseLightness = std::sqrt(mean(maps.lightness)),
             .psnr = 10 * std::log10(Sqr(255.0) / mean(maps.display)),
             .ssim = mean(maps.ssim),
-            .flip = mean(maps.flip)};
+            .flip = mean(maps.flip),
+            .visibleDifference = PooledDifference(maps.visibleDifference, rect)};
 }
 
 ErrorFigures Average(const ErrorMaps& maps) {

@@ -5,6 +5,7 @@
 
 #include "renderer/film/film.h"
 #include "renderer/image/rgb_image.h"
+#include "renderer/lab/metrics/visible_difference.h"
 
 namespace lull {
 
@@ -17,10 +18,13 @@ struct ErrorMaps {
     std::vector<float> display;    // squared, of the 8-bit display values, the mean over R, G, B
     std::vector<float> ssim;       // ssim.h; NaN near the border
     std::vector<float> flip;       // flip.h, at the viewing distance it takes by default
+    VisibleDifference visibleDifference;  // of the 8-bit display images
 };
 
-// Compares two images; values that are not finite count as 0. Throws Error if their sizes differ.
-ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference);
+// Compares two images; values that are not finite count as 0. Visible differences are those on
+// `display`. Throws Error if sizes differ.
+ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference,
+                        const DisplayModel& display = {});
 
 // Holds figures of an image or a part of it; NaN if one is not known. An infinite PSNR means that
 // the display images are the same; ssim is NaN if no window lies inside the image.
@@ -30,6 +34,7 @@ struct ErrorFigures {
     double rmseLightness = 0;  // of L, 0 to 100
     double psnr = 0;           // dB, of the 8-bit display image
     double ssim = 0, flip = 0;
+    double visibleDifference = 0;  // visible_difference.h, pooled
 };
 
 // Averages the maps over `rect`, in pixels from the image's upper left corner; not empty.

@@ -1,7 +1,7 @@
 "use strict";
 // Draws error against effort: lines for fixed samples per pixel, marks for stopping rules.
 
-const benchErrors = [["rmseLightness", "RMSE of L"], ["relMse", "relMSE"], ["dssim", "1 \u2212 SSIM"], ["flip", "FLIP"], ["rmse", "RMSE"]];
+const benchErrors = [["rmseLightness", "RMSE of L"], ["relMse", "relMSE"], ["dssim", "1 \u2212 SSIM"], ["flip", "FLIP"], ["visibleDifference", "visible difference"], ["rmse", "RMSE"]];
 // How the lines of each sampler, in their order, are dashed.
 const benchDashes = [undefined, [7, 5], [2, 4], [12, 4, 2, 4]];
 const benchEfforts = [["seconds", "seconds"], ["spp", "mean samples per pixel"]];
@@ -27,6 +27,13 @@ function benchSeries(data, error, effort) {
   }).filter(s => s.x.length);
 }
 
+// The visibility threshold, as a line from the least effort to the most.
+function thresholdSeries(data, error, effort) {
+  if (error !== "visibleDifference") return [];
+  const x = data.bench.points.map(p => p[effort]).filter(isNumber), ends = [Math.min(...x), Math.max(...x)];
+  return [{label: "visibility threshold", x: ends, y: ends.map(() => data.viewing.threshold), colour: "gray", dash: [2, 4], line: true}];
+}
+
 function startBench(data) {
   if (!data.bench) return;
   byId("bench").hidden = false;
@@ -37,7 +44,7 @@ function startBench(data) {
     parent.replaceChildren();
     const label = benchErrors.find(e => e[0] === error)[1];
     for (const [effort, name] of benchEfforts)
-      drawChart(parent, benchSeries(data, error, effort), {title: `${label} against ${name}`, xLabel: name, yLabel: label, logY: true, height: 420, endsVary: true});
+      drawChart(parent, [...benchSeries(data, error, effort), ...thresholdSeries(data, error, effort)], {title: `${label} against ${name}`, xLabel: name, yLabel: label, logY: true, height: 420, endsVary: true});
     fitCharts();
   };
   byId("bench-controls").append(makeChoice("Error", benchErrors, error, v => { error = v; draw(); }));
@@ -46,7 +53,7 @@ function startBench(data) {
     byId("bench-table").append(make("p", {class: "small"}, `Lines: ${data.bench.samplers.map((s, i) => s + " " + ["full", "dashed", "dotted", "dashed and dotted"][i]).join(", ")}.`));
   if (data.bench.points.some(p => isTooNear(data, p)))
     byId("bench-table").append(make("p", {class: "small"}, "Left out of the charts: points of which the reference shares the samples, beyond half the cap."));
-  const table = makeTable("All points", ["rule", "setting", "sampler", "mean spp", "seconds", "RMSE of L", "relMSE", "SSIM", "FLIP"],
-    data.bench.points.map(p => [p.rule, String(p.setting ?? ""), p.sampler || "", show(p.spp), show(p.seconds), show(p.rmseLightness), show(p.relMse), show(p.ssim, 5), show(p.flip)]));
+  const table = makeTable("All points", ["rule", "setting", "sampler", "mean spp", "seconds", "RMSE of L", "relMSE", "SSIM", "FLIP", "visible"],
+    data.bench.points.map(p => [p.rule, String(p.setting ?? ""), p.sampler || "", show(p.spp), show(p.seconds), show(p.rmseLightness), show(p.relMse), show(p.ssim, 5), show(p.flip), show(p.visibleDifference)]));
   byId("bench-table").append(make("div", {class: "scroll"}, table));
 }

@@ -7,13 +7,14 @@ namespace lull {
 std::string MakeBenchPage(const std::string& title, const Provenance& provenance,
                           const std::vector<BenchPoint>& points,
                           const std::vector<std::string>& samplers, const RgbImage& reference,
-                          const std::vector<std::string>& notes) {
+                          const DisplayModel& display, const std::vector<std::string>& notes) {
     Json page = {{"kind", "bench"},
                  {"title", title},
                  {"cap", provenance.schedule.cap},
                  {"width", reference.width},
                  {"height", reference.height},
                  {"provenance", ProvenanceJson(provenance)},
+                 {"viewing", ViewingJson(display)},
                  {"blocks", Json::array()},
                  {"notes", notes}};
     page["provenance"].erase("criterion");

@@ -23,7 +23,10 @@ Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
                  {"rule", image.rule}};
     if (image.isDisplay) json["display"] = true;
     if (image.wallSeconds) json["wallSeconds"] = *image.wallSeconds;
-    if (image.figures) json["figures"] = FiguresJson(*image.figures);
+    if (image.figures) {
+        json["figures"] = FiguresJson(*image.figures);
+        json["visibleBlocks"] = CountVisibleBlocks(image);
+    }
     if (image.seams)
         json["seams"] = {{"border", image.seams->border},
                          {"inside", image.seams->inside},
@@ -96,6 +99,12 @@ Json VerificationJson(const ComparisonReport& report, const Verification& v) {
     return json;
 }
 
+// Maps visible differences to [0, 1), the threshold to 1/2.
+std::vector<float> OnScale(std::vector<float> differences) {
+    for (float& v : differences) v = v / (v + float(kVisibilityThreshold));
+    return differences;
+}
+
 }  // namespace
 
 Json FiguresJson(const ErrorFigures& f) {
@@ -104,7 +113,14 @@ Json FiguresJson(const ErrorFigures& f) {
             {"rmseLightness", Number(f.rmseLightness)},
             {"psnr", Number(f.psnr)},
             {"ssim", Number(f.ssim)},
-            {"flip", Number(f.flip)}};
+            {"flip", Number(f.flip)},
+            {"visibleDifference", Number(f.visibleDifference)}};
+}
+
+Json ViewingJson(const DisplayModel& display) {
+    return {{"name", NameOf(display)},
+            {"pixelsPerDegree", display.pixelsPerDegree},
+            {"threshold", kVisibilityThreshold}};
 }
 
 TotalCost CostAtCap(const Comparison& comparison) {
@@ -131,6 +147,7 @@ Json ComparisonJson(const ComparisonReport& report) {
                  {"cap", comparison.cap},
                  {"width", comparison.region.Width()},
                  {"height", comparison.region.Height()}};
+    if (comparison.hasReference) json["viewing"] = ViewingJson(comparison.display);
     json["reference"] = comparison.hasReference ? Json(comparison.images.back().name) : Json();
     if (report.provenance) json["provenance"] = ProvenanceJson(*report.provenance);
     if (comparison.cap > 0) json["atCap"] = CostJson(CostAtCap(comparison));
@@ -166,6 +183,9 @@ std::string MakeComparisonPage(const ComparisonReport& report) {
         if (!image.flip.empty())
             page["images"][i]["flipSrc"] =
                 MapUri(image.flip, image.image.width, image.image.height);
+        if (!image.visibleDifference.empty())
+            page["images"][i]["visibleDifferenceSrc"] =
+                MapUri(OnScale(image.visibleDifference), image.image.width, image.image.height);
     }
     NotePictureScale(report.comparison.region.Width(), report.comparison.region.Height(), &page);
     return MakePage(page);

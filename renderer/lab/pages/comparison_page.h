@@ -22,6 +22,9 @@ struct ComparisonReport {
 // Returns the figures of an image; what is infinite or not known is null.
 Json FiguresJson(const ErrorFigures&);
 
+// Returns the viewing conditions of visible differences, and the visibility threshold.
+Json ViewingJson(const DisplayModel&);
+
 // Returns all figures, without pictures. Seconds are of processors unless said otherwise; those to
 // the cap are estimated for blocks that were not rendered that far.
 Json ComparisonJson(const ComparisonReport&);

@@ -157,7 +157,8 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
         judged.leftOut = "pointed at nothing";
     const double secondsEach = answers.seconds / std::max(1, answers.given);
     if (judged.leftOut.empty() && secondsEach < options.leastSeconds)
-        judged.leftOut = fmt::format("took {:.2g} s an answer, in which nobody looks", secondsEach);
+        judged.leftOut =
+            fmt::format("took {:.2g} s per answer, too short to compare images", secondsEach);
     if (judged.leftOut.empty()) judged.doubts = DoubtsOf(judged, secondsEach);
     judged.answers = std::move(answers);
     return judged;

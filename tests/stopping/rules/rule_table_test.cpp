@@ -45,7 +45,7 @@ TEST(RuleTable, IsWhatRulesDo) {
                 << rule.name;
         EXPECT_TRUE(std::ranges::is_sorted(rule.sweep.bench, std::greater<>())) << rule.name;
         EXPECT_GE(rule.sweep.largest, rule.sweep.least);
-        EXPECT_EQ(read.votes == 3, rule.stops.find("three times in a row") != rule.stops.npos);
+        EXPECT_EQ(read.votes == 3, rule.stops.find("three consecutive checks") != rule.stops.npos);
     }
 }
 

@@ -53,7 +53,7 @@ TEST(MeasurePoints, GivesAPointForEachRule) {
     const ObservedRender observed{context, options, result, histories};
     int calls = 0;
     const std::vector<BenchPoint> points =
-        MeasurePoints(observed, rules, TakeWholeImage(observed).image, 2, [&] { ++calls; });
+        MeasurePoints(observed, rules, TakeWholeImage(observed).image, {}, 2, [&] { ++calls; });
     ASSERT_EQ(points.size(), 3u);
     EXPECT_EQ(calls, 3);
     EXPECT_EQ(points[1].rule, "fixed");
@@ -75,9 +75,10 @@ TEST(BenchCsv, HasALineForEachPoint) {
     point.sampler = "sobol";
     point.spp = 64;
     point.figures.ssim = 0.5;
+    point.figures.visibleDifference = 2.5;
     const std::string csv = BenchCsv({point});
     EXPECT_TRUE(csv.starts_with("rule,setting,sampler,spp,seconds,"));
-    EXPECT_TRUE(Contains(csv, "\ndammertz,0.02,sobol,64,0,0,0,no,0,0,0.5,0,0,0\n")) << csv;
+    EXPECT_TRUE(Contains(csv, "\ndammertz,0.02,sobol,64,0,0,0,no,0,0,0.5,0,0,0,2.5\n")) << csv;
 }
 
 TEST(ReadExternalImages, ReadsNamesSecondsAndFiles) {
@@ -95,7 +96,7 @@ TEST(ReadExternalImages, ReadsNamesSecondsAndFiles) {
 TEST(MeasureExternal, ComparesAnImageWithTheReference) {
     const RgbImage reference{4, 4, std::vector<float>(48, 0.5f)},
         image{4, 4, std::vector<float>(48, 0.75f)};
-    const BenchPoint point = MeasureExternal({"other", 1.5, "a.exr"}, image, reference);
+    const BenchPoint point = MeasureExternal({"other", 1.5, "a.exr"}, image, reference, {});
     EXPECT_EQ(point.rule, "other");
     EXPECT_EQ(point.seconds, 1.5);
     EXPECT_EQ(point.sampler, "");

@@ -183,5 +183,27 @@ TEST(CompareEstimates, ComparesWithWhatWasMeasured) {
     EXPECT_DOUBLE_EQ(error.worst, 20. / 25 - 1);
 }
 
+TEST(CountVisibleBlocks, CountsThoseAboveTheThreshold) {
+    Comparison comparison = BeginComparison({{0, 0}, {90, 30}}, {.blockSize = 30});
+    const auto add = [&](float left, float middle) {
+        ComparedImage image;
+        image.image = {90, 30, {}};
+        for (int i = 0; i < 90 * 30; ++i)
+            for (int c = 0; c < 3; ++c)
+                image.image.values.push_back(i % 90 < 30 ? left : i % 90 < 60 ? middle : 0.5f);
+        comparison.images.push_back(std::move(image));
+    };
+    add(0.9f, 0.5f);    // plain to see
+    add(0.5f, 0.501f);  // below one step of 8 bits
+    add(0.5f, 0.5f);
+    Measure(&comparison);
+    EXPECT_GT(comparison.images[0].blockFigures[0].visibleDifference, kVisibilityThreshold);
+    EXPECT_GE(CountVisibleBlocks(comparison.images[0]), 1);
+    EXPECT_LT(CountVisibleBlocks(comparison.images[0]), 3);
+    EXPECT_EQ(CountVisibleBlocks(comparison.images[1]), 0);
+    ASSERT_EQ(comparison.images[0].visibleDifference.size(), 2700u);
+    EXPECT_GT(comparison.images[0].visibleDifference[15 * 90 + 15], kVisibilityThreshold);
+}
+
 }  // namespace
 }  // namespace lull

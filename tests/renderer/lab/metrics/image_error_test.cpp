@@ -32,6 +32,7 @@ TEST(CompareImages, FindsNoErrorInTheSameImage) {
     EXPECT_TRUE(std::isinf(f.psnr));
     EXPECT_NEAR(f.ssim, 1, 1e-6);
     EXPECT_EQ(f.flip, 0);
+    EXPECT_EQ(f.visibleDifference, 0);
 }
 
 TEST(CompareImages, MeasuresLinearErrors) {
@@ -55,6 +56,7 @@ TEST(CompareImages, AgreesWithOtherPrograms) {
     EXPECT_NEAR(f.psnr, 26.5195325, 1e-5);
     EXPECT_NEAR(f.ssim, 0.9058999, 1e-6);
     EXPECT_NEAR(f.flip, 0.1022064, 2e-5);
+    EXPECT_NEAR(f.visibleDifference, 11.37628, 1e-3);
 }
 
 TEST(CompareImages, TakesWhatIsNotFiniteAsBlack) {

@@ -74,8 +74,10 @@ TEST(MakeComparisonPage, HasPicturesAndErrorMaps) {
     ASSERT_EQ(data["images"].size(), 3u);
     for (const Json& image : data["images"])
         EXPECT_TRUE(image["src"].get<std::string>().starts_with("data:image/png"));
-    EXPECT_TRUE(data["images"][0].contains("flipSrc"));
-    EXPECT_FALSE(data["images"][2].contains("flipSrc"));
+    for (const char* map : {"flipSrc", "visibleDifferenceSrc"}) {
+        EXPECT_TRUE(data["images"][0].contains(map));
+        EXPECT_FALSE(data["images"][2].contains(map));
+    }
 }
 
 // Whatever is compared, the page can be opened.
@@ -86,6 +88,7 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
     for (ComparedImage& image : report.comparison.images) {
         image.image = {2901, 1601, std::vector<float>(2901 * 1601 * 3, 0.5f)};
         if (!image.flip.empty()) image.flip.assign(2901 * 1601, 0.25f);
+        if (!image.visibleDifference.empty()) image.visibleDifference.assign(2901 * 1601, 7);
     }
     const Json data = DataOf(MakeComparisonPage(report));
     EXPECT_EQ(data["width"], 2901);  // blocks are where they are
@@ -93,6 +96,7 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
     EXPECT_TRUE(Contains(data["notes"][1].get<std::string>(), "2x2"));
     for (const Json& image : data["images"]) EXPECT_EQ(SizeOf(image["src"]), Vec2i(1451, 801));
     EXPECT_EQ(SizeOf(data["images"][0]["flipSrc"]), Vec2i(1451, 801));
+    EXPECT_EQ(SizeOf(data["images"][0]["visibleDifferenceSrc"]), Vec2i(1451, 801));
     EXPECT_EQ(SizeOf(PictureUri({3, 2, std::vector<float>(18)})), Vec2i(3, 2));
     EXPECT_EQ(DataOf(MakeComparisonPage(TwoImages()))["notes"].size(), 0u);
 }
@@ -106,10 +110,13 @@ TEST(MakeBenchPage, HasThePoints) {
     point.figures.psnr = std::numeric_limits<double>::infinity();
     Provenance provenance;
     provenance.schedule.cap = 100;
-    const Json data = DataOf(MakeBenchPage("room", provenance, {point}, {"sobol"},
-                                           {2, 2, std::vector<float>(12)}, {"a note"}));
+    const Json data =
+        DataOf(MakeBenchPage("room", provenance, {point}, {"sobol"}, {2, 2, std::vector<float>(12)},
+                             {.pixelsPerDegree = 60}, {"a note"}));
     EXPECT_EQ(data["bench"]["points"][0]["rule"], "fixed");
     EXPECT_TRUE(data["bench"]["points"][0]["psnr"].is_null());
+    EXPECT_EQ(data["viewing"]["name"], "100cd,60ppd,250lux");
+    EXPECT_EQ(data["viewing"]["threshold"], kVisibilityThreshold);
     EXPECT_EQ(data["notes"][0], "a note");
 }
 

@@ -134,7 +134,8 @@ TEST(CollectObservers, SaysOfWhomItDoubts) {
                                          {.observer = "c", .session = "3", .seconds = 7},
                                          {.observer = "d", .session = "4", .repeats = {4, 0}}});
     EXPECT_EQ(collected.observers[0].doubts, "failed 1 of 4 checks");
-    EXPECT_EQ(collected.observers[1].leftOut, "took 0.12 s an answer, in which nobody looks");
+    EXPECT_EQ(collected.observers[1].leftOut,
+              "took 0.12 s per answer, too short to compare images");
     EXPECT_EQ(collected.observers[1].doubts, "");
     EXPECT_EQ(collected.observers[2].doubts, "took only 0.29 s an answer");
     EXPECT_EQ(collected.observers[3].doubts,

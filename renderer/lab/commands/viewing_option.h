@@ -1,0 +1,13 @@
+// Declares --viewing, the viewing conditions for visible differences.
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "renderer/lab/metrics/display_model.h"
+
+namespace lull {
+
+// Adds --viewing; `display` must outlive the parsing.
+void AddViewingOption(CLI::App& app, DisplayModel* display);
+
+}  // namespace lull
