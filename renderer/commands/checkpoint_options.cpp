@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
@@ -49,6 +50,15 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
             .interval = interval,
             .resume = std::filesystem::exists(file),
             .isImplied = true};
+}
+
+FileLock LockCheckpoint(const std::string& file) {
+    std::optional<FileLock> lock = FileLock::Try(file);
+    if (!lock)
+        throw Error(file +
+                    ": another process that runs now writes this checkpoint; wait for its end, or "
+                    "name another file");
+    return std::move(*lock);
 }
 
 void CheckCheckpoint(const CheckpointOptions& options) {

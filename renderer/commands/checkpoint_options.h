@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 
+#include "renderer/files/file_lock.h"
 #include "renderer/render/session.h"
 
 namespace lull {
@@ -15,6 +16,10 @@ CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options);
 
 // Returns the options of a render that goes on from the file without being told to.
 CheckpointOptions ResumeIfThere(const std::string& file, double interval);
+
+// Returns exclusive access to a checkpoint, for as long as work may write it. Throws Error if
+// another process has it.
+FileLock LockCheckpoint(const std::string& file);
 
 // Throws Error if the file could not be written, or if it is there and not to be resumed from, as
 // the render would replace it.

@@ -44,14 +44,21 @@ RenderJob::RenderJob(const RenderSettings& given, Job* ranks, bool withHalf)
 
 bool RenderJob::Leads() const { return !ranks || ranks->Rank() == 0; }
 
-void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs) const {
+void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs) {
     if (!Leads()) return;
     const CheckpointOptions& checkpoint = settings.checkpoint;
     outputs.push_back({checkpoint.isImplied ? "the checkpoint" : "--checkpoint", checkpoint.file});
     for (const NamedFile& file : InputsOf(settings.scene, input.description))
         inputs.push_back(file);
     CheckOutputs(outputs, inputs);
+    LockCheckpoint();
     CheckCheckpoint(checkpoint);
+}
+
+void RenderJob::LockCheckpoint() {
+    checkpointLock.reset();
+    if (const std::string& file = settings.checkpoint.file; Leads() && !file.empty())
+        checkpointLock.emplace(lull::LockCheckpoint(file));
 }
 
 void RenderJob::Compile() {

@@ -15,6 +15,7 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
+#include "renderer/files/file_lock.h"
 #include "renderer/files/outputs.h"
 
 namespace lull {
@@ -31,8 +32,12 @@ class RenderJob {
     // Says whether this is the first rank.
     bool Leads() const;
     // There, throws Error where a result or the checkpoint would replace another or an input, of
-    // which those of the scene are known, or could not be written now.
-    void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {}) const;
+    // which those of the scene are known, or could not be written now. Takes the checkpoint for
+    // this process alone.
+    void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {});
+    // Takes that of the settings, which have changed, instead. Throws Error if another process has
+    // it.
+    void LockCheckpoint();
     // Compiles the scene, and sets the provenance; the rule is left to be filled in.
     void Compile();
     // Returns what checkpoints and ranks have to agree on, by the provenance as it is.
@@ -54,6 +59,9 @@ class RenderJob {
     SceneInput input;
     std::unique_ptr<const Scene> scene;  // null before Compile()
     Provenance provenance;
+
+  private:
+    std::optional<FileLock> checkpointLock;
 };
 
 // Lets errors and warnings be JSON where all there is to say is; to be called first of all.

@@ -40,6 +40,7 @@ int Lock(const std::string& name, int mode) {
         while (result != 0 && errno == EINTR);
         if (result == 0 && IsNamed(fd, name)) return fd;
         const int reason = result == 0 ? 0 : errno;
+        if (reason == ENOSYS || reason == EOPNOTSUPP) return fd;  // no file there can be locked
         close(fd);
         if (reason == EWOULDBLOCK) return -1;
         errno = reason;

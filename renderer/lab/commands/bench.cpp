@@ -149,18 +149,18 @@ struct Bench {
     std::vector<BenchPoint> points;
 };
 
-void CheckFiles(const Bench& bench) {
-    const Options& options = bench.options;
+void CheckFiles(Bench* bench) {
+    const Options& options = bench->options;
     std::vector<NamedFile> outputs = {{"-o", options.output + ".csv"},
                                       {"--report", options.report}};
     for (const Variant& variant : Variants(options))
         outputs.push_back({"the checkpoint", CheckpointName(options, variant)});
     std::vector<NamedFile> inputs = {{"--reference", options.reference},
                                      {"--external", options.external}};
-    for (const ExternalImage& image : bench.external)
+    for (const ExternalImage& image : bench->external)
         inputs.push_back({"an image of --external", image.file});
     for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
-    bench.render.CheckFiles(std::move(outputs), std::move(inputs));
+    bench->render.CheckFiles(std::move(outputs), std::move(inputs));
 }
 
 // Checks all that can be wrong before the work begins.
@@ -175,7 +175,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, Job* ranks) {
     }
     bench->rules = MakeRules(options, region, bench->denoiser);
     if (!options.external.empty()) bench->external = ReadExternalImages(options.external);
-    CheckFiles(*bench);
+    CheckFiles(bench.get());
     if (!options.reference.empty()) bench->reference = ReadImageOfSize(options.reference, region);
     for (const ExternalImage& external : bench->external)
         bench->externalImages.push_back(ReadImageOfSize(external.file, region));
@@ -254,6 +254,7 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     const PixelRect& region = render.input.region;
     settings.checkpoint = ResumeIfThere(CheckpointName(bench->options, variant),
                                         bench->options.render.checkpoint.interval);
+    render.LockCheckpoint();
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
     SessionOptions how = MakeOptions(*bench, variant);
     how.render.makeCriterion = MakeObservers(bench->rules, region, settings.schedule,

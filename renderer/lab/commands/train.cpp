@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/interrupt.h"
 #include "renderer/commands/talk.h"
@@ -49,6 +50,8 @@ ExitCode RunTrain(const TrainOptions& options) {
         std::vector<NamedFile>{
             {"-o", options.output}, {"the checkpoint", checkpointName}, {"--csv", options.csv}},
         InputsOf(plan));
+    std::optional<FileLock> lock;
+    if (!checkpointName.empty()) lock.emplace(LockCheckpoint(checkpointName));
     const Talk talk{.isJson = options.jsonProgress};
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
