@@ -34,6 +34,8 @@ ExitCode Run(Job* job, const Command& command) {
     } catch (const UsageError& e) {
         message = OneLine(e.what());
         code = kWrongUsage;
+    } catch (const Errors& e) {
+        message = e.what();
     } catch (const std::bad_alloc&) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
     } catch (const std::system_error& e) {  // as of what prints, which does not say to where
@@ -79,6 +81,31 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     return start + "; there are " + all;
 }
 
+// Returns why the words of a command cannot be read, and which option one may have been meant to be.
+std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
+    const auto given = app.get_subcommands();
+    const CLI::App& command = given.empty() ? app : *given.front();
+    const std::string help = "; lull " + (given.empty() ? "" : command.get_name() + " ") +
+                             "--help lists what can be given";
+    const std::vector<std::string> rest = app.remaining(true);
+    if (error.get_exit_code() != int(CLI::ExitCodes::ExtrasError) || rest.empty())
+        return error.what() + help;
+    // They come in no order; the option is what the others belong to.
+    const auto option =
+        std::ranges::find_if(rest, [](const auto& w) { return w.starts_with("-"); });
+    if (option == rest.end()) return "unexpected argument '" + rest.front() + "'" + help;
+    const std::string word = option->substr(0, option->find('='));
+    std::string nearest;
+    for (const CLI::Option* known : command.get_options())
+        for (const std::string& name : known->get_lnames())
+            if (nearest.empty() || Distance(word, "--" + name) < Distance(word, nearest))
+                nearest = "--" + name;
+    const std::string start = "there is no option " + word;
+    return Distance(word, nearest) <= std::max<size_t>(1, nearest.size() / 3)
+               ? start + "; did you mean " + nearest + "?"
+               : start + help;
+}
+
 ExitCode Main(Job* job, int argc, char** argv) {
     CLI::App app("lull renders pbrt-v3 scenes and stops each part of the image by itself.", "lull");
     app.set_version_flag("--version", "lull " LULL_VERSION);
@@ -104,8 +131,11 @@ ExitCode Main(Job* job, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        const ExitCode code = app.exit(e) == 0 ? kDone : kWrongUsage;
-        return Run(job, [code] { return code; });
+        if (e.get_exit_code() == 0) {
+            app.exit(e);
+            return Run(job, [] { return kDone; });
+        }
+        return Run(job, [&]() -> ExitCode { throw UsageError(ProblemOfUsage(app, e)); });
     }
     const auto isShared = [&](const char* name) { return app.got_subcommand(name); };
     if (job->Count() > 1 && std::ranges::none_of(sharedCommands, isShared))

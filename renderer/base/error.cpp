@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <iterator>
 #include <utility>
 
@@ -29,21 +30,88 @@ std::string OneLine(const std::string& text) {
     return line;
 }
 
+namespace {
+
+// Returns a phrase with "..." in place of all that it quotes. An apostrophe within a word does not
+// quote.
+std::string WithoutQuotes(const std::string& phrase) {
+    std::string text;
+    for (size_t i = 0; i < phrase.size(); ++i) {
+        const char c = phrase[i];
+        text += c;
+        const bool opens =
+            c == '"' ||
+            (c == '\'' && (i == 0 || !std::isalnum(static_cast<unsigned char>(phrase[i - 1]))));
+        const size_t end = opens ? phrase.find(c, i + 1) : std::string::npos;
+        if (end == std::string::npos) continue;
+        text += std::string("...") + c;
+        i = end;
+    }
+    return text;
+}
+
+}  // namespace
+
 void Warnings::Add(const FileLoc& loc, const std::string& kind, const std::string& detail) {
+    Add(loc, kind, detail, true);
+}
+
+void Warnings::AddMinor(const FileLoc& loc, const std::string& kind) {
+    Add(loc, kind, "", isVerbose);
+}
+
+void Warnings::Add(const FileLoc& loc, const std::string& kind, const std::string& detail,
+                   bool isPassedOn) {
     std::lock_guard lock(mutex);
-    if (counts[kind]++ == 0 && sink)
+    Count& count = counts[kind];
+    if (count.count++ > 0 || !isPassedOn) return;
+    count.isShown = ++alike[WithoutQuotes(kind)] <= kMostAlike;
+    if (count.isShown && sink)
         sink(loc.Prefix() + "warning: " + kind + (detail.empty() ? "" : ": " + detail));
+}
+
+void Warnings::Substitute(const FileLoc& loc, const std::string& problem,
+                          const std::string& substitute) {
+    if (substitutes)
+        Add(loc, problem + "; " + substitute);
+    else
+        AddError(Error(loc, problem + "; with --substitute " + substitute));
+}
+
+void Warnings::AddError(const Error& error) {
+    std::lock_guard lock(mutex);
+    if (errors.size() < kMostErrors)
+        errors.push_back(error);
+    else
+        ++moreErrors;
+}
+
+void Warnings::ThrowErrors() {
+    std::lock_guard lock(mutex);
+    const std::vector<Error> kept = std::exchange(errors, {});
+    const size_t more = std::exchange(moreErrors, 0);
+    if (kept.empty()) return;
+    if (kept.size() == 1) throw kept[0];
+    std::string lines;
+    for (const Error& error : kept) {
+        if (!lines.empty()) lines += '\n';
+        lines += OneLine(error.what());
+    }
+    if (more > 0) lines += fmt::format("\nand {} more", more);
+    throw Errors(lines);
 }
 
 std::map<std::string, int> Warnings::Counts() const {
     std::lock_guard lock(mutex);
-    return counts;
+    std::map<std::string, int> numbers;
+    for (const auto& [kind, count] : counts) numbers[kind] = count.count;
+    return numbers;
 }
 
 int Warnings::Total() const {
     std::lock_guard lock(mutex);
     int total = 0;
-    for (const auto& [kind, count] : counts) total += count;
+    for (const auto& [kind, count] : counts) total += count.count;
     return total;
 }
 
@@ -51,7 +119,11 @@ void Warnings::Summarize() const {
     std::lock_guard lock(mutex);
     if (!sink) return;
     for (const auto& [kind, count] : counts)
-        if (count > 1) sink("warning: " + kind + " (" + std::to_string(count) + " times in all)");
+        if (count.isShown && count.count > 1)
+            sink(fmt::format("warning: {} ({} times in all)", kind, count.count));
+    for (const auto& [kind, count] : alike)
+        if (count > kMostAlike)
+            sink(fmt::format("warning: and {} more: {}", count - kMostAlike, kind));
 }
 
 }  // namespace lull

@@ -1,12 +1,14 @@
 // Reports what is wrong with a scene and where: locations, errors, counted warnings.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lull {
 
@@ -29,32 +31,94 @@ class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& message) : std::runtime_error(message) {}
     Error(const FileLoc& loc, const std::string& message)
-        : std::runtime_error(loc.Prefix() + message) {}
+        : std::runtime_error(loc.Prefix() + message), loc(loc) {}
+
+    const FileLoc& Loc() const { return loc; }
+    // Returns the message without its place.
+    std::string Problem() const { return what() + loc.Prefix().size(); }
+
+  private:
+    FileLoc loc;
 };
 
-// Collects warnings: the first of each kind is passed on at once, all are counted. Thread-safe.
+// Several errors of one scene; what() has one a line.
+class Errors : public Error {
+  public:
+    using Error::Error;
+};
+
+// Collects what is said of a scene: warnings, and errors after which the rest of the scene can
+// still be checked. Of each kind of warning the first is passed on at once, and all are counted.
+// Kinds that differ only in what they quote are alike, and at most kMostAlike of them are passed
+// on. Thread-safe.
 class Warnings {
   public:
     using Sink = std::function<void(const std::string&)>;
+    static constexpr int kMostAlike = 10;
+    static constexpr size_t kMostErrors = 10;
 
     // Passes on complete messages without a trailing newline; no sink keeps them silent.
-    explicit Warnings(Sink sink = {}) : sink(std::move(sink)) {}
+    // `substitutes`: see Substitute(); `isVerbose`: see AddMinor().
+    explicit Warnings(Sink sink = {}, bool substitutes = false, bool isVerbose = false)
+        : sink(std::move(sink)), substitutes(substitutes), isVerbose(isVerbose) {}
 
     // Counts a warning of `kind` (a phrase that all alike share, such as "zero-area triangle");
     // `detail` describes this one and is shown for the first of its kind only.
     void Add(const FileLoc& loc, const std::string& kind, const std::string& detail = "");
 
+    // Counts a warning of what does not change the image; it is passed on only with `isVerbose`.
+    void AddMinor(const FileLoc& loc, const std::string& kind);
+
+    // Reports something that a scene asks for and cannot have, such as a missing file. The caller
+    // continues with a substitute, which `substitute` names: "a matte material stands in". With
+    // `substitutes` this is a warning, otherwise an error as AddError() keeps it.
+    void Substitute(const FileLoc& loc, const std::string& problem, const std::string& substitute);
+    void Substitute(const Error& error, const std::string& substitute) {
+        Substitute(error.Loc(), error.Problem(), substitute);
+    }
+    bool Substitutes() const { return substitutes; }
+
+    // Keeps an error for ThrowErrors().
+    void AddError(const Error&);
+    // Calls work(). Keeps the Error that it throws, and returns whether there was none.
+    template <typename Work>
+    bool Try(const Work& work) {
+        try {
+            work();
+        } catch (const Error& error) {
+            AddError(error);
+            return false;
+        }
+        return true;
+    }
+    // Throws the error that was kept, or Errors: the first kMostErrors, and how many more there
+    // are; they are kept no longer. Does nothing where there is none.
+    void ThrowErrors();
+
     // Returns how often each kind occurred.
     std::map<std::string, int> Counts() const;
     int Total() const;
 
-    // Passes on "... (N times in all)" for every kind seen more than once.
+    // Passes on "... (N times in all)" for every kind that was passed on and seen more than once,
+    // and how many of those alike were not.
     void Summarize() const;
 
   private:
+    struct Count {
+        int count = 0;
+        bool isShown = false;
+    };
+
+    void Add(const FileLoc& loc, const std::string& kind, const std::string& detail,
+             bool isPassedOn);
+
     Sink sink;
+    bool substitutes, isVerbose;
     mutable std::mutex mutex;
-    std::map<std::string, int> counts;
+    std::map<std::string, Count> counts;
+    std::map<std::string, int> alike;  // kinds, by what they have in common
+    std::vector<Error> errors;         // the first
+    size_t moreErrors = 0;
 };
 
 }  // namespace lull

@@ -138,11 +138,12 @@ void PrintCosts(const Scene& scene, double parseSeconds) {
 }
 
 ExitCode RunInfo(const SceneOptions& options) {
-    Warnings warnings = MakePrintedWarnings();
+    Warnings warnings = MakePrintedWarnings(options);
     const auto start = std::chrono::steady_clock::now();
     const Description description = LoadDescription(options, warnings);
     const double parseSeconds = SecondsSince(start);
     const std::unique_ptr<const Scene> scene = Compile(description, options.compile, warnings);
+    warnings.Summarize();
 
     Line("scene", options.file);
     PrintGeometry(description, *scene);

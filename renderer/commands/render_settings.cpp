@@ -113,7 +113,7 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .schedule = settings.schedule,
             .maxDepth = MaxDepth(scene.integrator),
             .threads = settings.scene.compile.threads,
-            .substitute = settings.scene.compile.substitute,
+            .substitute = settings.scene.substitute,
             .filtering = settings.scene.compile.filtering,
             .resolution = film.resolution,
             .crop = {film.cropMin, film.cropMax}};

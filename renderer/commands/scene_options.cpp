@@ -105,9 +105,11 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->check(CLI::Range(0, 4096))
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--substitute", options->compile.substitute,
-                 "Replace materials, textures and shapes that are not modelled, with a warning,\n"
-                 "instead of refusing the scene");
+    app.add_flag("--substitute", options->substitute,
+                 "Continue with substitutes for names, files, materials, textures, shapes and\n"
+                 "lights that are missing or not modelled, each with a warning, as pbrt-v3 does");
+    app.add_flag("--verbose", options->isVerbose,
+                 "Print warnings that do not concern the image as well, as of zero-area triangles");
     AddChoiceOption(
         app, "--filtering", &options->compile.filtering,
         "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
@@ -161,8 +163,9 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
                  "a thin sheet, as the format says");
 }
 
-Warnings MakePrintedWarnings(const Talk& talk) {
-    return Warnings([talk](const std::string& message) { talk.Say("warning", message); });
+Warnings MakePrintedWarnings(const SceneOptions& options, const Talk& talk) {
+    return Warnings([talk](const std::string& message) { talk.Say("warning", message); },
+                    options.substitute, options.isVerbose);
 }
 
 Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
@@ -189,7 +192,7 @@ void CheckFilmFits(const PixelRect& region, const FilmOptions& options) {
 
 SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions,
                        const Talk& talk)
-    : warnings(MakePrintedWarnings(talk)),
+    : warnings(MakePrintedWarnings(options, talk)),
       description(LoadDescription(options, warnings)),
       film(SilentFilmSettings(description, options)),
       region{film.cropMin, film.cropMax} {

@@ -13,6 +13,8 @@ namespace lull {
 
 struct SceneOptions {
     std::string file;
+    bool substitute = false;  // continue without what is missing or not supported
+    bool isVerbose = false;   // print warnings that do not concern the image
     CompileOptions compile;
     GltfOptions view;
     std::string environment;  // empty: the scene's own
@@ -25,9 +27,9 @@ struct SceneOptions {
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.
-Warnings MakePrintedWarnings(const Talk& = {});
+Warnings MakePrintedWarnings(const SceneOptions&, const Talk& = {});
 
-// Reads the scene's file. Throws Error.
+// Reads the scene's file. Throws Error, and leaves others in the warnings, as ParsePbrt() does.
 Description LoadDescription(const SceneOptions&, Warnings&);
 
 // Throws Error if the memory cannot hold such a film.

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "renderer/input/pbrt/foreign_file.h"
 #include "renderer/input/pbrt/pbrt_builder.h"
 
 namespace lull {
@@ -60,35 +61,87 @@ constexpr Directive kDirectives[] = {
 };
 static_assert(std::ranges::is_sorted(kDirectives, {}, &Directive::name));
 
-const Directive& FindDirective(const Token& token) {
-    if (token.kind == TokenKind::Word) {
-        const auto it = std::ranges::lower_bound(kDirectives, token.text, {}, &Directive::name);
-        if (it != std::end(kDirectives) && it->name == token.text) return *it;
-        throw Error(token.loc, "unknown directive " + Describe(token));
+// Returns null where a token is no directive.
+const Directive* FindDirective(const Token& token) {
+    if (token.kind != TokenKind::Word) return nullptr;
+    const auto it = std::ranges::lower_bound(kDirectives, token.text, {}, &Directive::name);
+    return it != std::end(kDirectives) && it->name == token.text ? it : nullptr;
+}
+
+// Returns the directive that a token begins. Throws Error if it is none, or stands where it must
+// not.
+const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
+    const Directive* directive = FindDirective(token);
+    if (!directive)
+        throw Error(token.loc, token.kind == TokenKind::Word
+                                   ? "unknown directive " + Describe(token)
+                                   : "expected a directive, but there is " + Describe(token));
+    if (stage == PbrtBuilder::Stage::Options && directive->place == Place::World)
+        throw Error(token.loc, Describe(token) + " must come after WorldBegin");
+    if (stage == PbrtBuilder::Stage::World && directive->place == Place::Options)
+        throw Error(token.loc, Describe(token) + " must come before WorldBegin");
+    return *directive;
+}
+
+// Returns whether the directives after one that failed can still be judged: not after one that opens
+// or closes a scope.
+bool CanContinueAfter(const Token& token) {
+    return !token.text.ends_with("Begin") && !token.text.ends_with("End");
+}
+
+// Returns false where the rest cannot be cut into tokens.
+bool SkipToDirective(PbrtLexer* lexer) {
+    try {
+        while (lexer->Peek().kind != TokenKind::End && !FindDirective(lexer->Peek())) lexer->Take();
+        return true;
+    } catch (const Error&) {
+        return false;
     }
-    throw Error(token.loc, "expected a directive, but there is " + Describe(token));
+}
+
+// Throws Error at a sign of pbrt-v4.
+void CheckVersion(const Token& token, PbrtLexer* lexer) {
+    const bool isNamed = token.text == "Film" || token.text == "Material";
+    const std::string kind = isNamed ? lexer->Peek().text : "";
+    if (token.kind != TokenKind::Word || !IsPbrtV4(token.text, kind)) return;
+    throw Error(token.loc, "this scene is written for pbrt-v4, as its " +
+                               (kind.empty() ? "directive " + token.text
+                                             : token.text + " \"" + Printable(kind) + "\"") +
+                               " shows; lull reads scenes for pbrt-v3");
+}
+
+// Reads directives until the end, or an error after which none can be judged.
+void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
+    PbrtLexer& lexer = builder->lexer;
+    Token token;
+    while ((token = lexer.Take()).kind != TokenKind::End) {
+        CheckVersion(token, &lexer);
+        if (builder->CurrentStage() == PbrtBuilder::Stage::Done)
+            throw Error(token.loc, Describe(token) +
+                                       " after WorldEnd: a file describes one scene; move the "
+                                       "others to files of their own");
+        const auto run = [&] {
+            const Directive& directive = DirectiveAt(token, builder->CurrentStage());
+            builder->loc = token.loc;
+            (builder->*directive.run)();
+        };
+        if (warnings.Try(run)) continue;
+        builder->hasFailed = true;
+        if (!CanContinueAfter(token) || !SkipToDirective(&lexer)) break;
+    }
+    builder->loc = token.loc;
 }
 
 }  // namespace
 
 Description ParsePbrt(const std::string& file, Warnings& warnings) {
     PbrtBuilder builder(file, warnings);
-    Token token;
-    while ((token = builder.lexer.Take()).kind != TokenKind::End) {
-        const Directive& directive = FindDirective(token);
-        const auto stage = builder.CurrentStage();
-        if (stage == PbrtBuilder::Stage::Done)
-            throw Error(token.loc, Describe(token) +
-                                       " after WorldEnd: a file describes one scene; move the "
-                                       "others to files of their own");
-        if (stage == PbrtBuilder::Stage::Options && directive.place == Place::World)
-            throw Error(token.loc, Describe(token) + " must come after WorldBegin");
-        if (stage == PbrtBuilder::Stage::World && directive.place == Place::Options)
-            throw Error(token.loc, Describe(token) + " must come before WorldBegin");
-        builder.loc = token.loc;
-        (builder.*directive.run)();
-    }
-    return builder.Finish(token.loc);
+    Description description;
+    const bool isWhole = warnings.Try([&] { ReadDirectives(&builder, warnings); }) &&
+                         !builder.hasFailed &&
+                         warnings.Try([&] { description = builder.Finish(); });
+    if (!isWhole) warnings.ThrowErrors();
+    return description;
 }
 
 }  // namespace lull

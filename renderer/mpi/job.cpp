@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 
 #include "renderer/base/error.h"
 #include "renderer/mpi/mpi_calls.h"
@@ -132,8 +133,10 @@ void Job::Fail(const std::string& message) {
     if (isFirst) {
         const std::string who =
             rank > 0 ? fmt::format("rank {} on {}: ", rank, HostName()) : std::string();
-        const std::string line = wording("error", who + message);
-        if (write(errorOutput, line.data(), line.size()) < 0) return;
+        std::string lines, line;
+        for (std::istringstream rest(message); std::getline(rest, line);)
+            lines += wording("error", who + line);
+        if (write(errorOutput, lines.data(), lines.size()) < 0) return;
     }
     if (phase == Phase::Working) AbortMpi(1);
 }

@@ -46,7 +46,8 @@ class Job {
     void SetWording(Wording given) { wording = std::move(given); }
     // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
-    // Prints an error, once for all ranks, and ends them all if others would wait for this one.
+    // Prints errors, one for each line, once for all ranks, and ends them all if others would wait
+    // for this one.
     void Fail(const std::string& message);
 
   private:

@@ -34,10 +34,28 @@ void ReadSampler(const Entity& entity, Scene* scene, Warnings& warnings) {
         throw Error(entity.loc, "the number of samples a pixel has to be at least 1");
 }
 
+void ReadView(const Description& description, const CompileOptions& options, Scene* scene,
+              Warnings& warnings) {
+    scene->film = MakeFilmSettings(description, options.film, warnings);
+    scene->filter = Filter(description, warnings);
+    scene->camera = MakeCamera(description, scene->film, warnings, options.threads);
+    ReadSampler(description.sampler, scene, warnings);
+    scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
+}
+
 // Says whether a material is none, so that shadow rays of volpath pass through its surfaces.
 bool HasInterfaces(const Description& description) {
     return std::any_of(description.materials.begin(), description.materials.end(),
                        [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
+}
+
+void ReadIntegrator(const Description& description, const CompileOptions& options, Scene* scene,
+                    Warnings& warnings) {
+    scene->media = MediumTable(description, warnings);
+    scene->isVolumetric = IntegratorSeesMedia(description.integrator.name) &&
+                          (!scene->media.media.empty() || HasInterfaces(description));
+    scene->integrator =
+        MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric, warnings);
 }
 
 // Refuses cameras whose rays Embree would not take.
@@ -53,29 +71,23 @@ void CheckCamera(const Scene& scene, const FileLoc& loc) {
 std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
                                      Warnings& warnings) {
     auto scene = std::make_unique<Scene>();
-    scene->film = MakeFilmSettings(description, options.film, warnings);
-    scene->filter = Filter(description, warnings);
-    scene->camera = MakeCamera(description, scene->film, warnings, options.threads);
-    ReadSampler(description.sampler, scene.get(), warnings);
-    scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
-    scene->media = MediumTable(description, warnings);
-    scene->isVolumetric = IntegratorSeesMedia(description.integrator.name) &&
-                          (!scene->media.media.empty() || HasInterfaces(description));
-    scene->integrator =
-        MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric, warnings);
+    const bool seesAll =
+        warnings.Try([&] { ReadView(description, options, scene.get(), warnings); });
+    warnings.Try([&] { ReadIntegrator(description, options, scene.get(), warnings); });
 
     scene->textureSeconds = Timed([&] {
-        scene->textures =
-            TextureTable(description, options.substitute, warnings, options.filtering);
-        scene->materials =
-            MaterialTable(description, scene->textures, options.substitute, warnings);
+        scene->textures = TextureTable(description, warnings, options.filtering);
+        scene->materials = MaterialTable(description, scene->textures, warnings);
     });
     scene->shapeSeconds = Timed([&] {
-        scene->shapes = ShapeTable(description, scene->textures, options.substitute, warnings);
-        CheckCamera(*scene, description.camera.loc);
-        scene->lights = LightTable(description, scene->shapes, scene->textures,
-                                   options.lightsAsPbrtV3, warnings);
+        warnings.Try([&] {
+            scene->shapes = ShapeTable(description, scene->textures, warnings);
+            if (seesAll) CheckCamera(*scene, description.camera.loc);
+            scene->lights = LightTable(description, scene->shapes, scene->textures,
+                                       options.lightsAsPbrtV3, warnings);
+        });
     });
+    warnings.ThrowErrors();
     scene->acceleratorSeconds = Timed(
         [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });
 

@@ -6,7 +6,6 @@
 namespace lull {
 
 struct CompileOptions {
-    bool substitute = false;  // replace what is not supported, with counted warnings
     FilmOverrides film;
     int maxDepth = -1;  // -1: as the scene says
     // Choose and sample lights as pbrt-v3 does, for its estimator: by tables, however many there
@@ -16,7 +15,8 @@ struct CompileOptions {
     int threads = 0;  // for the acceleration structure; 0: all
 };
 
-// Throws Error, with file and line, for the first thing that is wrong or not supported.
+// Throws Error, with file and line, for what is wrong or not supported, and what parsing left in
+// `warnings`: for all of it, as Warnings::ThrowErrors() has it.
 std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
 
 }  // namespace lull

@@ -41,15 +41,19 @@ constexpr Kind<Light(const LightReader&)> kLights[] = {
     {"projection", Make<ProjectionLight>},
 };
 
-// Makes the light of one LightSource directive.
-Light MakeLight(const LightReader& in) {
+// Makes the light of one LightSource directive; nothing substitutes an unknown kind.
+std::optional<Light> MakeLight(const LightReader& in) {
     const LightEntity& entity = in.entity;
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
     entity.parameters.GetInt("nsamples", 1);
     const auto* kind = FindKind(kLights, entity.name);
-    if (!kind)
-        throw Error(entity.loc, fmt::format("LightSource \"{}\" is not modelled; {} are",
-                                            entity.name, NamesOf(kLights)));
+    if (!kind) {
+        in.warnings.Substitute(entity.loc,
+                               fmt::format("LightSource \"{}\" is not modelled; {} are",
+                                           entity.name, NamesOf(kLights)),
+                               "it is left out");
+        return {};
+    }
     const Light light = kind->make(in);
     entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", in.warnings);
     return light;
@@ -123,8 +127,13 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     const WorldSphere world = BoundingSphere(shapes.bounds);
     lights.reserve(CountLights(description, shapes));
     for (const LightEntity& entity : description.lights) {
-        lights.push_back(MakeLight({description, entity, world.radius, !asPbrtV3, warnings}));
-        CheckReach(lights.back(), entity, shapes.reach);
+        std::optional<Light> light;
+        warnings.Try([&] {
+            light = MakeLight({description, entity, world.radius, !asPbrtV3, warnings});
+            if (light) CheckReach(*light, entity, shapes.reach);
+        });
+        if (!light) continue;
+        lights.push_back(std::move(*light));
         if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {

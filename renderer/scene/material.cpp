@@ -142,9 +142,8 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     return m;
 }
 
-// Makes the material of an entity. One that cannot be rendered is refused, or a matte one stands
-// in, with a warning.
-Material MakeMaterial(const MaterialReader& in, bool substitute, Warnings& warnings) {
+// Makes the material of an entity; a matte one substitutes what cannot be rendered.
+Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
     std::string problem = "material \"" + entity.name + "\" is not modelled";
@@ -157,8 +156,7 @@ Material MakeMaterial(const MaterialReader& in, bool substitute, Warnings& warni
             return m;
         }
     }
-    if (!substitute) throw Error(entity.loc, problem);
-    warnings.Add(entity.loc, problem + "; a matte material stands in");
+    warnings.Substitute(entity.loc, problem, "a matte material stands in");
     return Complete(Matte(in), in);
 }
 
@@ -200,11 +198,15 @@ void AddOperandLobes(int operand, const MaterialInputs& in, Bsdf* bsdf) {
 }
 
 MaterialTable::MaterialTable(const Description& description, const TextureTable& textures,
-                             bool substitute, Warnings& warnings) {
+                             Warnings& warnings) {
+    MaterialEntity plain;
+    plain.name = "matte";
     materials.reserve(description.materials.size());
     for (const MaterialEntity& entity : description.materials) {
         const MaterialReader in{entity, textures, materials, description};
-        materials.push_back(MakeMaterial(in, substitute, warnings));
+        if (warnings.Try([&] { materials.push_back(MakeMaterial(in, warnings)); })) continue;
+        const MaterialReader other{plain, textures, materials, description};
+        materials.push_back(Complete(Matte(other), other));
     }
 }
 

@@ -15,9 +15,9 @@ class SubsurfaceProfile;
 // Owns the materials of a scene, one for each of Description::materials. Immutable once made.
 class MaterialTable {
   public:
-    // Throws Error naming file and line for an unknown kind; with `substitute`, pbrt-v3's default
-    // matte replaces it, with a counted warning. `textures` must outlive the table.
-    MaterialTable(const Description&, const TextureTable& textures, bool substitute, Warnings&);
+    // pbrt-v3's default matte substitutes what cannot be rendered. Errors are kept in the warnings.
+    // `textures` must outlive the table.
+    MaterialTable(const Description&, const TextureTable& textures, Warnings&);
     MaterialTable();
     ~MaterialTable();
     MaterialTable(MaterialTable&&) noexcept;

@@ -107,8 +107,7 @@ TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
     const std::string what = fmt::format("{} texture \"{}\": kind \"{}\" is not modelled",
                                          entity.isSpectrum ? "spectrum" : "float",
                                          Printable(entity.textureName), Printable(entity.name));
-    if (!input.substitute) throw Error(entity.loc, what);
-    input.warnings.Add(entity.loc, "texture that is not modelled replaced by 1", what);
+    input.warnings.Substitute(entity.loc, what, "1 stands in");
     return ConstantTexture<TypeOf<Node>>(1);
 }
 
@@ -120,10 +119,12 @@ TextureHandle<T> Resolve(const std::vector<TextureHandle<T>>& made, const Parame
     const int index = wantsFloat ? ref.floatIndex : ref.spectrumIndex;
     if (index >= 0 && size_t(index) < made.size()) return made[size_t(index)];
     const bool isOther = (wantsFloat ? ref.spectrumIndex : ref.floatIndex) >= 0;
-    throw Error(parameter.loc,
-                fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}",
-                            Printable(parameter.name), wantsFloat ? "float" : "spectrum",
-                            Printable(ref.name), isOther ? ", only one of the other type" : ""));
+    throw Error(
+        parameter.loc,
+        fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}", Printable(parameter.name),
+                    wantsFloat ? "float" : "spectrum", Printable(ref.name),
+                    isOther ? ", only one of the other type"
+                            : "; with --substitute the parameter is left out"));
 }
 
 template <typename T>
@@ -155,20 +156,21 @@ TextureTable::~TextureTable() = default;
 TextureTable::TextureTable(TextureTable&&) noexcept = default;
 TextureTable& TextureTable::operator=(TextureTable&&) noexcept = default;
 
-TextureTable::TextureTable(const Description& description, bool substitute, Warnings& warnings,
+TextureTable::TextureTable(const Description& description, Warnings& warnings,
                            TextureFiltering filtering) {
     TextureImages images;
     for (const TextureEntity& entity : description.textures) {
-        const TextureInput input{entity,     description, *this,    images,
-                                 substitute, warnings,    filtering};
+        const TextureInput input{entity, description, *this, images, warnings, filtering};
         // Each texture takes a place in both lists, so that its index is its place in the
         // description; the one of the other type is never referred to.
         auto asFloat = ConstantTexture<float>(0);
         auto asSpectrum = ConstantTexture<Rgb>(0);
-        if (entity.isSpectrum)
-            asSpectrum = MakeTexture(kSpectrumKinds, input, &spectra);
-        else
-            asFloat = MakeTexture(kFloatKinds, input, &floats);
+        warnings.Try([&] {
+            if (entity.isSpectrum)
+                asSpectrum = MakeTexture(kSpectrumKinds, input, &spectra);
+            else
+                asFloat = MakeTexture(kFloatKinds, input, &floats);
+        });
         madeFloats.push_back(asFloat);
         madeSpectra.push_back(asSpectrum);
     }

@@ -41,11 +41,10 @@ struct SpectrumTextureNode;
 // Owns the textures and images of a scene. Immutable once made; evaluation is thread-safe.
 class TextureTable {
   public:
-    // Makes every texture of the description; warns of parameters without effect. Throws Error
-    // naming file and line for an unsupported kind or an unreadable image. With `substitute` these
-    // are counted warnings, and the former becomes constant 1, the latter pbrt-v3's grey.
-    TextureTable(const Description&, bool substitute, Warnings&,
-                 TextureFiltering = TextureFiltering::Bilinear);
+    // Makes every texture of the description; warns of parameters without effect. Constant 1
+    // substitutes an unsupported kind, pbrt-v3's grey an unreadable image. Errors are kept in the
+    // warnings.
+    TextureTable(const Description&, Warnings&, TextureFiltering = TextureFiltering::Bilinear);
     TextureTable();  // empty
     ~TextureTable();
     TextureTable(TextureTable&&) noexcept;

@@ -30,6 +30,66 @@ void ExpectBadMesh(const std::string& ply, const std::vector<std::string>& parts
     ExpectFailure(directory, kRender, parts);
 }
 
+// All that pbrt-v3 reports and goes on without.
+TEST(BadInput, WithSubstitutesIsRendered) {
+    const TemporaryDirectory directory;
+    const std::string world =
+        "NamedMaterial \"none\"\nMaterial \"velvet\"\nMaterial \"matte\" \"texture Kd\" \"lost\"\n"
+        "Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"lost.png\"\n"
+        "Shape \"plymesh\" \"string filename\" \"lost.ply\"\nObjectInstance \"lost\"\n"
+        "CoordSysTransform \"lost\"\nShape \"blob\"\nLightSource \"glow\"\n"
+        "LightSource \"infinite\" \"string mapname\" \"lost.exr\"\n"
+        "Material \"metal\" \"spectrum k\" \"lost.spd\"\n";
+    directory.Write("scene.pbrt", SceneText(world + "Include \"lost.pbrt\"\n" + kSphere));
+    const std::string command = "render scene.pbrt --spp 2 -o a.exr";
+    const Outcome with = RunLull(directory, command + " --substitute");
+    EXPECT_EQ(with.exitCode, 0) << with.err;
+    for (const char* lost :
+         {"NamedMaterial \"none\"", "\"velvet\"", "there is no texture \"lost\"", "lost.png",
+          "lost.ply", "ObjectInstance of \"lost\"", "coordinate system \"lost\"", "\"blob\"",
+          "\"glow\"", "lost.exr", "lost.spd", "lost.pbrt"})
+        EXPECT_TRUE(Contains(with.err, lost)) << lost << " in: " << with.err;
+
+    directory.Write("scene.pbrt", SceneText(world + kSphere));
+    const Outcome without = RunLull(directory, command);
+    EXPECT_EQ(without.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(without.err), 11) << without.err;
+    EXPECT_TRUE(Contains(without.err,
+                         "scene.pbrt:7: NamedMaterial \"none\": no MakeNamedMaterial in "
+                         "force defines it; with --substitute "))
+        << without.err;
+}
+
+TEST(BadInput, IsToldAllAtOnce) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText("Scale 0 1 1\nShape \"sphere\" \"float radius\" [x]\n"
+                                            "Material \"matte\"\nShapes \"sphere\""));
+    const Outcome outcome = RunLull(directory, kRender);
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(outcome.err), 3) << outcome.err;
+    for (const char* place : {"scene.pbrt:7: Scale by 0",
+                              "scene.pbrt:8: ", "scene.pbrt:10: unknown directive 'Shapes'"})
+        EXPECT_TRUE(Contains(outcome.err, place)) << place << " in: " << outcome.err;
+}
+
+TEST(BadInput, OfOtherProgramsIsNamed) {
+    using namespace std::string_literals;
+    const std::pair<std::string, const char*> kFiles[] = {
+        {"BLENDER-v300"s + std::string(100, '\0'), "it is a Blender file"},
+        {"\x28\xb5\x2f\xfd\1\2\3"s, "it is compressed (zstd), as Blender's files are"},
+        {"\x89PNG\r\n\x1a\n"s, "it is a PNG image"},
+        {"some\0thing"s, "it is a binary file"},
+        {"Film \"rgb\"\n", "scene.pbrt:1: this scene is written for pbrt-v4, as its Film \"rgb\""},
+        {"WorldBegin\nMaterial \"diffuse\"\n", "scene.pbrt:2: this scene is written for pbrt-v4"},
+        {"ColorSpace \"srgb\"\n", "written for pbrt-v4, as its directive ColorSpace shows"}};
+    for (const auto& [text, message] : kFiles) {
+        ExpectBadScene(text, {message});
+        const TemporaryDirectory directory;
+        directory.Write("scene.pbrt", text);
+        EXPECT_FALSE(Contains(RunLull(directory, "info scene.pbrt").err, "\\x"));
+    }
+}
+
 // Rays that Embree takes for invalid, which builds with assertions end the program for.
 TEST(BadInput, TooLargeForRays) {
     const TemporaryDirectory directory;
@@ -104,7 +164,8 @@ TEST(BadInput, DirectoryAsScene) {
 }
 
 TEST(BadInput, SceneThatIsNoText) {
-    ExpectBadScene(std::string("\x7f\x45\x4c\x46\0\1\2\3", 8), {"scene.pbrt:1"});
+    ExpectBadScene(std::string("\x7f\x45\x4c\x46\0\1\2\3", 8),
+                   {"'scene.pbrt' is no pbrt scene file: it is a binary file"});
 }
 
 TEST(BadInput, SceneWithoutAWorld) {

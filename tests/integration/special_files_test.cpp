@@ -25,6 +25,52 @@ TEST(Writers, OfOneDatasetLoseNothing) {
     EXPECT_EQ(directory.CountFiles(), 2);
 }
 
+// Expects that of two processes that write the same checkpoint one says so, and the other ends
+// well.
+void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& command,
+                     const std::string& lock) {
+    const Outcome outcome = RunShell(directory, "exec 9>" + lock + " && flock 9 && (" + command +
+                                                    " 9>&-; echo first $?); " + "exec 9>&-; " +
+                                                    command + "; echo then $?");
+    EXPECT_TRUE(Contains(outcome.out, "first 1\n")) << outcome.out << outcome.err;
+    EXPECT_TRUE(Contains(outcome.out, "then 0\n")) << outcome.out << outcome.err;
+    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "another process that runs now writes this checkpoint"))
+        << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(directory.File(lock)));
+}
+
+TEST(Writers, OfOneCheckpointAreOne) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    ExpectOneWriter(directory, "LULL render scene.pbrt --spp 2 --checkpoint c.h5 -o a.exr --quiet",
+                    ".c.h5.lock");
+    ExpectOneWriter(directory,
+                    "LULL dataset scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --threads 1 "
+                    "--name v -o d.h5 --quiet",
+                    ".d.h5.v.checkpoint.lock");
+    ExpectOneWriter(directory, "LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet",
+                    ".b.random.checkpoint.lock");
+}
+
+TEST(Substitutes, OfManyMaterialsAreToldTenTimes) {
+    const TemporaryDirectory directory;
+    std::string world;
+    for (int i = 0; i < 20000; ++i) world += fmt::format("Material \"m{}\"\n", i);
+    directory.Write("scene.pbrt", SceneText(world + kSphere));
+    const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+    const Outcome with =
+        RunLull(directory, "render scene.pbrt --substitute --spp 1 -o a.exr --quiet");
+    EXPECT_EQ(with.exitCode, 0) << with.err;
+    EXPECT_EQ(lines(with.err), 11) << with.err;
+    EXPECT_TRUE(Contains(with.err, "and 19990 more: material \"...\" is not modelled; "))
+        << with.err;
+    const Outcome without = RunLull(directory, "render scene.pbrt --spp 1 -o a.exr --quiet");
+    EXPECT_EQ(without.exitCode, 1);
+    EXPECT_EQ(CountErrorLines(without.err), 11) << without.err;
+    EXPECT_TRUE(without.err.ends_with("lull: error: and 19990 more\n")) << without.err;
+}
+
 TEST(SpecialFiles, AreNotWaitedFor) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 namespace {
 
@@ -31,19 +33,30 @@ PbrtBuilder::PbrtBuilder(const std::string& file, Warnings& warnings)
     context.directory = description.directory;
 }
 
-Description PbrtBuilder::Finish(const FileLoc& end) {
+Description PbrtBuilder::Finish() {
     if (stage == Stage::Options)
-        throw Error(end, "the file ends without WorldBegin: it describes no scene");
+        throw Error(loc, "the file ends without WorldBegin: it describes no scene");
     if (stage == Stage::World)
-        throw Error(end, "the file ends without WorldEnd for the WorldBegin of line " +
+        throw Error(loc, "the file ends without WorldEnd for the WorldBegin of line " +
                              std::to_string(worldBegin.line));
     description.sources = lexer.Files();
     return std::move(description);
 }
 
+// Reports a name that nothing defines, unless an error before may be the reason.
+void PbrtBuilder::SubstituteName(const std::string& problem, const std::string& substitute) {
+    if (!hasFailed) warnings.Substitute(loc, problem, substitute);
+}
+
 void PbrtBuilder::Include() {
-    const std::string name = ReadString("the name of a file");
-    lexer.Include(ResolvePath(description, name), loc);
+    const std::string path = ResolvePath(description, ReadString("the name of a file"));
+    if (ReasonNotToRead(path).empty()) return lexer.Include(path, loc);
+    try {
+        ReadFile(path, loc);
+    } catch (const Error& error) {
+        warnings.Substitute(error, "it is left out");
+        hasFailed |= !warnings.Substitutes();
+    }
 }
 
 // Scopes.
@@ -134,8 +147,9 @@ void PbrtBuilder::ObjectInstance() {
         throw Error(loc, "ObjectInstance inside an object definition; objects do not nest");
     const auto it = objects.find(name);
     if (it == objects.end())
-        throw Error(loc, "ObjectInstance of \"" + Printable(name) +
-                             "\", which no ObjectBegin before it defines");
+        return SubstituteName(
+            "ObjectInstance of \"" + Printable(name) + "\", which no ObjectBegin before it defines",
+            "it is left out");
     AddInstance(it->second, {state.ctm});
     const auto [first, last] = movingParts.equal_range(it->second);
     for (auto part = first; part != last; ++part)
@@ -298,10 +312,12 @@ void PbrtBuilder::MakeNamedMaterial() {
 
 void PbrtBuilder::NamedMaterial() {
     const std::string name = ReadString("the name of a material");
-    state.material = materials.Find(name);
-    if (state.material < 0)
-        throw Error(loc, "NamedMaterial \"" + Printable(name) +
-                             "\": no MakeNamedMaterial in force defines it");
+    const int material = materials.Find(name);
+    if (material < 0)
+        return SubstituteName(
+            "NamedMaterial \"" + Printable(name) + "\": no MakeNamedMaterial in force defines it",
+            "the material before it stays in force");
+    state.material = material;
 }
 
 // Media.
@@ -336,10 +352,11 @@ void PbrtBuilder::MediumInterface() {
 int PbrtBuilder::MediumNamed(const std::string& name) {
     if (name.empty()) return -1;
     const auto it = media.find(name);
-    if (it == media.end())
-        throw Error(loc, "medium \"" + Printable(name) +
-                             "\" of MediumInterface: no MakeNamedMedium before defines it");
-    return it->second;
+    if (it != media.end()) return it->second;
+    SubstituteName("medium \"" + Printable(name) +
+                       "\" of MediumInterface: no MakeNamedMedium before defines it",
+                   "vacuum stands in");
+    return -1;
 }
 
 // Says whether media count, or warns that they do not: pbrt-v3 leaves them out with all but three

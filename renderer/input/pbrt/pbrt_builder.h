@@ -64,11 +64,13 @@ class PbrtBuilder {
     void WorldEnd();
 
     Stage CurrentStage() const { return stage; }
-    // Returns the description; throws Error at `end` if the world was not closed.
-    Description Finish(const FileLoc& end);
+    // Returns the description; throws Error at `loc`, the end, if the world was not closed.
+    Description Finish();
 
     PbrtLexer lexer;
     FileLoc loc;  // of the directive being read
+    // Whether a directive could not be carried out, so that names may be missing for that reason.
+    bool hasFailed = false;
 
   private:
     enum class ScopeKind { Attribute, Transform, Object };
@@ -78,6 +80,7 @@ class PbrtBuilder {
         GraphicsState saved;
     };
 
+    void SubstituteName(const std::string& problem, const std::string& substitute);
     std::string ReadString(const char* what);
     double ReadNumber();
     template <size_t N>

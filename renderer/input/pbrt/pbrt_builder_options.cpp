@@ -144,8 +144,9 @@ void PbrtBuilder::CoordSysTransform() {
     const std::string name = ReadString("the name of a coordinate system");
     const auto it = coordinateSystems.find(name);
     if (it == coordinateSystems.end())
-        throw Error(loc, "coordinate system \"" + Printable(name) +
-                             "\" is unknown; name it with CoordinateSystem before");
+        return SubstituteName("coordinate system \"" + Printable(name) +
+                                  "\" is unknown; name it with CoordinateSystem before",
+                              "the transform stays as it is");
     state.ctm = it->second;
 }
 

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "renderer/input/pbrt/foreign_file.h"
+
 namespace lull {
 namespace {
 
@@ -89,6 +91,8 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
                     "ObjectInstance to repeat geometry");
     std::string_view text = source.contents.View();
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte-order mark
+    if (const std::string format = ForeignFormat(text); !format.empty())
+        throw Error(loc, "'" + Printable(file, 4096) + "' is no pbrt scene file: it is " + format);
     source.pos = text.data();
     source.end = text.data() + text.size();
     sources.push_back(std::move(source));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "renderer/input/spectrum.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -135,18 +136,42 @@ std::vector<TextureRef> ReadTexture(PbrtLexer& lexer, const Token& owner,
         {names[0], context.floatTextures.Find(names[0]), context.spectrumTextures.Find(names[0])}};
 }
 
+// Returns whether a texture parameter is to be left out, since no texture has that name. Otherwise
+// that is found out where the parameter is looked up, if it is.
+bool IsSubstituted(const Parameter& parameter, const Token& owner, Warnings& warnings) {
+    const TextureRef& texture = std::get<std::vector<TextureRef>>(parameter.values)[0];
+    if (!warnings.Substitutes() || texture.floatIndex >= 0 || texture.spectrumIndex >= 0)
+        return false;
+    warnings.Substitute(owner.loc,
+                        "parameter " + Describe(owner) + ": there is no texture \"" +
+                            Printable(texture.name) + "\"",
+                        "it is left out");
+    return true;
+}
+
 void Append(const Rgb& rgb, std::vector<float>* values) {
     values->insert(values->end(), {rgb.x(), rgb.y(), rgb.z()});
 }
 
+// Reads a file of a spectrum, for which pbrt-v3 takes black if it is not there.
+Rgb SpectrumOfFile(const std::string& path, const FileLoc& loc, Warnings& warnings) {
+    if (ReasonNotToRead(path).empty()) return LoadSpectrum(path, loc);
+    try {
+        return LoadSpectrum(path, loc);
+    } catch (const Error& error) {
+        warnings.Substitute(error, "black stands in");
+        return Rgb::Zero();
+    }
+}
+
 std::vector<float> ReadSpectrumFiles(PbrtLexer& lexer, const Token& owner,
-                                     ParameterContext& context) {
+                                     ParameterContext& context, Warnings& warnings) {
     std::vector<float> values;
     for (const std::string& name : ReadStrings(lexer, owner)) {
         const std::string path = (std::filesystem::path(context.directory) / name).string();
         auto known = context.spectra.find(path);
         if (known == context.spectra.end())
-            known = context.spectra.emplace(path, LoadSpectrum(path, owner.loc)).first;
+            known = context.spectra.emplace(path, SpectrumOfFile(path, owner.loc, warnings)).first;
         Append(known->second, &values);
     }
     return values;
@@ -206,10 +231,11 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings&
                 break;
             case ParameterType::Texture:
                 parameter.values = ReadTexture(lexer, owner, context);
+                if (IsSubstituted(parameter, owner, warnings)) continue;
                 break;
             case ParameterType::Spectrum:
                 if (type.encoding == Encoding::Sampled && lexer.NextIsText())
-                    parameter.values = ReadSpectrumFiles(lexer, owner, context);
+                    parameter.values = ReadSpectrumFiles(lexer, owner, context, warnings);
                 else
                     parameter.values =
                         ConvertSpectrum(ReadFloatsOf(type, lexer, owner), type.encoding, owner);

@@ -45,12 +45,17 @@ Ray IntoInstance(const Instance& instance, const Ray& ray) {
 }
 
 ShapeTable::ShapeTable(const Description& description, const TextureTable& textures,
-                       bool substitute, Warnings& warnings) {
+                       Warnings& warnings) {
     // Returns the bounds of the new shape.
     const auto add = [&](const ShapeEntity& entity) {
-        shapes.push_back(MakeShape(description, entity, textures, substitute, warnings));
-        const Bounds3f b = shapes.back().WorldBounds();
-        CheckReach(b, entity.loc, "Shape \"" + entity.name + "\"");
+        Shape shape;
+        Bounds3f b;
+        warnings.Try([&] {
+            shape = MakeShape(description, entity, textures, warnings);
+            b = shape.WorldBounds();
+            CheckReach(b, entity.loc, "Shape \"" + entity.name + "\"");
+        });
+        shapes.push_back(std::move(shape));
         return b;
     };
     for (const ShapeEntity& entity : description.shapes) bounds.Extend(add(entity));

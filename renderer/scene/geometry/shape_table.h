@@ -33,11 +33,11 @@ struct ShapeTable {
     // so that they can be followed into all instances.
     float reach = kFarthest;
 
-    // Makes every shape, loading meshes. Throws Error with file and line for unknown kinds and
-    // broken geometry; with `substitute` an unknown kind is skipped with a counted warning.
-    // Zero-area triangles are dropped with a counted warning, and what lies beyond kFarthest is an
-    // Error. Lights are given to shapes later.
-    ShapeTable(const Description&, const TextureTable&, bool substitute, Warnings&);
+    // Makes every shape, loading meshes. Unknown kinds and meshes that cannot be read are left out
+    // as a substitute. Zero-area triangles are dropped with a counted warning. Errors of shapes are
+    // kept in the warnings: broken geometry, and what lies beyond kFarthest; throws Error for
+    // instances. Lights are given to shapes later.
+    ShapeTable(const Description&, const TextureTable&, Warnings&);
     ShapeTable() = default;
 
     size_t TriangleCount() const;  // instances counted as often as they are placed

@@ -62,7 +62,7 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
                             file);
         light.map = std::make_shared<const EnvironmentMap>(std::move(image), L, in.isCompensated);
     } catch (const Error& error) {
-        throw Error(entity.loc, error.what());
+        in.warnings.Substitute(entity.loc, error.what(), "a constant light stands in");
     }
     return light;
 }

@@ -14,7 +14,8 @@ std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in) {
     try {
         made->image = ReadImage(ResolvePath(in.description, file));
     } catch (const Error& error) {
-        throw Error(in.entity.loc, error.what());
+        in.warnings.Substitute(in.entity.loc, error.what(), "white stands in");
+        return nullptr;
     }
     Image& image = made->image;
     Eigen::Array3d sum = Eigen::Array3d::Zero();

@@ -17,8 +17,8 @@ struct LightImage {
 };
 
 // Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
-// Texels that are negative or not finite count as black, with a counted warning. Throws Error if
-// the image cannot be read.
+// Texels that are negative or not finite count as black, with a counted warning. Null substitutes
+// an image that cannot be read.
 std::shared_ptr<const LightImage> ReadLightImage(const LightReader&);
 
 }  // namespace lull

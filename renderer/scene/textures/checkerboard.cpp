@@ -11,9 +11,9 @@ Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input) {
     Checkerboard<T> board{Mapping3D{}, GetTexture<T>(input, "tex1", 1),
                           GetTexture<T>(input, "tex2", 0)};
     if (dimension != 2 && dimension != 3) {
-        const std::string reason = fmt::format("{}-dimensional checkerboard", dimension);
-        if (!input.substitute) throw Error(entity.loc, reason + " is not modelled");
-        input.warnings.Add(entity.loc, "texture that is not modelled replaced by 1", reason);
+        input.warnings.Substitute(
+            entity.loc, fmt::format("{}-dimensional checkerboard is not modelled", dimension),
+            "1 stands in");
         return ConstantTexture<T>(1);
     }
 

@@ -43,7 +43,7 @@ SurfaceNeeds Needs(const Checkerboard<T>& board, const TextureTable& table) {
            table.Needs(board.tex2);
 }
 
-// Throws Error for a dimension other than 2 and 3; with `substitute` that becomes constant 1.
+// Constant 1 substitutes a dimension other than 2 and 3.
 template <typename T>
 Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input);
 

@@ -91,8 +91,7 @@ Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input
     } catch (const Error& error) {
         const std::string what =
             fmt::format("texture \"{}\": {}", Printable(entity.textureName), error.what());
-        if (!input.substitute) throw Error(entity.loc, what);
-        input.warnings.Add(entity.loc, "unreadable image replaced by grey", what);
+        input.warnings.Substitute(entity.loc, what, "grey stands in");
         const float grey = map.scale * (gamma ? LinearFromSrgb(0.5f) : 0.5f);
         return ConstantTexture<T>(grey);
     }

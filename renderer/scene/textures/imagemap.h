@@ -51,8 +51,8 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
 // sRGB-encoded; by default as its extension suggests), "scale" (after linearisation), "channel" (of
 // a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap" ("repeat",
 // "black", "clamp", "mirrored"; "wrapt" for the second axis alone) and the mapping. "trilinear" and
-// "maxanisotropy" (8; up to 1024) have an effect with pbrt-v3's filtering. Throws Error with file
-// and line if the image cannot be read; with `substitute` that becomes pbrt-v3's grey.
+// "maxanisotropy" (8; up to 1024) have an effect with pbrt-v3's filtering. pbrt-v3's grey
+// substitutes an image that cannot be read.
 template <typename T>
 Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input);
 

@@ -103,10 +103,9 @@ Mapping2D MakeMapping2D(const TextureInput& input) {
     if (name == "planar")
         return PlanarMapping{parameters.GetVector3("v1", Vec3f::UnitX()),
                              parameters.GetVector3("v2", Vec3f::UnitY()), offset()};
-    if (!input.substitute)
-        throw Error(input.entity.loc,
-                    fmt::format("texture mapping \"{}\" is not known", Printable(name)));
-    input.warnings.Add(input.entity.loc, "unknown texture mapping replaced by uv", Printable(name));
+    input.warnings.Substitute(input.entity.loc,
+                              fmt::format("texture mapping \"{}\" is not known", Printable(name)),
+                              "\"uv\" stands in");
     return UvMapping{};
 }
 

@@ -14,7 +14,6 @@ struct TextureInput {
     const Description& description;
     const TextureTable& table;  // holds all textures before this one
     TextureImages& images;
-    bool substitute;  // replace what is not supported, with a counted warning
     Warnings& warnings;
     TextureFiltering filtering = TextureFiltering::Bilinear;
 };

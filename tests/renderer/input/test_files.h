@@ -15,7 +15,10 @@ namespace lull {
 struct TestFolder : TemporaryDirectory {
     Description Parse(std::string_view text, Warnings* warnings = nullptr) const {
         Warnings ignored;
-        return ParsePbrt(Write("scene.pbrt", text), warnings ? *warnings : ignored);
+        Warnings& all = warnings ? *warnings : ignored;
+        Description description = ParsePbrt(Write("scene.pbrt", text), all);
+        all.ThrowErrors();
+        return description;
     }
 
     // Parses the text between WorldBegin and WorldEnd, on line 1.

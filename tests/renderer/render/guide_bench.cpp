@@ -59,10 +59,9 @@ struct Images {
 };
 
 void BenchGuide(benchmark::State& state, const std::string& file) {
-    Warnings warnings;
+    Warnings warnings({}, true);
     const int side = FromEnvironment("LULL_BENCH_SIDE", 64);
     CompileOptions options;
-    options.substitute = true;
     options.film.resolution = Vec2i(side, side);
     const auto scene = Compile(ParsePbrt(file, warnings), options, warnings);
     if (const auto why = WhyNotGuided(*scene, Estimator::Combined))

@@ -31,9 +31,8 @@ double ProcessSeconds() {
 }
 
 std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& resolution) {
-    Warnings warnings;
+    Warnings warnings({}, true);
     CompileOptions options;
-    options.substitute = true;
     options.film.resolution = resolution;
     return Compile(ParsePbrt(file, warnings), options, warnings);
 }
@@ -55,12 +54,11 @@ void BenchStart(benchmark::State& state, const std::string& file) {
     double parse = 0, textures = 0, shapes = 0, accelerator = 0, peak = 0;
     for (auto _ : state) {
         ForgetPeak();
-        Warnings warnings;
+        Warnings warnings({}, true);
         const auto start = std::chrono::steady_clock::now();
         const Description description = ParsePbrt(file, warnings);
         parse += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         CompileOptions options;
-        options.substitute = true;
         const auto scene = Compile(description, options, warnings);
         textures += scene->textureSeconds;
         shapes += scene->shapeSeconds;

@@ -16,7 +16,10 @@ inline FileLoc At(int line) { return {std::make_shared<const std::string>("scene
 struct MaterialScene {
     Description description;
     std::vector<std::string> messages;
-    Warnings warnings{[this](const std::string& m) { messages.push_back(m); }};
+    Warnings warnings;
+
+    explicit MaterialScene(bool substitutes = false)
+        : warnings([this](const std::string& m) { messages.push_back(m); }, substitutes) {}
 
     MaterialEntity& AddMaterial(const std::string& kind) {
         MaterialEntity& m = description.materials.emplace_back();
@@ -39,9 +42,12 @@ struct MaterialScene {
             t.parameters.Add({ParameterType::Float, "tex1", At(2), std::vector<float>{value}});
     }
     TextureTable textures;
-    MaterialTable Make(bool substitute = false) {
-        textures = TextureTable(description, substitute, warnings);
-        return MaterialTable(description, textures, substitute, warnings);
+    // Throws Error, as Compile() does.
+    MaterialTable Make() {
+        textures = TextureTable(description, warnings);
+        MaterialTable table(description, textures, warnings);
+        warnings.ThrowErrors();
+        return table;
     }
     // Makes the Bsdf of a material at a simple hit.
     Bsdf MakeBsdf(int material, const Vec3f& p = Vec3f(0.5f, 0.5f, 0.5f)) {

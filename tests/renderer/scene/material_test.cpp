@@ -86,16 +86,17 @@ TEST(Materials, UnknownKindsAreRefused) {
         b.AddMaterial("matte");
         b.AddMaterial(kind);
         EXPECT_EQ(ErrorOf(&b),
-                  "scene.pbrt:20: material \"" + std::string(kind) + "\" is not modelled");
+                  "scene.pbrt:20: material \"" + std::string(kind) +
+                      "\" is not modelled; with --substitute a matte material stands in");
     }
 }
 
 TEST(Materials, SubstitutionIsCounted) {
-    MaterialScene b;
+    MaterialScene b(true);
     AddFloat(&b.AddMaterial("velvet"), "beta_m", 0.3f);
     AddGrey(&b.AddMaterial("velvet"), "Kd", 0.2f);
     b.AddMaterial("silk");
-    const MaterialTable table = b.Make(true);
+    const MaterialTable table = b.Make();
     EXPECT_EQ(b.warnings.Total(), 3);
     ASSERT_EQ(b.messages.size(), 2u);
     EXPECT_EQ(b.messages[0],
@@ -113,12 +114,15 @@ TEST(Materials, SubsurfaceIsChecked) {
         AddFloat(&b.AddMaterial(kind), name, value);
         return ErrorOf(&b);
     };
-    EXPECT_EQ(error("subsurface", "eta", 0.5f),
-              "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
-              "between -0.99 and 0.99; they are 0.5 and 0");
+    EXPECT_EQ(
+        error("subsurface", "eta", 0.5f),
+        "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
+        "between -0.99 and 0.99; they are 0.5 and 0; with --substitute a matte material stands in");
     EXPECT_NE(error("kdsubsurface", "g", 1).find("they are 1.33 and 1"), std::string::npos);
     EXPECT_EQ(error("kdsubsurface", "scale", -1),
-              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative");
+              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative; "
+              "with --substitute a matte "
+              "material stands in");
     MaterialScene b;
     b.AddMaterial("matte");
     b.AddMaterial("subsurface");

@@ -220,7 +220,9 @@ struct Checks {
         texture = builder.Add(true, "imagemap", std::move(parameters));
     }
     TextureTable Build(TextureFiltering filtering) {
-        return TextureTable(builder.description, false, builder.warnings, filtering);
+        TextureTable table(builder.description, builder.warnings, filtering);
+        builder.warnings.ThrowErrors();
+        return table;
     }
 };
 

@@ -35,6 +35,8 @@ struct TextureBuilder {
     Description description;
     Warnings warnings;
 
+    explicit TextureBuilder(bool substitutes = false) : warnings({}, substitutes) {}
+
     // Adds a texture at line 10, 11, ...; returns its place.
     int Add(bool isSpectrum, const std::string& kind, std::vector<Parameter> parameters,
             const Mat4d& worldFromTexture = Mat4d::Identity()) {
@@ -59,8 +61,11 @@ struct TextureBuilder {
         return {ParameterType::Texture, name, LocAt(7), std::vector<TextureRef>{ref}};
     }
 
-    TextureTable Build(bool substitute = false) {
-        return TextureTable(description, substitute, warnings);
+    // Throws Error, as Compile() does.
+    TextureTable Build() {
+        TextureTable table(description, warnings);
+        warnings.ThrowErrors();
+        return table;
     }
 
     FloatTexture Float(const TextureTable& table, int index) const {

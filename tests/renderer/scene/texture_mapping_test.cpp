@@ -9,13 +9,15 @@ namespace {
 
 // Makes the mapping that a texture with these parameters has.
 Mapping2D Make(std::vector<Parameter> parameters, const Mat4d& worldFromTexture = Mat4d::Identity(),
-               bool substitute = false) {
-    TextureBuilder builder;
+               bool substitutes = false) {
+    TextureBuilder builder(substitutes);
     builder.Add(false, "checkerboard", std::move(parameters), worldFromTexture);
     const TextureTable table;
     TextureImages images;
-    return MakeMapping2D({builder.description.textures[0], builder.description, table, images,
-                          substitute, builder.warnings});
+    const Mapping2D mapping = MakeMapping2D(
+        {builder.description.textures[0], builder.description, table, images, builder.warnings});
+    builder.warnings.ThrowErrors();
+    return mapping;
 }
 
 void ExpectMap(const Mapping2D& mapping, const Vec3f& p, float s, float t) {

@@ -34,7 +34,8 @@ TEST(TextureTable, RefusesTexturesThatAreNotThere) {
     const int spectrum = builder.Add(kSpectrum, "constant", {});
     const TextureTable table = builder.Build();
     EXPECT_EQ(ErrorOf([&] { builder.Float(table, -1); }),
-              "scene.pbrt:7: parameter \"x\": there is no float texture \"t-1\"");
+              "scene.pbrt:7: parameter \"x\": there is no float texture \"t-1\"; with "
+              "--substitute the parameter is left out");
     EXPECT_TRUE(Contains(ErrorOf([&] { builder.Float(table, spectrum); }), "of the other type"));
     EXPECT_EQ(ErrorOf([&] { builder.Spectrum(table, spectrum); }), "");
 }
@@ -49,13 +50,16 @@ TEST(TextureTable, RefusesReferencesToItself) {
 TEST(TextureTable, RefusesKindsByNameFileAndLine) {
     for (const char* kind : {"ptex", "nonsense"}) {
         for (const bool isSpectrum : {kFloat, kSpectrum}) {
-            TextureBuilder builder;
-            const int texture = builder.Add(isSpectrum, kind, {FloatParameter("whatever", {1})});
-            const std::string error = ErrorOf([&] { builder.Build(); });
+            TextureBuilder strict;
+            strict.Add(isSpectrum, kind, {});
+            const std::string error = ErrorOf([&] { strict.Build(); });
             EXPECT_TRUE(Contains(error, "scene.pbrt:10: ")) << error;
             EXPECT_TRUE(Contains(error, kind)) << error;
+            EXPECT_TRUE(Contains(error, "with --substitute 1 stands in")) << error;
 
-            const TextureTable table = builder.Build(true);
+            TextureBuilder builder(true);
+            const int texture = builder.Add(isSpectrum, kind, {FloatParameter("whatever", {1})});
+            const TextureTable table = builder.Build();
             EXPECT_EQ(builder.warnings.Total(), 1);
             if (isSpectrum)
                 EXPECT_TRUE((builder.Spectrum(table, texture).constant == 1).all());
@@ -199,11 +203,11 @@ TEST(Checkerboard, AlternatesInThreeDimensions) {
 }
 
 TEST(Checkerboard, RefusesOtherDimensions) {
-    TextureBuilder builder;
+    TextureBuilder strict, builder(true);
+    strict.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
+    EXPECT_TRUE(Contains(ErrorOf([&] { strict.Build(); }), "scene.pbrt:10: 4-dimensional"));
     const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
-    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Build(); }), "scene.pbrt:10: 4-dimensional"));
-    const TextureTable table = builder.Build(true);
-    EXPECT_EQ(builder.Float(table, board).constant, 1);
+    EXPECT_EQ(builder.Float(builder.Build(), board).constant, 1);
 }
 
 TEST(Checkerboard, FoldsEqualColors) {

@@ -77,9 +77,8 @@ struct Measurement {
 };
 
 std::unique_ptr<const Scene> LoadScene(const std::string& file) {
-    Warnings warnings;
+    Warnings warnings({}, true);
     CompileOptions options;
-    options.substitute = true;
     options.film.resolution = Vec2i(kSide, kSide);
     return Compile(ParsePbrt(file, warnings), options, warnings);
 }

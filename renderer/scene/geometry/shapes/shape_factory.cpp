@@ -128,7 +128,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
         const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
         const float twiceArea = LengthOf((p1 - p0).cross(p2 - p0));
         if (std::isfinite(twiceArea) && std::isfinite(2 / twiceArea)) return false;
-        warnings.Add(entity.loc, "zero-area triangle left out");
+        warnings.AddMinor(entity.loc, "zero-area triangle left out");
         return true;
     });
     mesh.p.push_back(Vec3f::Zero());  // the accelerator reads past the last vertex
@@ -245,8 +245,14 @@ Shape MakeCutOutMesh(const ShapeReader& in, MeshData data) {
 Shape MakePlyMesh(const ShapeReader& in) {
     const std::string file = in.entity.parameters.GetString("filename", "");
     if (file.empty()) throw Error(in.entity.loc, "plymesh needs a \"filename\"");
-    return MakeCutOutMesh(in,
-                          LoadPly(ResolvePath(in.description, file), in.warnings, in.entity.loc));
+    MeshData mesh;
+    try {
+        mesh = LoadPly(ResolvePath(in.description, file), in.warnings, in.entity.loc);
+    } catch (const Error& error) {
+        in.warnings.Substitute(error, "the mesh is left out");
+        return {};
+    }
+    return MakeCutOutMesh(in, std::move(mesh));
 }
 Shape MakeTriangleMesh(const ShapeReader& in) {
     return MakeCutOutMesh(in, TriangleMesh(in.entity, in.warnings));
@@ -284,16 +290,16 @@ constexpr Kind<Shape(const ShapeReader&)> kShapes[] = {
 }  // namespace
 
 Shape MakeShape(const Description& description, const ShapeEntity& entity,
-                const TextureTable& textures, bool substitute, Warnings& warnings) {
+                const TextureTable& textures, Warnings& warnings) {
     Shape shape;
     if (const auto* kind = FindKind(kShapes, entity.name)) {
         shape = kind->make({description, entity, textures, warnings});
         entity.parameters.ReportUnused("Shape \"" + entity.name + "\"", warnings);
     } else {
-        const std::string message =
-            fmt::format("Shape \"{}\" is not modelled; {} are", entity.name, NamesOf(kShapes));
-        if (!substitute) throw Error(entity.loc, message);
-        warnings.Add(entity.loc, message + "; it is left out");
+        warnings.Substitute(
+            entity.loc,
+            fmt::format("Shape \"{}\" is not modelled; {} are", entity.name, NamesOf(kShapes)),
+            "it is left out");
     }
     shape.material = entity.material;
     return shape;

@@ -7,8 +7,7 @@
 namespace lull {
 
 // Makes a shape with its material and alpha textures; its lights come later. Throws Error with
-// file and line. With `substitute`, an unknown kind becomes an empty mesh and a counted warning.
-Shape MakeShape(const Description&, const ShapeEntity&, const TextureTable&, bool substitute,
-                Warnings&);
+// file and line. An empty mesh substitutes an unknown kind and a mesh that cannot be read.
+Shape MakeShape(const Description&, const ShapeEntity&, const TextureTable&, Warnings&);
 
 }  // namespace lull
