@@ -33,11 +33,12 @@ std::string ClockOptions::Text() const {
 }
 
 void AddClockOptions(CLI::App& app, ClockOptions* options) {
-    auto* time = app.add_option("--time", options->time,
-                                "End after this time, such as 90s, 10m or 1h30m, with files "
-                                "written; until then the noisiest block continues")
-                     ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
-                     ->type_name("TIME");
+    auto* time =
+        app.add_option("--time", options->time,
+                       "End after this time, such as 90 (seconds), 10m or 1h30m, with files "
+                       "written; until then the noisiest block continues")
+            ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
+            ->type_name("TIME");
     app.add_option("--until", options->until, "The same, when the clock here shows this")
         ->check(CheckBy([](const std::string& text) { NextTimeOfDay(text, 0); }))
         ->type_name("HH:MM")

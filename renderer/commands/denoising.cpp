@@ -9,9 +9,11 @@
 namespace lull {
 
 DenoisedImage DenoiseAndSay(NoisyPicture picture, const PixelRect& region,
-                            const std::vector<Block>& blocks, bool quiet, const Talk& talk) {
+                            const std::vector<Block>& blocks, bool quiet, const Talk& talk,
+                            const std::function<void(DenoisedImage*)>& check) {
     const auto start = std::chrono::steady_clock::now();
     DenoisedImage image = DenoiseImage(std::move(picture), region, blocks);
+    if (check) check(&image);
     const std::string text = fmt::format("denoised in {}; {}", FormatDuration(SecondsSince(start)),
                                          TextOf(image.blocks));
     if (!quiet && talk.isJson)

@@ -7,6 +7,7 @@
 
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/render_files.h"
 #include "renderer/commands/scene_options.h"
 #include "renderer/files/file_contents.h"
 #include "renderer/render/progress.h"
@@ -88,13 +89,13 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     Line("lights", CountsText(lights));
 }
 
-std::string FilmText(const FilmSettings& film) {
+std::string FilmText(const FilmSettings& film, const std::string& file) {
     std::string text = fmt::format("{} x {} pixels", film.resolution.x(), film.resolution.y());
     if ((film.cropMin != Vec2i(0, 0)) || (film.cropMax != film.resolution))
         text += fmt::format(", of them columns {} to {} and rows {} to {}", film.cropMin.x(),
                             film.cropMax.x() - 1, film.cropMin.y(), film.cropMax.y() - 1);
     if (film.scale != 1) text += fmt::format(", values times {:g}", film.scale);
-    return text + fmt::format(", image {}", film.filename);
+    return text + ", image " + DefaultOutput(film.filename, file);
 }
 
 // Says what is used, and what the file asks for if that is something else.
@@ -103,7 +104,7 @@ std::string UsedText(const std::string& used, const Entity& asked) {
     return fmt::format("{} ({} in the file)", used, asked.name);
 }
 
-void PrintView(const Description& description, const Scene& scene) {
+void PrintView(const Description& description, const Scene& scene, const std::string& file) {
     const Vec3f position = scene.camera.worldFromCamera.topRightCorner<3, 1>().cast<float>();
     Line("camera",
          fmt::format("{} at {}{}", description.camera.name, VectorText(position),
@@ -112,7 +113,7 @@ void PrintView(const Description& description, const Scene& scene) {
                          ? fmt::format(", lens radius {:g}, focus at {:g}", scene.camera.lensRadius,
                                        scene.camera.focalDistance)
                          : ", pinhole"));
-    Line("film", FilmText(scene.film));
+    Line("film", FilmText(scene.film, file));
     Line("filter", description.filter.name);
     Line("sampler", UsedText(NameOf(scene.sampler), description.sampler));
     if (description.sampler.loc.file)
@@ -148,7 +149,7 @@ ExitCode RunInfo(const SceneOptions& options) {
     Line("scene", options.file);
     PrintGeometry(description, *scene);
     PrintAppearance(description, *scene);
-    PrintView(description, *scene);
+    PrintView(description, *scene, options.file);
     PrintCosts(*scene, parseSeconds);
     Line("warnings", CountsText(warnings.Counts()));
     return kDone;

@@ -115,7 +115,9 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks
     ReadRule(p.get());
     CheckBlocks(region, render.settings.schedule, render.input.warnings);
     p->film = CheckedFilm(*p);
-    p->files = NameFiles(request.output.empty() ? render.input.film.filename : request.output,
+    p->files = NameFiles(request.output.empty()
+                             ? DefaultOutput(render.input.film.filename, render.settings.scene.file)
+                             : request.output,
                          request.report);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
@@ -242,9 +244,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     film.DropHalf();
     if (!p.request.denoise) return made;
     const Talk talk = TalkOf(settings);
-    made.image = DenoiseAndSay(std::move(picture), region, MakeBlocks(region, settings.schedule),
-                               settings.quiet, talk);
-    DoubtBlocks(result, region, talk, &*made.image);
+    made.image = DenoiseAndSay(
+        std::move(picture), region, MakeBlocks(region, settings.schedule), settings.quiet, talk,
+        [&](DenoisedImage* image) { DoubtBlocks(result, region, talk, image); });
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;
 }

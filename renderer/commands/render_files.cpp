@@ -4,6 +4,7 @@
 
 #include "renderer/files/file_io.h"
 #include "renderer/pages/html_page.h"
+#include "renderer/render/provenance.h"
 #include "renderer/results/block_files.h"
 #include "renderer/results/report.h"
 
@@ -18,6 +19,12 @@ using std::filesystem::path;
 bool HasImageExtension(const std::string& output) {
     const path extension = path(output).extension();
     return extension == ".exr" || extension == ".png";
+}
+
+std::string DefaultOutput(const std::string& filename, const std::string& scene) {
+    const path given = filename;
+    if (!given.stem().empty() && given.stem() != "scene") return filename;
+    return path(given).replace_filename(SceneName(scene) + ".exr").string();
 }
 
 RenderFiles NameFiles(const std::string& output, const std::string& report) {

@@ -15,6 +15,10 @@ struct RenderFiles {
 // Returns the names for `output`, a name that ends in .exr or .png; all lie beside each other.
 RenderFiles NameFiles(const std::string& output, const std::string& report);
 
+// Returns the image to write where the command names none: the scene's `filename`, or the name of
+// the scene if that is empty or "scene", as of many scenes.
+std::string DefaultOutput(const std::string& filename, const std::string& scene);
+
 // Says whether `output` ends as an image that can be written.
 bool HasImageExtension(const std::string& output);
 

@@ -71,7 +71,7 @@ std::string RenderRequest::Rule() const {
 void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddRenderSettings(app, &o->render);
     app.add_option("-o,--output", o->output,
-                   "Image to write, .exr or .png; both are written [the scene's file name]")
+                   "Image to write, .exr or .png; both are written [named as in the scene]")
         ->check([](const std::string& file) {
             return HasImageExtension(file) ? "" : file + " ends neither in .exr nor in .png";
         })

@@ -85,16 +85,16 @@ void PrintCapped(const Provenance& provenance, const RenderResult& result) {
         Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
 }
 
-// Says what was missing when the time was up. Of blocks within their first pass nobody knows the
-// noise, nor how long they would have taken.
+// Says what was missing when the time was up. The noise of blocks is not known within their first
+// pass, nor before the next one after a render was resumed.
 void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     const auto unknown =
         std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
     if (unknown > 0)
-        Say("{} blocks have less than a pass of {} spp, too little to tell how noisy they are\n",
-            unknown, provenance.schedule.passLength);
+        Say("the noise of {} block{} is not known, as no pass of {} spp was completed there\n",
+            unknown, unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return;
     Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {

@@ -13,23 +13,44 @@ namespace lull {
 namespace {
 
 struct TimeLeft {
+    // To all that there is to do, to the end as predicted, to that of blocks that all go to the
+    // cap, or to a time limit at which what is adaptive ends at the latest.
+    enum class End { Work, Prediction, Cap, Limit };
+
     double seconds;
-    bool isBound;  // or less
+    End end;
+
+    bool IsBound() const { return end == End::Cap || end == End::Limit; }
 };
 
 // Says how long it takes from here; nothing where nobody knows.
 std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool adaptive) {
+    using End = TimeLeft::End;
     std::optional<TimeLeft> left;
     if (p.samplesToCap == 0)
-        left = {0, adaptive};
+        left = {0, adaptive ? End::Cap : End::Work};
     else if (adaptive && p.predictedSeconds)
-        left = {*p.predictedSeconds, false};
+        left = {*p.predictedSeconds, End::Prediction};
     else if (rate > 0)
-        left = {double(p.samplesToCap) / rate, adaptive};
+        left = {double(p.samplesToCap) / rate, adaptive ? End::Cap : End::Work};
     if (!p.secondsLeft) return left;
     const double clock = std::max(0.0, *p.secondsLeft);
-    if (!left || clock < left->seconds) left = {clock, adaptive};
+    if (!left || clock < left->seconds) left = {clock, adaptive ? End::Limit : End::Work};
     return left;
+}
+
+std::string TextOf(const TimeLeft& left) {
+    const std::string time = FormatDuration(left.seconds);
+    switch (left.end) {
+        case TimeLeft::End::Prediction:
+            return "about " + time + " left";
+        case TimeLeft::End::Cap:
+            return time + " to the cap";
+        case TimeLeft::End::Limit:
+            return "at most " + time + " left";
+        default:
+            return time + " left";
+    }
 }
 
 // Returns the columns of a terminal.
@@ -89,11 +110,7 @@ std::string ProgressText(const ProgressState& state, int columns) {
     const std::string rate = FormatCount(state.rate), time = FormatDuration(p.seconds);
     std::string left;
     if (const auto l = Remaining(p, state.rate, state.adaptive); p.samplesToCap > 0 && l)
-        left = fmt::format("  {}{} left",
-                           l->isBound       ? "at most "
-                           : state.adaptive ? "about "
-                                            : "",
-                           FormatDuration(l->seconds));
+        left = "  " + TextOf(*l);
     const std::string forms[] = {
         fmt::format("{}  {} blocks done  median {} spp  {} samples/s  {} elapsed{}", percent,
                     blocks, p.medianSpp, rate, time, left),
@@ -117,7 +134,7 @@ std::string ProgressJson(const ProgressState& state) {
         R"("medianSpp":{},"samples":{},"samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},)"
         R"("remainingSeconds":{},"remainingIsUpperBound":{}}})",
         100 * state.share, p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp,
-        p.samples, state.rate, p.seconds, remaining, left ? left->isBound : state.adaptive);
+        p.samples, state.rate, p.seconds, remaining, left ? left->IsBound() : state.adaptive);
 }
 
 void ProgressPrinter::Print(const RenderProgress& p) {

@@ -36,8 +36,8 @@ int TakeTwoDigits(std::string_view* text, int limit) {
 
 double ParseDuration(const std::string& text) {
     const auto refuse = [&] {
-        throw std::invalid_argument(
-            fmt::format("'{}' is no time; 500ms, 90s, 10m, 2h or 1h30m are, for example", text));
+        throw std::invalid_argument(fmt::format(
+            "'{}' is no time; 10 (seconds), 500ms, 90s, 10m, 2h or 1h30m are, for example", text));
     };
     double seconds = 0, largerUnit = INFINITY;
     for (std::string_view left = text; !left.empty();) {
@@ -46,7 +46,9 @@ double ParseDuration(const std::string& text) {
                                                    std::chars_format::fixed);
         if (error != std::errc()) refuse();
         left.remove_prefix(size_t(rest - left.data()));
-        const double unit = TakeUnit(&left);
+        const bool isPlain = left.empty() && rest == text.data() + text.size() && seconds == 0 &&
+                             largerUnit == INFINITY;
+        const double unit = isPlain ? 1 : TakeUnit(&left);
         if (unit == 0 || unit >= largerUnit || !(value >= 0)) refuse();
         seconds += value * unit;
         largerUnit = unit;

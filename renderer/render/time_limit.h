@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Returns the seconds, > 0, that "500ms", "90s", "10m", "2h" or a sum such as "1h30m" stand for.
-// Numbers can have fractions. Throws std::invalid_argument for anything else.
+// Returns the seconds, > 0, that "10", "500ms", "90s", "10m", "2h" or a sum such as "1h30m" stand
+// for. Numbers can have fractions. Throws std::invalid_argument for anything else.
 double ParseDuration(const std::string& text);
 
 // Returns the first time after `now` at which clocks here show "HH:MM" or "HH:MM:SS", of 24 hours.

@@ -22,13 +22,16 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     for (const auto& error : blocks)
         if (error) upper.push_back(error->upper);
     if (upper.empty())
-        return fmt::format("visible error not known of blocks below {} pixels a side",
-                           kSmallestMeasuredSide);
+        return fmt::format(
+            "visible error not known: blocks have less than {} pixels a side, or few samples",
+            kSmallestMeasuredSide);
     std::ranges::sort(upper);
+    const bool isKnown = upper.size() == blocks.size();
     return fmt::format(
         "visible error in lightness, of 0 to 100, probably at most {:.2f} in half of "
-        "the blocks and {:.2f} in all",
-        upper[upper.size() / 2], upper.back());
+        "the {}blocks{} and {:.2f} in all",
+        upper[upper.size() / 2], isKnown ? "" : fmt::format("{} ", upper.size()),
+        isKnown ? "" : " of which it is known", upper.back());
 }
 
 std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb) {

@@ -13,9 +13,9 @@ struct FilmSettings {
     Vec2i cropMin = {0, 0};          // the pixels rendered: [cropMin, cropMax)
     Vec2i cropMax = {1280, 720};
     float diagonal = 0.035f;  // of the whole image on the film, metres (realistic cameras)
-    std::string filename = "lull.exr";
-    float scale = 1;                       // multiplies every sample, exposure included
-    float exposure = 0;                    // in stops
+    std::string filename;     // empty: none is given
+    float scale = 1;          // multiplies every sample, exposure included
+    float exposure = 0;       // in stops
     float maxSampleLuminance = kInfinity;  // a brighter sample is scaled down to this
 
     Vec2i Size() const { return cropMax - cropMin; }

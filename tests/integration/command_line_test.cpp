@@ -56,6 +56,31 @@ TEST(CommandLine, RefusesWrongUsage) {
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 
+TEST(CommandLine, SuggestsOptions) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const auto errorOf = [&](const std::string& arguments) {
+        return RunLull(directory, "render scene.pbrt " + arguments).err;
+    };
+    EXPECT_EQ(errorOf("--denoize"),
+              "lull: error: there is no option --denoize; did you mean --denoise?\n");
+    EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
+    EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
+    EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
+}
+
+TEST(CommandLine, NamesImagesAfterTheScene) {
+    const TemporaryDirectory directory;
+    const auto render = [&](const std::string& folder, const std::string& film) {
+        std::filesystem::create_directory(directory.File(folder));
+        directory.Write(folder + "/scene.pbrt", SceneText(kSphere, film));
+        return RunLull(directory, "render " + folder + "/scene.pbrt --spp 1 --quiet").out;
+    };
+    EXPECT_TRUE(render("attic", "").starts_with("attic.exr\n"));
+    EXPECT_TRUE(render("barn", "\"string filename\" \"scene.exr\"").starts_with("barn.exr\n"));
+    EXPECT_TRUE(render("cellar", "\"string filename\" \"a.exr\"").starts_with("a.exr\n"));
+}
+
 TEST(CommandLine, HelpsAndTellsItsVersion) {
     const TemporaryDirectory directory;
     for (const char* arguments : {"--help", "render --help", "info --help", "--version"}) {

@@ -101,8 +101,6 @@ def _event(line):
             return event
     except (ValueError, TypeError):
         pass
-    if line.startswith("Run with --help"):
-        return {"event": "note", "message": line}
     return {"event": "error", "message": line.strip().removeprefix("lull: error: ")}
 
 

@@ -54,12 +54,12 @@ TEST(FormatCount, KeepsThreeDigits) {
     EXPECT_EQ(FormatCount(6.4e9), "6.40 G");
 }
 
-TEST(ProgressText, SaysWhetherTheTimeLeftIsABound) {
+TEST(ProgressText, TellsTheTimeToTheCapFromAForecast) {
     const std::string adaptive = ProgressText(StateOf(Halfway(), 50000, true));
     EXPECT_EQ(adaptive,
               " 50%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
-              "at most 1:40 left");
-    EXPECT_FALSE(Contains(ProgressText(StateOf(Halfway(), 50000, false)), "at most"));
+              "1:40 to the cap");
+    EXPECT_TRUE(ProgressText(StateOf(Halfway(), 50000, false)).ends_with("  1:40 left"));
 }
 
 TEST(ProgressText, PredictsTheEndWhereItCan) {
