@@ -81,7 +81,8 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     return start + "; there are " + all;
 }
 
-// Returns why the words of a command cannot be read, and which option one may have been meant to be.
+// Returns why the words of a command cannot be read, and which option one may have been meant to
+// be.
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();
     const CLI::App& command = given.empty() ? app : *given.front();

@@ -83,8 +83,8 @@ const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
     return *directive;
 }
 
-// Returns whether the directives after one that failed can still be judged: not after one that opens
-// or closes a scope.
+// Returns whether the directives after one that failed can still be judged: not after one that
+// opens or closes a scope.
 bool CanContinueAfter(const Token& token) {
     return !token.text.ends_with("Begin") && !token.text.ends_with("End");
 }
