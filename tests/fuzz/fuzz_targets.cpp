@@ -94,12 +94,12 @@ void FuzzExr(std::span<const char> bytes) { FuzzImage(bytes, "\x76\x2f\x31\x01")
 // What the parameters of a scene are read into, without the structure that rays are traced in.
 void FuzzScene(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    Warnings warnings;
+    Warnings warnings({}, true);
     try {
         const Description d = ParsePbrt(path, warnings);
-        const TextureTable textures(d, true, warnings);
-        const MaterialTable materials(d, textures, true, warnings);
-        const ShapeTable shapes(d, textures, true, warnings);
+        const TextureTable textures(d, warnings);
+        const MaterialTable materials(d, textures, warnings);
+        const ShapeTable shapes(d, textures, warnings);
         const MediumTable media(d, warnings);
     } catch (const Error&) {
     }

@@ -62,8 +62,9 @@ std::optional<json> Decompose(const Mat4d& m) {
 
 void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFile* file,
                Warnings& warnings) {
-    const TextureTable textures(description, true, warnings);
-    const ShapeTable table(description, textures, true, warnings);
+    const TextureTable textures(description, warnings);
+    const ShapeTable table(description, textures, warnings);
+    warnings.ThrowErrors();
     MaterialWriter materials(description, file, &warnings);
     for (size_t i = 0; i < description.shapes.size(); ++i)
         if (const auto mesh = AddMesh(table, std::span(description.shapes).subspan(i, 1), int(i),
@@ -92,7 +93,8 @@ void AddShapes(const Description& description, const Mat4d& gltfFromWorld, GlbFi
 }
 
 void Convert(const std::string& scene, const std::string& output, const std::string& environment) {
-    Warnings warnings([](const std::string& message) { fmt::print(stderr, "{}\n", message); });
+    Warnings warnings([](const std::string& message) { fmt::print(stderr, "{}\n", message); },
+                      true);
     const Description description = ParsePbrt(scene, warnings);
     if (!description.motions.empty() || description.movingCameraFromWorld)
         warnings.Add({}, "what moves stands where it starts");
