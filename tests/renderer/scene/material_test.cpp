@@ -66,7 +66,10 @@ TEST(Mix, RefusesMoreThanEightLobes) {
     b.AddMaterial("mix").operands = {0, 0};
     EXPECT_EQ(ErrorOf(&b), "");
     b.AddMaterial("mix").operands = {1, 0};
-    EXPECT_EQ(ErrorOf(&b), "scene.pbrt:30: material \"mix\" can have more than 8 lobes");
+    EXPECT_EQ(
+        ErrorOf(&b),
+        "scene.pbrt:30: material \"mix\" can have more than 8 lobes; with --substitute a matte "
+        "material stands in");
 }
 
 TEST(Mix, RefusesUnknownOperands) {
@@ -77,7 +80,9 @@ TEST(Mix, RefusesUnknownOperands) {
     m.parameters.Add(
         {ParameterType::String, "namedmaterial2", At(3), std::vector<std::string>{"gold"}});
     EXPECT_EQ(ErrorOf(&b),
-              "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"");
+              "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"; with "
+              "--substitute a matte "
+              "material stands in");
 }
 
 TEST(Materials, UnknownKindsAreRefused) {
