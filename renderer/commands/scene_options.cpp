@@ -77,43 +77,39 @@ FilmSettings SilentFilmSettings(const Description& description, const SceneOptio
     return MakeFilmSettings(description, options.compile.film, unheard);
 }
 
-}  // namespace
-
-void AddSceneOptions(CLI::App& app, SceneOptions* options) {
-    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file, or glTF 2.0 (.gltf, .glb)")
-        ->required();
+void AddFilmOptions(CLI::App& app, FilmOverrides* film) {
     app.add_option_function<std::string>(
            "--resolution",
-           Checked(ParseResolution, &options->compile.film.resolution,
-                   "a size in pixels such as 800x600"),
+           Checked(ParseResolution, &film->resolution, "a size in pixels such as 800x600"),
            "Size of the whole image in pixels, WxH, instead of the scene's; glTF: 800 high, as\n"
            "wide as its camera sees")
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--crop",
-           Checked(ParseCrop, &options->compile.film,
+           Checked(ParseCrop, film,
                    "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y, or in pixels with px "
                    "after them"),
            "Render only this part of the image, as fractions of its sides from the upper left,\n"
            "or as pixels: 100,300,50,250px")
         ->type_name("x0,x1,y0,y1[px]");
-    app.add_option("--max-depth", options->compile.maxDepth,
+}
+
+void AddCompileOptions(CLI::App& app, CompileOptions* options) {
+    app.add_option("--max-depth", options->maxDepth,
                    "Longest path in bounces, instead of the scene's")
         ->check(CLI::Range(0, 1000000))
         ->type_name("N");
-    app.add_option("--threads", options->compile.threads, "Threads; 0: one for each core")
+    app.add_option("--threads", options->threads, "Threads; 0: one for each core")
         ->check(CLI::Range(0, 4096))
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--substitute", options->substitute,
-                 "Continue with substitutes for names, files, materials, textures, shapes and\n"
-                 "lights that are missing or not modelled, each with a warning, as pbrt-v3 does");
-    app.add_flag("--verbose", options->isVerbose,
-                 "Print warnings that do not concern the image as well, as of zero-area triangles");
     AddChoiceOption(
-        app, "--filtering", &options->compile.filtering,
+        app, "--filtering", &options->filtering,
         "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
         "sees them: trilinear or EWA, from smaller copies, which need memory");
+}
+
+void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("--exposure", options->exposure,
                    "Exposure compensation in stops: multiply all values by 2^EV, also in the EXR,\n"
                    "whose header records it [0]")
@@ -130,37 +126,60 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->needs(environment)
         ->check(CLI::Range(-360., 360.))
         ->type_name("DEG");
-    auto* camera = app.add_option("--camera", options->view.camera,
-                                  "glTF: look through the camera of this name or number, from 0")
-                       ->type_name("NAME|N");
-    app.add_option_function<std::string>(
-           "--orbit",
-           Checked(ParseOrbit, &options->view.orbit,
-                   "azimuth,elevation in degrees, the elevation from -90 to 90"),
-           "glTF: show the whole scene, seen from this direction [without a camera: 30,15]")
-        ->excludes(camera)
-        ->type_name("azimuth,elevation");
-    auto* frame = app.add_option("--frame", options->view.frame,
+}
+
+void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
+    auto* frame = app.add_option("--frame", view->frame,
                                  "glTF: pose nodes, skins, morph targets and cameras as the file's "
                                  "animation\nhas them at this time")
                       ->check(CLI::Range(0., 1e9))
                       ->type_name("SECONDS");
-    app.add_option("--animation", options->view.animation,
+    app.add_option("--animation", view->animation,
                    "glTF: the animation of this name or number, from 0 [the first one]")
         ->needs(frame)
         ->type_name("NAME|N");
-    app.add_option("--shutter", options->view.shutter,
+    app.add_option("--shutter", view->shutter,
                    "glTF: blur what moves, nodes and cameras, from then on for so long")
         ->needs(frame)
         ->check(CLI::Range(0., 1e9))
         ->type_name("SECONDS");
-    app.add_option("--variant", options->view.variant,
+}
+
+void AddGltfOptions(CLI::App& app, GltfOptions* view) {
+    auto* camera = app.add_option("--camera", view->camera,
+                                  "glTF: look through the camera of this name or number, from 0")
+                       ->type_name("NAME|N");
+    app.add_option_function<std::string>(
+           "--orbit",
+           Checked(ParseOrbit, &view->orbit,
+                   "azimuth,elevation in degrees, the elevation from -90 to 90"),
+           "glTF: show the whole scene, seen from this direction [without a camera: 30,15]")
+        ->excludes(camera)
+        ->type_name("azimuth,elevation");
+    AddAnimationOptions(app, view);
+    app.add_option("--variant", view->variant,
                    "glTF: use the materials of this variant, a name or number, from 0, that `lull\n"
                    "info` lists")
         ->type_name("NAME|N");
-    app.add_flag("--solid-glass", options->view.solidGlass,
+    app.add_flag("--solid-glass", view->solidGlass,
                  "glTF: let all that transmits light be solid; without a volume's thickness it is\n"
                  "a thin sheet, as the format says");
+}
+
+}  // namespace
+
+void AddSceneOptions(CLI::App& app, SceneOptions* options) {
+    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file, or glTF 2.0 (.gltf, .glb)")
+        ->required();
+    AddFilmOptions(app, &options->compile.film);
+    AddCompileOptions(app, &options->compile);
+    app.add_flag("--substitute", options->substitute,
+                 "Continue with substitutes for names, files, materials, textures, shapes and\n"
+                 "lights that are missing or not modelled, each with a warning, as pbrt-v3 does");
+    app.add_flag("--verbose", options->isVerbose,
+                 "Print warnings that do not concern the image as well, as of zero-area triangles");
+    AddEnvironmentOptions(app, options);
+    AddGltfOptions(app, &options->view);
 }
 
 Warnings MakePrintedWarnings(const SceneOptions& options, const Talk& talk) {

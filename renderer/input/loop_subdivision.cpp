@@ -127,6 +127,27 @@ float Beta(int valence) { return valence == 3 ? 3.f / 16 : 3.f / (8 * valence); 
 // Returns the weight of a neighbour in the limit of repeated subdivision (Hoppe et al. 1994).
 float LimitWeight(int valence) { return 1 / (valence + 3 / (8 * Beta(valence))); }
 
+// Appends a vertex to `p` on each edge. Returns its index for each half-edge.
+std::vector<int> AddMiddles(const HalfEdgeMesh& old, std::vector<Vec3f>* p) {
+    std::vector<int> middle(old.origin.size());
+    for (int h = 0; h < old.Edges(); ++h) {
+        const int twin = old.twin[h];
+        if (twin >= 0 && twin < h) {
+            middle[h] = middle[twin];
+            continue;
+        }
+        middle[h] = int(p->size());
+        const Vec3f ends = old.p[old.origin[h]] + old.p[old.Target(h)];
+        if (twin < 0)
+            p->push_back(0.5f * ends);
+        else
+            p->push_back(3.f / 8 * ends + 1.f / 8 *
+                                              (old.p[old.origin[HalfEdgeMesh::Previous(h)]] +
+                                               old.p[old.origin[HalfEdgeMesh::Previous(twin)]]));
+    }
+    return middle;
+}
+
 // Splits every face 012 in 4: the corners 0 a c, a 1 b, c b 2 and the middle a b c, where a, b, c
 // are new vertices on the edges 01, 12, 20. Faces keep their direction.
 HalfEdgeMesh Subdivide(const HalfEdgeMesh& old) {
@@ -137,24 +158,7 @@ HalfEdgeMesh Subdivide(const HalfEdgeMesh& old) {
     for (size_t v = 0; v < old.p.size(); ++v)
         mesh.p.push_back(Weigh(old, int(v), Beta, 1.f / 8, &ring));
 
-    // Place a vertex on each edge, for the half-edge that comes first.
-    std::vector<int> middle(old.origin.size());
-    for (int h = 0; h < old.Edges(); ++h) {
-        const int twin = old.twin[h];
-        if (twin >= 0 && twin < h) {
-            middle[h] = middle[twin];
-            continue;
-        }
-        middle[h] = int(mesh.p.size());
-        const Vec3f ends = old.p[old.origin[h]] + old.p[old.Target(h)];
-        if (twin < 0)
-            mesh.p.push_back(0.5f * ends);
-        else
-            mesh.p.push_back(3.f / 8 * ends + 1.f / 8 *
-                                                  (old.p[old.origin[M::Previous(h)]] +
-                                                   old.p[old.origin[M::Previous(twin)]]));
-    }
-
+    const std::vector<int> middle = AddMiddles(old, &mesh.p);
     mesh.origin.resize(4 * old.origin.size());
     mesh.twin.resize(mesh.origin.size());
     mesh.leaving.assign(mesh.p.size(), -1);

@@ -86,6 +86,20 @@ class Hasher {
     uLong crc = crc32_z(0, nullptr, 0);
 };
 
+void HashShapes(const Description& d, Hasher* hash) {
+    for (const ShapeEntity& shape : d.shapes) hash->Of(shape);
+    for (const ObjectEntity& object : d.objects) {
+        hash->Text(object.name);
+        for (const ShapeEntity& shape : object.shapes) hash->Of(shape);
+    }
+    for (const InstanceEntity& instance : d.instances) {
+        hash->Number(instance.object);
+        hash->Matrix(instance.worldFromInstance);
+        if (instance.motion >= 0)
+            for (const TransformPair& pair : d.motions[instance.motion]) hash->Of(pair);
+    }
+}
+
 }  // namespace
 
 std::string SceneHash(const Description& d) {
@@ -113,17 +127,7 @@ std::string SceneHash(const Description& d) {
         hash.Of(light);
         hash.Matrix(light.worldFromLight);
     }
-    for (const ShapeEntity& shape : d.shapes) hash.Of(shape);
-    for (const ObjectEntity& object : d.objects) {
-        hash.Text(object.name);
-        for (const ShapeEntity& shape : object.shapes) hash.Of(shape);
-    }
-    for (const InstanceEntity& instance : d.instances) {
-        hash.Number(instance.object);
-        hash.Matrix(instance.worldFromInstance);
-        if (instance.motion >= 0)
-            for (const TransformPair& pair : d.motions[instance.motion]) hash.Of(pair);
-    }
+    HashShapes(d, &hash);
     for (const MediumEntity& medium : d.media) {
         hash.Of(medium);
         hash.Matrix(medium.worldFromMedium);

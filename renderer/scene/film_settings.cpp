@@ -4,6 +4,33 @@
 #include <fmt/format.h>
 
 namespace lull {
+namespace {
+
+// Sets the pixels to be rendered.
+void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings* film) {
+    std::array<float, 4> crop = {0, 1, 0, 1};
+    if (const auto window = entity.parameters.GetFloats(ParameterType::Float, "cropwindow");
+        !window.empty()) {
+        if (window.size() != 4)
+            throw Error(entity.loc, "\"cropwindow\" needs four values: x0 x1 y0 y1");
+        std::copy(window.begin(), window.end(), crop.begin());
+    }
+    if (overrides.crop) crop = *overrides.crop;
+    for (int i = 0; i < 2; ++i) {
+        // pbrt-v3 swaps limits in the wrong order and clamps them to the image.
+        const float lower = std::clamp(std::min(crop[2 * i], crop[2 * i + 1]), 0.f, 1.f);
+        const float upper = std::clamp(std::max(crop[2 * i], crop[2 * i + 1]), 0.f, 1.f);
+        film->cropMin[i] = int(std::ceil(film->resolution[i] * lower));
+        film->cropMax[i] = int(std::ceil(film->resolution[i] * upper));
+        if (overrides.cropInPixels) {
+            film->cropMin[i] = std::min((*overrides.cropInPixels)[2 * i], film->resolution[i]);
+            film->cropMax[i] = std::min((*overrides.cropInPixels)[2 * i + 1], film->resolution[i]);
+        }
+    }
+    if (film->Size().minCoeff() < 1) throw Error(entity.loc, "the crop window holds no pixel");
+}
+
+}  // namespace
 
 FilmSettings MakeFilmSettings(const Description& description, const FilmOverrides& overrides,
                               Warnings& warnings) {
@@ -22,26 +49,7 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
                                             "1 and the image at most {} pixels",
                                             film.resolution.x(), film.resolution.y(), kMaxPixels));
 
-    std::array<float, 4> crop = {0, 1, 0, 1};
-    if (const auto window = params.GetFloats(ParameterType::Float, "cropwindow"); !window.empty()) {
-        if (window.size() != 4)
-            throw Error(entity.loc, "\"cropwindow\" needs four values: x0 x1 y0 y1");
-        std::copy(window.begin(), window.end(), crop.begin());
-    }
-    if (overrides.crop) crop = *overrides.crop;
-    for (int i = 0; i < 2; ++i) {
-        // pbrt-v3 swaps limits in the wrong order and clamps them to the image.
-        const float lower = std::clamp(std::min(crop[2 * i], crop[2 * i + 1]), 0.f, 1.f);
-        const float upper = std::clamp(std::max(crop[2 * i], crop[2 * i + 1]), 0.f, 1.f);
-        film.cropMin[i] = int(std::ceil(film.resolution[i] * lower));
-        film.cropMax[i] = int(std::ceil(film.resolution[i] * upper));
-        if (overrides.cropInPixels) {
-            film.cropMin[i] = std::min((*overrides.cropInPixels)[2 * i], film.resolution[i]);
-            film.cropMax[i] = std::min((*overrides.cropInPixels)[2 * i + 1], film.resolution[i]);
-        }
-    }
-    if (film.Size().minCoeff() < 1) throw Error(entity.loc, "the crop window holds no pixel");
-
+    SetCrop(entity, overrides, &film);
     film.filename = params.GetString("filename", film.filename);
     film.exposure = params.GetFloat("exposure", 0);
     film.scale = params.GetFloat("scale", 1) * std::exp2(film.exposure);

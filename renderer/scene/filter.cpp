@@ -21,6 +21,36 @@ float Mitchell(float x, float b, float c) {
 
 float Sinc(float x) { return std::abs(x) < 1e-5f ? 1 : std::sin(kPi * x) / (kPi * x); }
 
+// The filter's function of x along an axis, and of the radius of that axis.
+using AxisFunction = std::function<float(float, float)>;
+
+// Makes that of a filter other than a box. Throws Error for others.
+AxisFunction MakeAxisFunction(const Entity& entity) {
+    const Parameters& params = entity.parameters;
+    if (entity.name == "gaussian") {
+        const float alpha = params.GetFloat("alpha", 2);
+        return [=](float x, float r) {
+            return std::max(0.f, std::exp(-alpha * x * x) - std::exp(-alpha * r * r));
+        };
+    }
+    if (entity.name == "mitchell") {
+        const float b = params.GetFloat("B", 1 / 3.f), c = params.GetFloat("C", 1 / 3.f);
+        return [=](float x, float r) { return Mitchell(x / r, b, c); };
+    }
+    if (entity.name == "triangle")
+        return [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
+    if (entity.name == "sinc") {
+        // As in pbrt-v3 the window has its own width, tau, and not the radius: beyond tau its
+        // lobes come back.
+        const float tau = params.GetFloat("tau", 3);
+        if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
+        return [=](float x, float) { return Sinc(x) * Sinc(x / tau); };
+    }
+    throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
+                                        "mitchell, sinc and triangle are",
+                                        Printable(entity.name)));
+}
+
 }  // namespace
 
 Filter::Filter(const Description& description, Warnings& warnings) {
@@ -32,28 +62,7 @@ Filter::Filter(const Description& description, Warnings& warnings) {
     if (!(radius.minCoeff() > 0) || !radius.allFinite())
         throw Error(entity.loc, "the filter's \"xwidth\" and \"ywidth\" have to be positive");
 
-    std::function<float(float, float)> evaluate;  // (x, radius of the axis)
-    if (entity.name == "gaussian") {
-        const float alpha = params.GetFloat("alpha", 2);
-        evaluate = [=](float x, float r) {
-            return std::max(0.f, std::exp(-alpha * x * x) - std::exp(-alpha * r * r));
-        };
-    } else if (entity.name == "mitchell") {
-        const float b = params.GetFloat("B", 1 / 3.f), c = params.GetFloat("C", 1 / 3.f);
-        evaluate = [=](float x, float r) { return Mitchell(x / r, b, c); };
-    } else if (entity.name == "triangle") {
-        evaluate = [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
-    } else if (isSinc) {
-        // As in pbrt-v3 the window has its own width, tau, and not the radius: beyond tau its
-        // lobes come back.
-        const float tau = params.GetFloat("tau", 3);
-        if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
-        evaluate = [=](float x, float) { return Sinc(x) * Sinc(x / tau); };
-    } else if (!isBox) {
-        throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
-                                            "mitchell, sinc and triangle are",
-                                            Printable(entity.name)));
-    }
+    const AxisFunction evaluate = isBox ? AxisFunction() : MakeAxisFunction(entity);
     params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);
     if (isBox) return;
 

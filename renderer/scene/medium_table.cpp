@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/visit.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
 #include "renderer/scene/media/presets.h"
@@ -36,6 +37,27 @@ void CheckDepth(const MediumEntity& entity, const GridMedium& grid, const Mat4d&
                                 Printable(entity.mediumName), deepest, kDeepest));
 }
 
+void ReadDensity(const MediumEntity& entity, GridMedium* grid) {
+    grid->size = {entity.parameters.GetInt("nx", 1), entity.parameters.GetInt("ny", 1),
+                  entity.parameters.GetInt("nz", 1)};
+    const auto values = entity.parameters.GetFloats(ParameterType::Float, "density");
+    constexpr int kMaxSide = 1 << 16;
+    if (grid->size.minCoeff() < 1 || grid->size.maxCoeff() > kMaxSide ||
+        size_t(grid->size.x()) * grid->size.y() * grid->size.z() != values.size())
+        throw Error(entity.loc, fmt::format("medium \"{}\" has {} values of \"density\" for a grid "
+                                            "of {}x{}x{}",
+                                            Printable(entity.mediumName), values.size(),
+                                            grid->size.x(), grid->size.y(), grid->size.z()));
+    grid->density.assign(values.begin(), values.end());
+    for (const float d : grid->density) {
+        if (!(d >= 0) || !std::isfinite(d))
+            throw Error(entity.loc,
+                        fmt::format("medium \"{}\": a density is not finite or negative",
+                                    Printable(entity.mediumName)));
+        grid->maxDensity = std::max(grid->maxDensity, d);
+    }
+}
+
 GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& sigmaS, float g) {
     const Parameters& params = entity.parameters;
     GridMedium grid;
@@ -48,23 +70,7 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
     grid.sigmaT = sigmaT.x();
     grid.albedo = grid.sigmaT > 0 ? Rgb(sigmaS / grid.sigmaT) : Rgb(Rgb::Zero());
     grid.g = g;
-    grid.size = {params.GetInt("nx", 1), params.GetInt("ny", 1), params.GetInt("nz", 1)};
-    const auto values = params.GetFloats(ParameterType::Float, "density");
-    constexpr int kMaxSide = 1 << 16;
-    if (grid.size.minCoeff() < 1 || grid.size.maxCoeff() > kMaxSide ||
-        size_t(grid.size.x()) * grid.size.y() * grid.size.z() != values.size())
-        throw Error(entity.loc, fmt::format("medium \"{}\" has {} values of \"density\" for a grid "
-                                            "of {}x{}x{}",
-                                            Printable(entity.mediumName), values.size(),
-                                            grid.size.x(), grid.size.y(), grid.size.z()));
-    grid.density.assign(values.begin(), values.end());
-    for (const float d : grid.density) {
-        if (!(d >= 0) || !std::isfinite(d))
-            throw Error(entity.loc,
-                        fmt::format("medium \"{}\": a density is not finite or negative",
-                                    Printable(entity.mediumName)));
-        grid.maxDensity = std::max(grid.maxDensity, d);
-    }
+    ReadDensity(entity, &grid);
     const Vec3f p0 = params.GetPoint3("p0", Vec3f::Zero());
     const Vec3f p1 = params.GetPoint3("p1", Vec3f::Ones());
     Mat4d worldFromGrid = Mat4d::Identity();
@@ -132,20 +138,15 @@ MediumTable::MediumTable(const Description& description, Warnings& warnings) {
 
 MediumSample MediumTable::Sample(int medium, const Ray& ray, Sampler& sampler) const {
     const auto [unit, scale] = Normalised(ray);
-    MediumSample sample;
-    if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&media[medium]))
-        sample = homogeneous->Sample(unit.tMax, sampler);
-    else
-        sample = std::get<GridMedium>(media[medium]).Sample(unit, sampler);
+    MediumSample sample =
+        Visit(media[medium], [&](const auto& m) { return m.Sample(unit, sampler); });
     if (sample.t) *sample.t *= scale;
     return sample;
 }
 
 Rgb MediumTable::Transmittance(int medium, const Ray& ray, Sampler& sampler) const {
-    if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&media[medium]))
-        return homogeneous->Transmittance(ray.tMax * ray.d.norm());
-    return Rgb::Constant(
-        std::get<GridMedium>(media[medium]).Transmittance(Normalised(ray).first, sampler));
+    const Ray unit = Normalised(ray).first;
+    return Visit(media[medium], [&](const auto& m) { return m.Transmittance(unit, sampler); });
 }
 
 }  // namespace lull

@@ -46,27 +46,50 @@ static bool Read(const std::string& file, Picture* picture) {
     return png_image_finish_read(&png, nullptr, picture->pixels.data(), 0, nullptr) != 0;
 }
 
+// Finds the pictures of a folder by spp: 9 before 20, which comes before 100.
+static bool Find(const char* folder, std::map<int, std::string>* files) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() != ".png") continue;
+        const std::string file = entry.path().string();
+        const int spp = SppOf(entry.path().stem().string());
+        if (spp == 0) return !Fail(file, "has no number of samples in its name");
+        if (!files->emplace(spp, file).second)
+            return !Fail(file, "there is another picture with as many samples");
+    }
+    return !files->empty() || !Fail(folder, "has no PNG files");
+}
+
+// Returns the spp between the pictures, at which a rule looks at the first of them; 0 if they are
+// not its whole multiples: the rule then looks at those of its own n.
+static int PassOf(const std::map<int, std::string>& files) {
+    const int pass = files.begin()->first;
+    int expected = 0;
+    for (const auto& [spp, file] : files)
+        if (spp != (expected += pass)) return 0;
+    return pass;
+}
+
+static void Report(int spp, const std::vector<lull_answer>& answers) {
+    int stopped = 0, checked = 0;
+    double sum = 0;
+    for (const lull_answer& a : answers) {
+        stopped += a.stop, checked += a.checked;
+        sum += a.checked ? a.probability : 0;
+    }
+    std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
+    if (checked > 0) std::printf(", P(noise) %.2f on average", sum / checked);
+    std::printf("\n");
+}
+
 int main(int argc, char** argv) {
     if (argc < 2 || !std::filesystem::is_directory(argv[1]))
         return Fail("usage", "paper FOLDER [MODEL.h5]");
-    std::map<int, std::string> files;  // by spp: 9 before 20, which comes before 100
-    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
-        if (entry.path().extension() != ".png") continue;
-        const int spp = SppOf(entry.path().stem().string());
-        if (spp == 0) return Fail(entry.path().string(), "has no number of samples in its name");
-        if (!files.emplace(spp, entry.path().string()).second)
-            return Fail(entry.path().string(), "there is another picture with as many samples");
-    }
-    if (files.empty()) return Fail(argv[1], "has no PNG files");
+    std::map<int, std::string> files;
+    if (!Find(argv[1], &files)) return 1;
 
     lull_settings settings = {};  // blocks of 200x200 pixels
     settings.model = argc > 2 ? argv[2] : "paper";
-    // A rule that knows the pass looks at the first picture; otherwise at whole multiples of n.
-    settings.pass = files.begin()->first;
-    int expected = 0;
-    for (const auto& [spp, file] : files)
-        if (spp != (expected += files.begin()->first)) settings.pass = 0;
-
+    settings.pass = PassOf(files);
     lull_stopper* stopper = nullptr;
     std::vector<lull_answer> answers;
     for (const auto& [spp, file] : files) {
@@ -83,15 +106,7 @@ int main(int argc, char** argv) {
         // network's probability of noise, and the vote: all of it in one call.
         if (lull_stopper_observe(stopper, &picture, spp, answers.data()) != LULL_OK)
             return Fail(file, lull_error_message());
-        int stopped = 0, checked = 0;
-        double sum = 0;
-        for (const lull_answer& a : answers) {
-            stopped += a.stop, checked += a.checked;
-            sum += a.checked ? a.probability : 0;
-        }
-        std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
-        if (checked > 0) std::printf(", P(noise) %.2f on average", sum / checked);
-        std::printf("\n");
+        Report(spp, answers);
         if (lull_stopper_done(stopper)) break;
     }
     std::printf("%s;", std::filesystem::absolute(argv[1]).lexically_normal().filename().c_str());

@@ -152,6 +152,28 @@ void WriteLayer(Hdf5Group root, const std::string& layer,
     group.SetStrings("weight_names", names);
 }
 
+void WriteSettings(Hdf5Group group, const ModelSettings& s) {
+    group.SetInt("k", s.k);
+    group.SetInt("n", s.n);
+    group.SetInt("m", s.m);
+    group.SetString("feature", FeatureNames(s.features));
+    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
+    group.SetInt("snorm", s.snorm);
+    group.SetInt("bnorm", s.bnorm);
+    group.SetInt("votes", s.votes);
+    group.SetInt("vote_spacing", s.voteSpacing);
+    if (s.spacing == Spacing::Geometric) {
+        group.SetString("spacing", SpacingName(s.spacing));
+        group.SetReal("ratio", s.ratio);
+    }
+    if (Needs(s, Feature::VisibleDrop)) {
+        group.SetReal("mask", s.visibility.mask);
+        group.SetReal("flare", s.visibility.flare);
+        group.SetInt("reference", s.visibility.reference);
+        group.SetReal("nearness", s.visibility.nearness);
+    }
+}
+
 void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
            const std::map<std::string, std::string>& record, std::span<const double> logRatios) {
     file.SetString("model_config", WriteKerasConfig(network, s.k));
@@ -173,25 +195,7 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
     root.SetStrings("layer_names", names);
 
     Hdf5Group group = file.MakeGroup("lull");
-    group.SetInt("k", s.k);
-    group.SetInt("n", s.n);
-    group.SetInt("m", s.m);
-    group.SetString("feature", FeatureNames(s.features));
-    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
-    group.SetInt("snorm", s.snorm);
-    group.SetInt("bnorm", s.bnorm);
-    group.SetInt("votes", s.votes);
-    group.SetInt("vote_spacing", s.voteSpacing);
-    if (s.spacing == Spacing::Geometric) {
-        group.SetString("spacing", SpacingName(s.spacing));
-        group.SetReal("ratio", s.ratio);
-    }
-    if (Needs(s, Feature::VisibleDrop)) {
-        group.SetReal("mask", s.visibility.mask);
-        group.SetReal("flare", s.visibility.flare);
-        group.SetInt("reference", s.visibility.reference);
-        group.SetReal("nearness", s.visibility.nearness);
-    }
+    WriteSettings(group, s);
     if (!logRatios.empty())
         group.AddArray<double>("log_ratios", std::array{int64_t(logRatios.size())}, logRatios);
     if (record.empty()) return;

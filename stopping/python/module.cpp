@@ -227,21 +227,7 @@ std::string ReprOf(const Stopper& stopper) {
         .format(stopper.width, stopper.height, answer.StoppedCount(), answer.blocks.size());
 }
 
-}  // namespace
-
-}  // namespace lull
-
-PYBIND11_MODULE(_stopping, module) {
-    using namespace lull;
-    using namespace py::literals;
-    module.doc() =
-        "Says when a picture that is being rendered has had enough samples.\n\n"
-        "    stopper = lull.Stopper(width, height, model='entropy')\n"
-        "    while not stopper.done:\n"
-        "        ...  # render more where stopper.active\n"
-        "        answer = stopper.observe(image, spp)\n";
-    module.attr("__version__") = lull_version();
-
+void BindBlockAnswer(py::module_& module) {
     py::class_<lull_answer>(module, "BlockAnswer", "How it stands with a block.")
         .def_property_readonly("stop", [](const lull_answer& a) { return a.stop == 1; })
         .def_property_readonly("checked", [](const lull_answer& a) { return a.checked == 1; })
@@ -258,7 +244,9 @@ PYBIND11_MODULE(_stopping, module) {
         .def_property_readonly("visible_noise",
                                [](const lull_answer& a) { return Known(a.visible_noise); })
         .def("__repr__", [](const lull_answer& a) { return ReprOf(a); });
+}
 
+void BindAnswer(py::module_& module) {
     py::class_<Answer>(module, "Answer",
                        "How it stands with all blocks: arrays of rows x columns. `probability` is "
                        "None for rules that know none, `visible_noise` where no half was shown.")
@@ -285,20 +273,18 @@ PYBIND11_MODULE(_stopping, module) {
         .def_property_readonly("visible_noise",
                                [](const Answer& a) { return a.Known(&lull_answer::visible_noise); })
         .def("__repr__", [](const Answer& a) { return ReprOf(a); });
+}
 
+void BindStopper(py::module_& module) {
+    using namespace py::literals;
     py::class_<Stopper>(
         module, "Stopper",
-        "Decides on the blocks of a picture of width x height pixels, from its first samples to "
-        "its\n"
-        "last. `model` is the name of an installed model ('entropy', the default; 'noise', "
-        "'paper')\n"
-        "or a file; `rule` any other rule of `lull render --stop`; `models` the folder of "
-        "installed\n"
-        "models; `block` the pixels a side of blocks; `pass_spp` the spp between two pictures, 0 "
-        "if\n"
-        "they come at any spp; `cap` the most spp, if above 10,000; `caution` divides the "
-        "threshold\n"
-        "of visible noise.")
+        "Decides on the blocks of a picture of width x height pixels, from its first samples to\n"
+        "its last. `model` is the name of an installed model ('entropy', the default; 'noise',\n"
+        "'paper') or a file; `rule` any other rule of `lull render --stop`; `models` the folder\n"
+        "of installed models; `block` the pixels a side of blocks; `pass_spp` the spp between two\n"
+        "pictures, 0 if they come at any spp; `cap` the most spp, if above 10,000; `caution`\n"
+        "divides the threshold of visible noise.")
         .def(
             py::init<int, int, const std::optional<std::string>&, const std::optional<std::string>&,
                      const std::optional<std::string>&, int, int, int, double>(),
@@ -326,4 +312,22 @@ PYBIND11_MODULE(_stopping, module) {
         .def_readonly("width", &Stopper::width)
         .def_readonly("height", &Stopper::height)
         .def("__repr__", [](const Stopper& s) { return ReprOf(s); });
+}
+
+}  // namespace
+
+}  // namespace lull
+
+PYBIND11_MODULE(_stopping, module) {
+    module.doc() =
+        "Says when a picture that is being rendered has had enough samples.\n\n"
+        "    stopper = lull.Stopper(width, height, model='entropy')\n"
+        "    while not stopper.done:\n"
+        "        ...  # render more where stopper.active\n"
+        "        answer = stopper.observe(image, spp)\n";
+    module.attr("__version__") = lull_version();
+
+    lull::BindBlockAnswer(module);
+    lull::BindAnswer(module);
+    lull::BindStopper(module);
 }

@@ -37,6 +37,26 @@ double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
     return radius;
 }
 
+void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const ParameterWriter& write) {
+    const double outer = spot.outerConeAngle, inner = spot.innerConeAngle;
+    if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2))
+        throw Error(loc, fmt::format("the cone's angles are {} and {}; they have to be 0 <= inner "
+                                     "< outer <= pi/2",
+                                     inner, outer));
+    write.Point("from", Vec3f::Zero());
+    write.Point("to", Vec3f(0, 0, -1));
+    write.Float("coneangle", outer * 180 / std::numbers::pi);
+    write.Float("conedeltaangle", (outer - inner) * 180 / std::numbers::pi);
+}
+
+// Returns the node's transform without its scale, which is not that of lights.
+Mat4d WithoutScale(const Mat4d& m) {
+    Mat4d rigid = m;
+    for (int i = 0; i < 3; ++i)
+        if (const double length = rigid.col(i).head<3>().norm(); length > 0) rigid.col(i) /= length;
+    return rigid;
+}
+
 }  // namespace
 
 void AddLight(const GltfDocument& document, const GltfNode& node, Description* description,
@@ -53,10 +73,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     if (light.range > 0)
         warnings.Add(loc, "a light's range is ignored: it falls off with the distance squared");
 
-    // Lights shine along -z of their node; its scale is not theirs.
-    Mat4d rigid = node.worldFromNode;
-    for (int i = 0; i < 3; ++i)
-        if (const double length = rigid.col(i).head<3>().norm(); length > 0) rigid.col(i) /= length;
+    const Mat4d rigid = WithoutScale(node.worldFromNode);  // lights shine along its -z
     LightEntity entity;
     entity.loc = loc;
     entity.worldFromLight = rigid;
@@ -75,18 +92,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     } else {
         write.Spectrum("I", strength);
         entity.name = light.type == "spot" ? "spot-squared" : "point";
-        if (light.type == "spot") {
-            const double outer = light.spot.outerConeAngle, inner = light.spot.innerConeAngle;
-            if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2))
-                throw Error(loc,
-                            fmt::format("the cone's angles are {} and {}; they have to be 0 <= "
-                                        "inner < outer <= pi/2",
-                                        inner, outer));
-            write.Point("from", Vec3f::Zero());
-            write.Point("to", Vec3f(0, 0, -1));
-            write.Float("coneangle", outer * 180 / std::numbers::pi);
-            write.Float("conedeltaangle", (outer - inner) * 180 / std::numbers::pi);
-        }
+        if (light.type == "spot") WriteCone(light.spot, loc, write);
     }
     description->lights.push_back(std::move(entity));
 }

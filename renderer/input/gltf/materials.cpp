@@ -33,6 +33,10 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
+double TransmissionFactor(const tinygltf::Material& material) {
+    return Number(Extension(material, "KHR_materials_transmission"), "transmissionFactor", 0);
+}
+
 // Adds the medium of a volume, of whose light the share attenuationColor is left after
 // attenuationDistance. Returns its index; -1 where it absorbs nothing.
 int AddMedium(const tinygltf::Value& volume, const FileLoc& loc, Description* description) {
@@ -77,68 +81,131 @@ void GltfMaterials::AddTexture(const ParameterWriter& write, const std::string& 
     write.Int(name + "uv", use.uvSet);
 }
 
-void GltfMaterials::AddExtensions(const tinygltf::Material& material, const std::string& path,
-                                  const ParameterWriter& write, GltfMaterial* result,
-                                  Warnings& warnings) {
-    const auto add = [&](const tinygltf::Value& owner, const std::string& extension,
-                         const std::string& name, const std::string& as, GltfTexels texels) {
-        AddTexture(write, as, ReadTextureUse(owner, name, path + "/extensions/" + extension),
-                   texels, warnings);
-    };
-    write.Float("ior", Number(Extension(material, "KHR_materials_ior"), "ior", 1.5));
+void GltfMaterials::AddExtensionTexture(const MaterialUse& use, const std::string& extension,
+                                        const std::string& name, const std::string& as,
+                                        GltfTexels texels, Warnings& warnings) {
+    const GltfTextureUse texture = ReadTextureUse(Extension(use.material, extension), name,
+                                                  use.path + "/extensions/" + extension);
+    AddTexture(use.write, as, texture, texels, warnings);
+}
 
-    const tinygltf::Value& specular = Extension(material, "KHR_materials_specular");
-    write.Float("specularfactor", Number(specular, "specularFactor", 1));
-    add(specular, "KHR_materials_specular", "specularTexture", "specular", GltfTexels::Alpha);
+void GltfMaterials::AddSpecular(const MaterialUse& use, Warnings& warnings) {
+    const char* kSpecular = "KHR_materials_specular";
+    const tinygltf::Value& specular = Extension(use.material, kSpecular);
+    use.write.Float("ior", Number(Extension(use.material, "KHR_materials_ior"), "ior", 1.5));
+    use.write.Float("specularfactor", Number(specular, "specularFactor", 1));
+    AddExtensionTexture(use, kSpecular, "specularTexture", "specular", GltfTexels::Alpha, warnings);
     if (specular.Has("specularColorFactor"))
-        write.Spectrum("specularcolorfactor", Color(specular, "specularColorFactor", Rgb::Ones()));
-    add(specular, "KHR_materials_specular", "specularColorTexture", "specularcolor",
-        GltfTexels::EncodedColor);
+        use.write.Spectrum("specularcolorfactor",
+                           Color(specular, "specularColorFactor", Rgb::Ones()));
+    AddExtensionTexture(use, kSpecular, "specularColorTexture", "specularcolor",
+                        GltfTexels::EncodedColor, warnings);
+}
 
-    const tinygltf::Value& transmission = Extension(material, "KHR_materials_transmission");
-    write.Float("transmissionfactor", Number(transmission, "transmissionFactor", 0));
-    add(transmission, "KHR_materials_transmission", "transmissionTexture", "transmission",
-        GltfTexels::Red);
+void GltfMaterials::AddTransmission(const MaterialUse& use, Warnings& warnings) {
+    const char* kTransmission = "KHR_materials_transmission";
+    use.write.Float("transmissionfactor", TransmissionFactor(use.material));
+    AddExtensionTexture(use, kTransmission, "transmissionTexture", "transmission", GltfTexels::Red,
+                        warnings);
+}
 
-    const tinygltf::Value& coat = Extension(material, "KHR_materials_clearcoat");
-    write.Float("clearcoatfactor", Number(coat, "clearcoatFactor", 0));
-    write.Float("clearcoatroughnessfactor", Number(coat, "clearcoatRoughnessFactor", 0));
-    add(coat, "KHR_materials_clearcoat", "clearcoatTexture", "clearcoat", GltfTexels::Red);
-    add(coat, "KHR_materials_clearcoat", "clearcoatRoughnessTexture", "clearcoatroughness",
-        GltfTexels::Green);
+void GltfMaterials::AddClearcoat(const MaterialUse& use, Warnings& warnings) {
+    const char* kClearcoat = "KHR_materials_clearcoat";
+    const tinygltf::Value& coat = Extension(use.material, kClearcoat);
+    use.write.Float("clearcoatfactor", Number(coat, "clearcoatFactor", 0));
+    use.write.Float("clearcoatroughnessfactor", Number(coat, "clearcoatRoughnessFactor", 0));
+    AddExtensionTexture(use, kClearcoat, "clearcoatTexture", "clearcoat", GltfTexels::Red,
+                        warnings);
+    AddExtensionTexture(use, kClearcoat, "clearcoatRoughnessTexture", "clearcoatroughness",
+                        GltfTexels::Green, warnings);
     if (coat.Has("clearcoatNormalTexture"))
-        warnings.Add(document.At(path), "a clear coat's own normal map is left out");
+        warnings.Add(document.At(use.path), "a clear coat's own normal map is left out");
+}
 
-    const tinygltf::Value& volume = Extension(material, "KHR_materials_volume");
+void GltfMaterials::AddVolume(const MaterialUse& use, GltfMaterial* result, Warnings& warnings) {
+    const tinygltf::Value& volume = Extension(use.material, "KHR_materials_volume");
     const bool isSolid = solidGlass || Number(volume, "thicknessFactor", 0) > 0;
-    write.Bool("solid", isSolid);
-    if (!isSolid && Number(transmission, "transmissionFactor", 0) > 0)
-        warnings.Add(document.At(path),
+    use.write.Bool("solid", isSolid);
+    if (TransmissionFactor(use.material) <= 0) return;
+    if (isSolid)
+        result->medium = AddMedium(
+            volume, document.At(use.path + "/extensions/KHR_materials_volume"), description);
+    else
+        warnings.Add(document.At(use.path),
                      "transmission without a volume's thickness is that of a thin sheet, which "
                      "bends no light; --solid-glass makes all such materials solid");
-    const FileLoc loc = document.At(path + "/extensions/KHR_materials_volume");
-    if (isSolid && Number(transmission, "transmissionFactor", 0) > 0)
-        result->medium = AddMedium(volume, loc, description);
+}
 
-    const tinygltf::Value& sheen = Extension(material, "KHR_materials_sheen");
-    if (sheen.Has("sheenColorFactor")) {
-        write.Spectrum("sheencolorfactor", Color(sheen, "sheenColorFactor", Rgb::Zero()));
-        write.Float("sheenroughnessfactor", Number(sheen, "sheenRoughnessFactor", 0));
-        add(sheen, "KHR_materials_sheen", "sheenColorTexture", "sheencolor",
-            GltfTexels::EncodedColor);
-        add(sheen, "KHR_materials_sheen", "sheenRoughnessTexture", "sheenroughness",
-            GltfTexels::Alpha);
-    }
+void GltfMaterials::AddSheen(const MaterialUse& use, Warnings& warnings) {
+    const char* kSheen = "KHR_materials_sheen";
+    const tinygltf::Value& sheen = Extension(use.material, kSheen);
+    if (!sheen.Has("sheenColorFactor")) return;
+    use.write.Spectrum("sheencolorfactor", Color(sheen, "sheenColorFactor", Rgb::Zero()));
+    use.write.Float("sheenroughnessfactor", Number(sheen, "sheenRoughnessFactor", 0));
+    AddExtensionTexture(use, kSheen, "sheenColorTexture", "sheencolor", GltfTexels::EncodedColor,
+                        warnings);
+    AddExtensionTexture(use, kSheen, "sheenRoughnessTexture", "sheenroughness", GltfTexels::Alpha,
+                        warnings);
+}
 
-    const tinygltf::Value& anisotropy = Extension(material, "KHR_materials_anisotropy");
-    if (const double strength = Number(anisotropy, "anisotropyStrength", 0); strength > 0) {
-        write.Float("anisotropyfactor", strength);
-        write.Float("anisotropyrotation", Number(anisotropy, "anisotropyRotation", 0));
-        const GltfTextureUse use = ReadTextureUse(anisotropy, "anisotropyTexture",
-                                                  path + "/extensions/KHR_materials_anisotropy");
-        AddTexture(write, "anisotropy", use, GltfTexels::LinearColor, warnings);
-        result->tangentUvSet = use.uvSet;
-    }
+void GltfMaterials::AddAnisotropy(const MaterialUse& use, GltfMaterial* result,
+                                  Warnings& warnings) {
+    const char* kAnisotropy = "KHR_materials_anisotropy";
+    const tinygltf::Value& anisotropy = Extension(use.material, kAnisotropy);
+    const double strength = Number(anisotropy, "anisotropyStrength", 0);
+    if (strength <= 0) return;
+    use.write.Float("anisotropyfactor", strength);
+    use.write.Float("anisotropyrotation", Number(anisotropy, "anisotropyRotation", 0));
+    const GltfTextureUse texture =
+        ReadTextureUse(anisotropy, "anisotropyTexture", use.path + "/extensions/" + kAnisotropy);
+    AddTexture(use.write, "anisotropy", texture, GltfTexels::LinearColor, warnings);
+    result->tangentUvSet = texture.uvSet;
+}
+
+void GltfMaterials::AddNormalMap(const MaterialUse& use, GltfMaterial* result, Warnings& warnings) {
+    const tinygltf::NormalTextureInfo& info = use.material.normalTexture;
+    const GltfTextureUse normal = ReadTextureUse(info, use.path + "/normalTexture");
+    const auto texture = textures.Add(normal, GltfTexels::LinearColor, warnings);
+    if (!texture) return;
+    use.write.Texture("normalmap", *texture);
+    use.write.Int("normaluv", normal.uvSet);
+    use.write.Float("normalscale", info.scale);
+    result->tangentUvSet = normal.uvSet;
+}
+
+std::optional<Entity> GltfMaterials::EmissionOfSurface(const MaterialUse& use, Warnings& warnings) {
+    const tinygltf::Material& material = use.material;
+    const Rgb emissive = ColorOf(material.emissiveFactor, Rgb::Zero()) *
+                         float(Number(Extension(material, "KHR_materials_emissive_strength"),
+                                      "emissiveStrength", 1));
+    if (emissive.maxCoeff() <= 0) return {};
+    const GltfTextureUse texture =
+        ReadTextureUse(material.emissiveTexture, use.path + "/emissiveTexture");
+    return EmissionOf(emissive.max(0.f), material.doubleSided,
+                      textures.Add(texture, GltfTexels::EncodedColor, warnings), texture.uvSet,
+                      document.At(use.path));
+}
+
+void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& color, bool hasColors,
+                               GltfMaterial* result, Warnings& warnings) {
+    const tinygltf::PbrMetallicRoughness& pbr = use.material.pbrMetallicRoughness;
+    use.write.Spectrum("basecolorfactor", ColorOf(pbr.baseColorFactor, Rgb::Ones()));
+    AddTexture(use.write, "basecolor", color, GltfTexels::EncodedColor, warnings);
+    use.write.Float("metallicfactor", pbr.metallicFactor);
+    use.write.Float("roughnessfactor", pbr.roughnessFactor);
+    AddTexture(use.write, "metallicroughness",
+               ReadTextureUse(pbr.metallicRoughnessTexture,
+                              use.path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
+               GltfTexels::LinearColor, warnings);
+    use.write.Bool("vertexcolors", hasColors);
+    AddSpecular(use, warnings);
+    AddTransmission(use, warnings);
+    AddClearcoat(use, warnings);
+    AddVolume(use, result, warnings);
+    AddSheen(use, warnings);
+    AddAnisotropy(use, result, warnings);
+    AddNormalMap(use, result, warnings);
+    result->emission = EmissionOfSurface(use, warnings);
 }
 
 GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) {
@@ -151,51 +218,22 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
     const bool isUnlit = HasExtension(material, "KHR_materials_unlit");
     const GltfTextureUse color =
         ReadTextureUse(pbr.baseColorTexture, path + "/pbrMetallicRoughness/baseColorTexture");
-    const Rgb colorFactor = ColorOf(pbr.baseColorFactor, Rgb::Ones());
 
     GltfMaterial result;
     MaterialEntity entity;
     entity.loc = loc;
     entity.materialName = material.name;
     entity.name = isUnlit ? "matte" : "metallicroughness";
-    const ParameterWriter write(&entity.parameters, loc);
+    const MaterialUse use{material, path, ParameterWriter(&entity.parameters, loc)};
     if (isUnlit) {
         // It shows its colour whatever the light: it emits that, and reflects nothing.
-        write.Spectrum("Kd", Rgb::Zero());
+        use.write.Spectrum("Kd", Rgb::Zero());
         result.emission =
-            EmissionOf(colorFactor, true, textures.Add(color, GltfTexels::EncodedColor, warnings),
-                       color.uvSet, loc);
+            EmissionOf(ColorOf(pbr.baseColorFactor, Rgb::Ones()), true,
+                       textures.Add(color, GltfTexels::EncodedColor, warnings), color.uvSet, loc);
         if (hasColors) warnings.Add(loc, "vertex colours of unlit materials are left out");
     } else {
-        write.Spectrum("basecolorfactor", colorFactor);
-        AddTexture(write, "basecolor", color, GltfTexels::EncodedColor, warnings);
-        write.Float("metallicfactor", pbr.metallicFactor);
-        write.Float("roughnessfactor", pbr.roughnessFactor);
-        AddTexture(write, "metallicroughness",
-                   ReadTextureUse(pbr.metallicRoughnessTexture,
-                                  path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
-                   GltfTexels::LinearColor, warnings);
-        write.Bool("vertexcolors", hasColors);
-        AddExtensions(material, path, write, &result, warnings);
-
-        const GltfTextureUse normal =
-            ReadTextureUse(material.normalTexture, path + "/normalTexture");
-        if (const auto texture = textures.Add(normal, GltfTexels::LinearColor, warnings)) {
-            write.Texture("normalmap", *texture);
-            write.Int("normaluv", normal.uvSet);
-            write.Float("normalscale", material.normalTexture.scale);
-            result.tangentUvSet = normal.uvSet;
-        }
-        const Rgb emissive = ColorOf(material.emissiveFactor, Rgb::Zero()) *
-                             float(Number(Extension(material, "KHR_materials_emissive_strength"),
-                                          "emissiveStrength", 1));
-        if (emissive.maxCoeff() > 0) {
-            const GltfTextureUse use =
-                ReadTextureUse(material.emissiveTexture, path + "/emissiveTexture");
-            result.emission =
-                EmissionOf(emissive.max(0.f), material.doubleSided,
-                           textures.Add(use, GltfTexels::EncodedColor, warnings), use.uvSet, loc);
-        }
+        AddSurface(use, color, hasColors, &result, warnings);
     }
 
     if (material.alphaMode != "OPAQUE") {

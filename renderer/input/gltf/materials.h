@@ -33,10 +33,27 @@ class GltfMaterials {
     const GltfMaterial& Get(int material, bool hasColors, Warnings& warnings);
 
   private:
+    // A material of the file, its JSON pointer, and where its parameters go.
+    struct MaterialUse {
+        const tinygltf::Material& material;
+        const std::string& path;
+        ParameterWriter write;
+    };
+
     GltfMaterial Make(int material, bool hasColors, Warnings& warnings);
-    // Adds what the extensions of a material say, to its parameters and to `result`.
-    void AddExtensions(const tinygltf::Material& material, const std::string& path,
-                       const ParameterWriter& write, GltfMaterial* result, Warnings& warnings);
+    // What is not the material's own goes to `result`.
+    void AddSurface(const MaterialUse&, const GltfTextureUse& color, bool hasColors,
+                    GltfMaterial* result, Warnings&);
+    void AddSpecular(const MaterialUse&, Warnings&);
+    void AddTransmission(const MaterialUse&, Warnings&);
+    void AddClearcoat(const MaterialUse&, Warnings&);
+    void AddVolume(const MaterialUse&, GltfMaterial* result, Warnings&);
+    void AddSheen(const MaterialUse&, Warnings&);
+    void AddAnisotropy(const MaterialUse&, GltfMaterial* result, Warnings&);
+    void AddNormalMap(const MaterialUse&, GltfMaterial* result, Warnings&);
+    std::optional<Entity> EmissionOfSurface(const MaterialUse&, Warnings&);
+    void AddExtensionTexture(const MaterialUse&, const std::string& extension,
+                             const std::string& name, const std::string& as, GltfTexels, Warnings&);
     void AddTexture(const ParameterWriter& write, const std::string& name,
                     const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
 

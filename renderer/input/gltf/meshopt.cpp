@@ -36,6 +36,37 @@ void CheckLayout(const FileLoc& loc, const std::string& mode, const std::string&
                                      count, stride, mode, filter));
 }
 
+// Decodes a view of `byteLength` bytes. Returns the stride of its attributes, 0 for indices.
+size_t DecodeView(const tinygltf::Model& model, const tinygltf::Value& e, const FileLoc& loc,
+                  size_t byteLength, std::vector<unsigned char>* decoded) {
+    const auto whole = [&](const char* name) {
+        return size_t(std::max(0., e.Get(name).GetNumberAsDouble()));
+    };
+    const auto text = [&](const char* name) {
+        return e.Has(name) ? e.Get(name).Get<std::string>() : std::string("NONE");
+    };
+    const size_t count = whole("count"), stride = whole("byteStride");
+    const size_t offset = whole("byteOffset"), size = whole("byteLength");
+    const std::string mode = text("mode"), filter = text("filter");
+    CheckLayout(loc, mode, filter, count, stride);
+    const std::vector<unsigned char>& data = model.buffers[whole("buffer")].data;
+    if (offset > data.size() || size > data.size() - offset)
+        throw Error(loc, fmt::format("goes beyond its buffer of {} bytes", data.size()));
+    if (count * stride != byteLength || byteLength / kMaxCompression > size)
+        throw Error(loc, fmt::format("{} bytes cannot hold {} elements of {} bytes in a view of "
+                                     "{} bytes",
+                                     size, count, stride, byteLength));
+    CheckMemory(int64_t(byteLength), loc.Prefix() + "the mesh", "use a smaller mesh");
+
+    decoded->resize(byteLength);
+    if (Decode(mode, decoded->data(), count, stride, data.data() + offset, size) != 0)
+        throw Error(loc, "its data are broken");
+    if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(decoded->data(), count, stride);
+    if (filter == "QUATERNION") meshopt_decodeFilterQuat(decoded->data(), count, stride);
+    if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(decoded->data(), count, stride);
+    return mode == "ATTRIBUTES" ? stride : 0;
+}
+
 }  // namespace
 
 void DecodeMeshopt(GltfDocument* document) {
@@ -46,37 +77,11 @@ void DecodeMeshopt(GltfDocument* document) {
         if (found == view.extensions.end()) continue;
         const FileLoc loc =
             document->At(fmt::format("/bufferViews/{}/extensions/{}", i, kMeshoptExtension));
-        const tinygltf::Value& e = found->second;
-        const auto whole = [&](const char* name) {
-            return size_t(std::max(0., e.Get(name).GetNumberAsDouble()));
-        };
-        const auto text = [&](const char* name) {
-            return e.Has(name) ? e.Get(name).Get<std::string>() : std::string("NONE");
-        };
-        const size_t count = whole("count"), stride = whole("byteStride");
-        const size_t offset = whole("byteOffset"), size = whole("byteLength");
-        const std::string mode = text("mode"), filter = text("filter");
-        CheckLayout(loc, mode, filter, count, stride);
-        const std::vector<unsigned char>& data = model.buffers[whole("buffer")].data;
-        if (offset > data.size() || size > data.size() - offset)
-            throw Error(loc, fmt::format("goes beyond its buffer of {} bytes", data.size()));
-        if (count * stride != view.byteLength || view.byteLength / kMaxCompression > size)
-            throw Error(loc,
-                        fmt::format("{} bytes cannot hold {} elements of {} bytes in a view of "
-                                    "{} bytes",
-                                    size, count, stride, view.byteLength));
-        CheckMemory(int64_t(view.byteLength), loc.Prefix() + "the mesh", "use a smaller mesh");
-
         tinygltf::Buffer decoded;
-        decoded.data.resize(view.byteLength);
-        if (Decode(mode, decoded.data.data(), count, stride, data.data() + offset, size) != 0)
-            throw Error(loc, "its data are broken");
-        if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(decoded.data.data(), count, stride);
-        if (filter == "QUATERNION") meshopt_decodeFilterQuat(decoded.data.data(), count, stride);
-        if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(decoded.data.data(), count, stride);
+        const size_t stride = DecodeView(model, found->second, loc, view.byteLength, &decoded.data);
         view.buffer = int(model.buffers.size());
         view.byteOffset = 0;
-        view.byteStride = mode == "ATTRIBUTES" ? stride : 0;
+        view.byteStride = stride;
         model.buffers.push_back(std::move(decoded));
     }
 }

@@ -1,6 +1,7 @@
 #include "renderer/input/gltf/primitives.h"
 
 #include <fmt/format.h>
+#include <numeric>
 
 #include <cmath>
 
@@ -80,6 +81,14 @@ std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     return triangles;
 }
 
+std::vector<uint32_t> IndicesOf(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                                size_t vertexCount) {
+    if (primitive.indices >= 0) return ReadIndices(document, primitive.indices, vertexCount);
+    std::vector<uint32_t> all(vertexCount);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+}
+
 }  // namespace
 
 GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
@@ -112,13 +121,7 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
         for (size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1 - uvs[i];
     t.colors = WithAlpha(read("COLOR_0", 3, 4));
 
-    if (primitive.indices >= 0) {
-        t.indices = ReadIndices(document, primitive.indices, count);
-    } else {
-        t.indices.resize(count);
-        for (size_t i = 0; i < count; ++i) t.indices[i] = uint32_t(i);
-    }
-    t.indices = Triangles(std::move(t.indices), mode);
+    t.indices = Triangles(IndicesOf(document, primitive, count), mode);
     if (t.indices.empty()) warnings.Add(loc, "primitive without triangles is left out");
     if (t.indices.size() > size_t(std::numeric_limits<int>::max()))
         throw Error(loc, "has more triangles than can be modelled");

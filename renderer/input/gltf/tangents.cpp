@@ -76,31 +76,33 @@ uint32_t CopyVertex(uint32_t from, GltfTriangles* t) {
     return index;
 }
 
-}  // namespace
+using TangentSums = std::unordered_map<Corner, Vec3f, HashCorner>;
 
-void MakeTangents(int uvSet, GltfTriangles* t) {
-    if (t->normals.empty() || t->uvs[uvSet].empty()) return;
-
-    // Sum up the tangents of the triangles around each corner.
-    std::unordered_map<Corner, Vec3f, HashCorner> sums;
-    std::vector<bool> mirrored(t->indices.size() / 3);
-    for (size_t i = 0; i < mirrored.size(); ++i) {
-        const uint32_t* v = &t->indices[3 * i];
+// Sums up the tangents of the triangles around each corner. `mirrored` tells the side of each
+// triangle.
+TangentSums SumTangents(const GltfTriangles& t, int uvSet, std::vector<bool>* mirrored) {
+    TangentSums sums;
+    for (size_t i = 0; i < mirrored->size(); ++i) {
+        const uint32_t* v = &t.indices[3 * i];
         bool isMirrored;
-        const Vec3f along = AlongU(*t, uvSet, v, &isMirrored);
-        mirrored[i] = isMirrored;
+        const Vec3f along = AlongU(t, uvSet, v, &isMirrored);
+        (*mirrored)[i] = isMirrored;
         for (int k = 0; k < 3; ++k) {
-            const Vec3f n = Unit(VectorAt(t->normals, v[k])), p = VectorAt(t->positions, v[k]);
-            const Vec3f e1 = Tangential(VectorAt(t->positions, v[(k + 1) % 3]) - p, n);
-            const Vec3f e2 = Tangential(VectorAt(t->positions, v[(k + 2) % 3]) - p, n);
+            const Vec3f n = Unit(VectorAt(t.normals, v[k])), p = VectorAt(t.positions, v[k]);
+            const Vec3f e1 = Tangential(VectorAt(t.positions, v[(k + 1) % 3]) - p, n);
+            const Vec3f e2 = Tangential(VectorAt(t.positions, v[(k + 2) % 3]) - p, n);
             const float angle = std::acos(std::clamp(e1.dot(e2), -1.f, 1.f));
             const auto [sum, isNew] =
-                sums.try_emplace(CornerOf(*t, uvSet, v[k], isMirrored), Vec3f::Zero());
+                sums.try_emplace(CornerOf(t, uvSet, v[k], isMirrored), Vec3f::Zero());
             sum->second += angle * Tangential(along, n);
         }
     }
+    return sums;
+}
 
-    // Give each vertex the side of the first triangle that has it, and a copy to the others.
+// Gives each vertex the side of the first triangle that has it, and a copy to the others. Returns
+// the sides.
+std::vector<bool> SplitSides(const std::vector<bool>& mirrored, GltfTriangles* t) {
     constexpr uint32_t kNone = ~0u;
     std::vector<std::array<uint32_t, 2>> copies(t->VertexCount(), {kNone, kNone});
     std::vector<bool> side(t->VertexCount());
@@ -115,6 +117,16 @@ void MakeTangents(int uvSet, GltfTriangles* t) {
         }
         t->indices[i] = mine;
     }
+    return side;
+}
+
+}  // namespace
+
+void MakeTangents(int uvSet, GltfTriangles* t) {
+    if (t->normals.empty() || t->uvs[uvSet].empty()) return;
+    std::vector<bool> mirrored(t->indices.size() / 3);
+    const TangentSums sums = SumTangents(*t, uvSet, &mirrored);
+    const std::vector<bool> side = SplitSides(mirrored, t);
     t->tangents.resize(4 * t->VertexCount());
     for (uint32_t i = 0; i < t->VertexCount(); ++i) {
         const auto found = sums.find(CornerOf(*t, uvSet, i, side[i]));

@@ -106,20 +106,9 @@ int GltfTextures::Embed(int index, const FileLoc& loc) {
     return found->second;
 }
 
-std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexels texels,
-                                            Warnings& warnings) {
-    if (use.index < 0) return {};
-    const FileLoc loc = document.At(use.path);
-    if (use.uvSet > 1)
-        throw Error(loc, fmt::format("uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet));
+TextureEntity GltfTextures::MakeEntity(const GltfTextureUse& use, GltfTexels texels,
+                                       const FileLoc& loc, Warnings& warnings) {
     const tinygltf::Texture& texture = document.model.textures[size_t(use.index)];
-    if (texture.source < 0) {
-        warnings.Add(loc, "texture without an image that is modelled is left out");
-        return {};
-    }
-    const auto [found, isNew] = made.try_emplace({use.index, texels, use.transform}, TextureRef());
-    if (!isNew) return found->second;
-
     TextureEntity entity;
     entity.name = "imagemap";
     entity.loc = loc;
@@ -148,6 +137,24 @@ std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexel
         write.Floats(ParameterType::Float, "uvtransform",
                      {use.transform->begin(), use.transform->end()});
     }
+    return entity;
+}
+
+std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexels texels,
+                                            Warnings& warnings) {
+    if (use.index < 0) return {};
+    const FileLoc loc = document.At(use.path);
+    if (use.uvSet > 1)
+        throw Error(loc, fmt::format("uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet));
+    const tinygltf::Texture& texture = document.model.textures[size_t(use.index)];
+    if (texture.source < 0) {
+        warnings.Add(loc, "texture without an image that is modelled is left out");
+        return {};
+    }
+    const auto [found, isNew] = made.try_emplace({use.index, texels, use.transform}, TextureRef());
+    if (!isNew) return found->second;
+
+    TextureEntity entity = MakeEntity(use, texels, loc, warnings);
     TextureRef& ref = found->second;
     ref.name = entity.textureName;
     (entity.isSpectrum ? ref.spectrumIndex : ref.floatIndex) = int(description->textures.size());

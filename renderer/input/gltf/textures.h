@@ -43,6 +43,8 @@ class GltfTextures {
 
   private:
     int Embed(int image, const FileLoc& loc);
+    TextureEntity MakeEntity(const GltfTextureUse& use, GltfTexels texels, const FileLoc& loc,
+                             Warnings& warnings);
 
     const GltfDocument& document;
     Description* description;

@@ -286,6 +286,44 @@ void CheckNumbers(const JsonAt& o) {
             CheckNumbers({o.root, o.file, v, o.path + "/" + Printable(key)});
 }
 
+void CheckVersion(const JsonAt& root) {
+    if (!root.value.contains("asset") || !root.value.at("asset").is_object() ||
+        !root.value.at("asset").contains("version") ||
+        !root.value.at("asset").at("version").is_string())
+        root.Fail("lacks \"asset\" with a \"version\": it is no glTF file");
+    const std::string version = root.value.at("asset").at("version");
+    if (!version.starts_with("2."))
+        root.Fail("is of glTF version " + Printable(version) + "; 2.0 is modelled");
+}
+
+void CheckLights(const JsonAt& root) {
+    root.Extension("KHR_lights_punctual", [](const JsonAt& e) {
+        e.ForEach("lights", [](const JsonAt& light) {
+            light.Required("type");
+            light.OneOf("type", {"directional", "point", "spot"});
+            light.Numbers("color", 3);
+            light.Number("intensity");
+            light.Number("range");
+            light.Extras([](const JsonAt& e) { e.Number("radius"); });
+            if (light.value.at("type") == "spot" && light.Has("spot")) {
+                light.Member("spot").Object();
+                light.Member("spot").Number("innerConeAngle");
+                light.Member("spot").Number("outerConeAngle");
+            }
+        });
+    });
+}
+
+void CheckVariants(const JsonAt& root) {
+    root.Extension("KHR_materials_variants", [](const JsonAt& e) {
+        e.Required("variants");
+        e.ForEach("variants", [](const JsonAt& variant) {
+            variant.Required("name");
+            variant.String("name");
+        });
+    });
+}
+
 }  // namespace
 
 json ParseGltfJson(const std::string& file, std::string_view text) {
@@ -305,12 +343,7 @@ json ParseGltfJson(const std::string& file, std::string_view text) {
 
 void CheckGltfJson(const std::string& file, const json& json) {
     const JsonAt root{json, file, json, ""};
-    if (!json.contains("asset") || !json.at("asset").is_object() ||
-        !json.at("asset").contains("version") || !json.at("asset").at("version").is_string())
-        root.Fail("lacks \"asset\" with a \"version\": it is no glTF file");
-    const std::string version = json.at("asset").at("version");
-    if (!version.starts_with("2."))
-        root.Fail("is of glTF version " + Printable(version) + "; 2.0 is modelled");
+    CheckVersion(root);
     CheckNumbers(root);
     // Names of arrays are looked up everywhere below, so that they come first.
     for (const char* name :
@@ -321,28 +354,8 @@ void CheckGltfJson(const std::string& file, const json& json) {
         root.ForEachAny(name, [](const JsonAt& e) {
             if (!e.value.is_string()) e.Fail("has to be a string");
         });
-    root.Extension("KHR_lights_punctual", [](const JsonAt& e) {
-        e.ForEach("lights", [](const JsonAt& light) {
-            light.Required("type");
-            light.OneOf("type", {"directional", "point", "spot"});
-            light.Numbers("color", 3);
-            light.Number("intensity");
-            light.Number("range");
-            light.Extras([](const JsonAt& e) { e.Number("radius"); });
-            if (light.value.at("type") == "spot" && light.Has("spot")) {
-                light.Member("spot").Object();
-                light.Member("spot").Number("innerConeAngle");
-                light.Member("spot").Number("outerConeAngle");
-            }
-        });
-    });
-    root.Extension("KHR_materials_variants", [](const JsonAt& e) {
-        e.Required("variants");
-        e.ForEach("variants", [](const JsonAt& variant) {
-            variant.Required("name");
-            variant.String("name");
-        });
-    });
+    CheckLights(root);
+    CheckVariants(root);
     root.ForEach("buffers", CheckBuffer);
     root.ForEach("bufferViews", CheckBufferView);
     root.ForEach("accessors", CheckAccessor);

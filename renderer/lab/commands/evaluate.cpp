@@ -81,6 +81,18 @@ Examples:
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
 
+void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
+    app.add_option("--grid", score->grid, "Spp between the decisions that a critical error counts")
+        ->check(CLI::Range(1, kJudgedCap))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--margins", score->margins, "Margins of the critical error in %")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 100.0))
+        ->type_name("M,M,...")
+        ->default_str("2,6,10");
+}
+
 void AddOptions(CLI::App& app, Options* o) {
     app.add_option("DATASET.h5", o->datasets, "Recordings to run rules on")
         ->check(CLI::ExistingFile);
@@ -111,15 +123,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("NAME");
-    app.add_option("--grid", o->judge.grid, "Spp between the allScores of the critical error")
-        ->check(CLI::Range(1, kJudgedCap))
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--margins", o->judge.margins, "Margins of the critical error in %")
-        ->delimiter(',')
-        ->check(CLI::Range(0.0, 100.0))
-        ->type_name("M,M,...")
-        ->default_str("2,6,10");
+    AddCriticalErrorOptions(app, &o->judge);
     app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
     app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
 }

@@ -60,6 +60,12 @@ std::map<std::string, std::string> SingleAnswers(const Collected& collected,
     return files;
 }
 
+std::string ThresholdsCsv(const Collected& collected) {
+    std::ostringstream csv;
+    WriteThresholds(csv, ThresholdsOf(collected));
+    return csv.str();
+}
+
 }  // namespace
 
 void CollectAnswers(const JudgeSettings& settings) {
@@ -86,22 +92,21 @@ void CollectAnswers(const JudgeSettings& settings) {
         throw Error(fmt::format("--collect: none of {} files has answers that count",
                                 settings.collect.size()));
 
-    const std::map<std::string, std::string> singles = SingleAnswers(collected, base);
-    for (const auto& [file, text] : singles)
+    // Written in this order, and printed.
+    std::vector<std::pair<std::string, std::string>> files = {
+        {settings.output, ThresholdsCsv(collected)},
+        {details, DetailsCsv(collected)},
+        {observers, ObserversCsv(collected)}};
+    for (auto& [file, text] : SingleAnswers(collected, base)) {
         CheckOutputs(std::vector<NamedFile>{{"-o", file}}, inputs);
-    std::ostringstream thresholds;
-    WriteThresholds(thresholds, ThresholdsOf(collected));
-    WriteFileAtomically(settings.output, thresholds.str());
-    WriteFileAtomically(details, DetailsCsv(collected));
-    WriteFileAtomically(observers, ObserversCsv(collected));
-    for (const auto& [file, text] : singles) WriteFileAtomically(file, text);
+        files.emplace_back(file, text);
+    }
     if (!settings.report.empty())
-        WriteFileAtomically(settings.report, MakeCollectedPage(collected, study));
+        files.emplace_back(settings.report, MakeCollectedPage(collected, study));
+    for (const auto& [file, text] : files) WriteFileAtomically(file, text);
     if (!settings.render.quiet)
         for (const CollectedViewpoint& viewpoint : collected.viewpoints) SayCertainty(viewpoint);
-    for (const std::string& file : {settings.output, details, observers}) fmt::print("{}\n", file);
-    for (const auto& [file, text] : singles) fmt::print("{}\n", file);
-    if (!settings.report.empty()) fmt::print("{}\n", settings.report);
+    for (const auto& [file, text] : files) fmt::print("{}\n", file);
 }
 
 }  // namespace lull

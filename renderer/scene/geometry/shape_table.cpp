@@ -66,7 +66,11 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
         objectBounds.emplace_back();
         for (const ShapeEntity& entity : object.shapes) objectBounds.back().Extend(add(entity));
     }
+    AddInstances(description, objectBounds);
+}
 
+void ShapeTable::AddInstances(const Description& description,
+                              std::span<const Bounds3f> objectBounds) {
     std::vector<FileLoc> places;
     const Shutter shutter = ReadShutter(description.camera);
     for (const InstanceEntity& entity : description.instances) {

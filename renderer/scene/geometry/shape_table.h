@@ -62,6 +62,7 @@ struct ShapeTable {
     Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
 
   private:
+    void AddInstances(const Description&, std::span<const Bounds3f> objectBounds);
     void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
     void LimitReach(std::span<const FileLoc> placesOfInstances);
     void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,

@@ -133,6 +133,36 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
     bsdf->Add(CharlieSheen{Rgb(color * (kept * ThroughCoat(coat, cosine, 1))), alpha});
 }
 
+void MetallicRoughness::AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
+    const float roughness =
+        clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0;
+    // A mirror shows no lamp that has no size. What is not meant as one, such as Blender's
+    // usual coat of roughness 0.03, keeps such highlights.
+    const float coatAlpha = AlphaOf(roughness);  // the distribution has its own least
+    if (!(roughness > 0))
+        bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),
+                               InterfaceAbove{}, 0});
+    else
+        bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
+                                                         TrowbridgeReitz(coatAlpha, coatAlpha),
+                                                         SchlickInterface{0.04f}});
+}
+
+void MetallicRoughness::AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth,
+                                 const Vec2f& alphas, Bsdf* bsdf) const {
+    const float index = ior == 0 ? 100 : ior;
+    bsdf->SetEta(index);
+    if (isSmooth) {
+        bsdf->Add(FresnelSpecular{reflected, through, index});
+    } else {
+        const TrowbridgeReitz distribution(alphas.x(), alphas.y());
+        if (!IsBlack(reflected))
+            bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
+                                                                DielectricInterface{index}});
+        if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, index});
+    }
+}
+
 void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     Rgb color = (Look(baseColor, in) * baseColorFactor).max(0.f).min(1.f);
     if (vertexColors) color = (color * in.hit->color).max(0.f).min(1.f);
@@ -174,18 +204,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 
     const Rgb through = transmitting * color;
     if (transmitting > 0 && solid) {
-        const float index = ior == 0 ? 100 : ior;
-        const Rgb reflected = (transmitting * strength * tint).max(0.f).min(1.f);
-        bsdf->SetEta(index);
-        if (isSmooth) {
-            bsdf->Add(FresnelSpecular{reflected, through, index});
-        } else {
-            const TrowbridgeReitz distribution(alphas.x(), alphas.y());
-            if (!IsBlack(reflected))
-                bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
-                                                                    DielectricInterface{index}});
-            if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, index});
-        }
+        AddSolid((transmitting * strength * tint).max(0.f).min(1.f), through, isSmooth, alphas,
+                 bsdf);
     } else if (transmitting > 0 && isSmooth) {
         bsdf->Add(
             ThinSpecular{Rgb(transmitting * f0), transmitting * strength, through, above, coat});
@@ -194,21 +214,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     }
 
     AddSheen(in, coat, bsdf);
-    if (coat > 0) {
-        const float roughness = clearcoatRoughnessFactor > 0
-                                    ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in)
-                                    : 0;
-        // A mirror shows no lamp that has no size. What is not meant as one, such as Blender's
-        // usual coat of roughness 0.03, keeps such highlights.
-        const float coatAlpha = AlphaOf(roughness);  // the distribution has its own least
-        if (!(roughness > 0))
-            bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),
-                                   InterfaceAbove{}, 0});
-        else
-            bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
-                                                             TrowbridgeReitz(coatAlpha, coatAlpha),
-                                                             SchlickInterface{0.04f}});
-    }
+    if (coat > 0) AddClearcoat(in, coat, bsdf);
 }
 
 }  // namespace lull

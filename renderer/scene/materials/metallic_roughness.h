@@ -53,6 +53,10 @@ struct MetallicRoughness {
     Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
     // Adds sheen over all lobes that there are, below a coat.
     void AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
+    void AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
+    // Adds the interface of a solid that reflects and transmits so much.
+    void AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth, const Vec2f& alphas,
+                  Bsdf* bsdf) const;
 };
 
 }  // namespace lull

@@ -56,18 +56,18 @@ float GridMedium::Density(const Vec3f& p) const {
     return sum;
 }
 
-float GridMedium::Transmittance(const Ray& worldRay, Sampler& sampler) const {
+Rgb GridMedium::Transmittance(const Ray& worldRay, Sampler& sampler) const {
     const float majorant = sigmaT * maxDensity;
-    if (!(majorant > 0)) return 1;
+    if (!(majorant > 0)) return Rgb::Ones();
     const Crossing crossing(gridFromWorld, worldRay);
     float transmittance = 1;
     for (float t = crossing.tMin;;) {
         t = NextCollision(t, majorant, sampler);
-        if (!(t < crossing.tMax)) return transmittance;
+        if (!(t < crossing.tMax)) return Rgb::Constant(transmittance);
         transmittance *= 1 - std::max(0.f, Density(crossing(t)) / maxDensity);
         if (transmittance < 0.1f) {
             const float q = std::max(0.05f, 1 - transmittance);
-            if (sampler.Get1D() < q) return 0;
+            if (sampler.Get1D() < q) return Rgb::Zero();
             transmittance /= 1 - q;
         }
     }

@@ -24,7 +24,7 @@ struct GridMedium {
 
     // Estimates the transmittance along the ray, whose direction is unit, up to tMax: by ratio
     // tracking, with Russian roulette below 0.1 (pbrt-v3; Novak et al. 2014).
-    float Transmittance(const Ray& worldRay, Sampler& sampler) const;
+    Rgb Transmittance(const Ray& worldRay, Sampler& sampler) const;
 
     // Finds where the ray, of unit direction, scatters: by delta tracking (Woodcock et al. 1965).
     MediumSample Sample(const Ray& worldRay, Sampler& sampler) const;

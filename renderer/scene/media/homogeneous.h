@@ -15,9 +15,13 @@ struct HomogeneousMedium {
         return (-sigmaT * std::min(length, std::numeric_limits<float>::max())).exp();
     }
 
-    // Samples a distance by the extinction of one channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
-    // `length` is that of the ray to the next surface.
-    MediumSample Sample(float length, Sampler& sampler) const {
+    // Of a ray, whose direction is unit, up to its tMax.
+    Rgb Transmittance(const Ray& ray, Sampler&) const { return Transmittance(ray.tMax); }
+
+    // Finds where the ray, of unit direction, scatters: at a distance by the extinction of one
+    // channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
+    MediumSample Sample(const Ray& ray, Sampler& sampler) const {
+        const float length = ray.tMax;
         // What only absorbs takes its share of every path, instead of ending some.
         if (IsBlack(sigmaS)) return {.weight = Transmittance(length)};
         const int channel = std::min(int(sampler.Get1D() * 3), 2);

@@ -87,6 +87,24 @@ void ResampleAxis(const std::vector<float>& from, std::vector<float>* to, int ol
         }
 }
 
+// Resamples an image of `count` channels to sides that are no smaller.
+std::vector<float> Enlarge(const std::vector<float>& texels, const Vec2i& from, const Vec2i& to,
+                           size_t count, Wrap wrapS, Wrap wrapT) {
+    // Each texel of the rows is a line of `count` channels, and so is each of the columns.
+    std::vector<float> wide(size_t(to.x()) * size_t(from.y()) * count);
+    const auto inRows = [&](int across) {
+        return [=](size_t line) { return line / count * size_t(across) * count + line % count; };
+    };
+    ResampleAxis(texels, &wide, from.x(), to.x(), count, size_t(from.y()) * count, inRows(from.x()),
+                 inRows(to.x()), wrapS);
+    std::vector<float> result(size_t(to.x()) * size_t(to.y()) * count);
+    const auto inColumns = [](size_t line) { return line; };
+    ResampleAxis(wide, &result, from.y(), to.y(), size_t(to.x()) * count, size_t(to.x()) * count,
+                 inColumns, inColumns, wrapT);
+    for (float& t : result) t = std::max(0.f, t);
+    return result;
+}
+
 // The Gaussian of exponent 2, less what it is at the ellipse's edge, over the squared radius.
 std::array<float, 128> MakeEwaWeights() {
     std::array<float, 128> weights;
@@ -107,21 +125,8 @@ MipPyramid::MipPyramid(int width, int height, int channels, std::vector<float> t
     CheckMemory(int64_t(size_t(w) * size_t(h) * count * sizeof(float)) * 7 / 3,
                 fmt::format("filtering an image of {}x{} texels", width, height),
                 "leave out --filtering pbrt-v3");
-    if (w != width || h != height) {
-        // Each texel of the rows is a line of `count` channels, and so is each of the columns.
-        std::vector<float> wide(size_t(w) * size_t(height) * count);
-        const auto inRows = [&](int across) {
-            return
-                [=](size_t line) { return line / count * size_t(across) * count + line % count; };
-        };
-        ResampleAxis(texels, &wide, width, w, count, size_t(height) * count, inRows(width),
-                     inRows(w), wrapS);
-        texels.assign(size_t(w) * size_t(h) * count, 0);
-        const auto inColumns = [](size_t line) { return line; };
-        ResampleAxis(wide, &texels, height, h, size_t(w) * count, size_t(w) * count, inColumns,
-                     inColumns, wrapT);
-        for (float& t : texels) t = std::max(0.f, t);
-    }
+    if (w != width || h != height)
+        texels = Enlarge(texels, {width, height}, {w, h}, count, wrapS, wrapT);
     levels.push_back({w, h, std::move(texels)});
     while (levels.back().width > 1 || levels.back().height > 1) {
         const Level& fine = levels.back();

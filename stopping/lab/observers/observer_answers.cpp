@@ -132,6 +132,17 @@ void CheckThresholds(const ObserverAnswers& answers) {
     }
 }
 
+void ReadStudy(const Json& study, ObserverAnswers* result) {
+    result->study = GetText(study, "id");
+    result->viewpoint = GetText(study, "viewpoint");
+    if (result->viewpoint.find_first_of(";/") != std::string::npos)
+        Refuse("the viewpoint '" + Printable(result->viewpoint) + "' has a ; or / in its name");
+    result->procedure = GetText(study, "procedure");
+    if (result->procedure != "adjust" && result->procedure != "staircase")
+        Refuse("unknown procedure '" + Printable(result->procedure) + "'");
+    result->levels = ReadLevels(study);
+}
+
 ObserverAnswers Read(const Json& json) {
     if (!json.is_object() || !json.contains("format") || json.at("format") != kAnswersFormat)
         Refuse("is no file of answers saved by the page of lull judge");
@@ -145,14 +156,7 @@ ObserverAnswers Read(const Json& json) {
     result.seconds = GetNumber(json, "seconds", 0, 1e9);
 
     const Json& study = Get(json, "study");
-    result.study = GetText(study, "id");
-    result.viewpoint = GetText(study, "viewpoint");
-    if (result.viewpoint.find_first_of(";/") != std::string::npos)
-        Refuse("the viewpoint '" + Printable(result.viewpoint) + "' has a ; or / in its name");
-    result.procedure = GetText(study, "procedure");
-    if (result.procedure != "adjust" && result.procedure != "staircase")
-        Refuse("unknown procedure '" + Printable(result.procedure) + "'");
-    result.levels = ReadLevels(study);
+    ReadStudy(study, &result);
     const int blocks = GetInt(study, "blocks", 1, kMostBlocks);
 
     int64_t clicks = 0;

@@ -38,38 +38,25 @@ std::string NameOfProcedure(const std::string& procedure) {
     return procedure == "adjust" ? "adjustment" : procedure;
 }
 
-void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
-                        const CollectOptions& options) {
-    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
-        if (!options.study.empty() && one.study != options.study) return "answers another study";
-        if (!options.procedure.empty() && one.procedure != options.procedure)
-            return "answers the study by " + NameOfProcedure(one.procedure) + ", not by " +
-                   NameOfProcedure(options.procedure);
-        return "";
-    });
-    // The study of a viewpoint is the one that most files answer, the first of them in a tie; the
-    // same pictures give other thresholds where they are asked for in another way.
-    using Asked = std::pair<std::string, std::string>;  // study and procedure
+using Asked = std::pair<std::string, std::string>;  // study and procedure
+
+// Chooses for each viewpoint the study that most files answer, the first of them in a tie; the same
+// pictures give other thresholds where they are asked for in another way.
+std::map<std::string, Asked> ChooseStudies(const std::vector<ObserverAnswers>& answers) {
     std::map<std::string, std::map<Asked, int>> counts;
-    for (const ObserverAnswers& one : *answers) ++counts[one.viewpoint][{one.study, one.procedure}];
+    for (const ObserverAnswers& one : answers) ++counts[one.viewpoint][{one.study, one.procedure}];
     std::map<std::string, Asked> chosen;
-    for (const ObserverAnswers& one : *answers) {
+    for (const ObserverAnswers& one : answers) {
         const Asked asked(one.study, one.procedure);
         Asked& best = chosen.emplace(one.viewpoint, asked).first->second;
         if (counts[one.viewpoint][asked] > counts[one.viewpoint][best]) best = asked;
     }
-    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
-        const auto& [study, procedure] = chosen[one.viewpoint];
-        if (one.study != study)
-            return "answers another study of '" + one.viewpoint +
-                   "', with other pictures, than most files do";
-        if (one.procedure != procedure)
-            return "was asked by " + NameOfProcedure(one.procedure) + ", most files of '" +
-                   one.viewpoint + "' by " + NameOfProcedure(procedure) +
-                   "; collect the two apart, as they are not the same thresholds";
-        return "";
-    });
-    // Studies are told apart by a hash; a file whose head was changed by hand has the hash still.
+    return chosen;
+}
+
+// Studies are told apart by a hash; a file whose head was changed by hand has the hash still.
+void RefuseContradictions(std::vector<ObserverAnswers>* answers,
+                          std::vector<RefusedAnswers>* refused) {
     std::map<std::string, const ObserverAnswers*> first;
     std::set<std::string> contradicting;
     for (const ObserverAnswers& one : *answers) {
@@ -83,6 +70,30 @@ void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<Refus
                    ? "describes its study in another way than the files before"
                    : "";
     });
+}
+
+void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
+                        const CollectOptions& options) {
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        if (!options.study.empty() && one.study != options.study) return "answers another study";
+        if (!options.procedure.empty() && one.procedure != options.procedure)
+            return "answers the study by " + NameOfProcedure(one.procedure) + ", not by " +
+                   NameOfProcedure(options.procedure);
+        return "";
+    });
+    const std::map<std::string, Asked> chosen = ChooseStudies(*answers);
+    RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
+        const auto& [study, procedure] = chosen.at(one.viewpoint);
+        if (one.study != study)
+            return "answers another study of '" + one.viewpoint +
+                   "', with other pictures, than most files do";
+        if (one.procedure != procedure)
+            return "was asked by " + NameOfProcedure(one.procedure) + ", most files of '" +
+                   one.viewpoint + "' by " + NameOfProcedure(procedure) +
+                   "; collect the two apart, as they are not the same thresholds";
+        return "";
+    });
+    RefuseContradictions(answers, refused);
 }
 
 void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused) {
