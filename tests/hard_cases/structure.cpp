@@ -7,6 +7,7 @@
 
 namespace lull {
 
+namespace structure_cases {
 namespace {
 
 constexpr int kWidth = 140, kHeight = 110, kBorder = 10;
@@ -107,8 +108,10 @@ HardCaseResult BarShadow(const HardCaseOptions& o) {
 }
 
 }  // namespace
+}  // namespace structure_cases
 
 std::vector<HardCase> StructureCases() {
+    using namespace structure_cases;
     const char* what = "melts away";
     return {{"structure", "wires 1 pixel wide, 3 times as strong as the noise", what, Wires},
             {"structure", "lettering, twice as strong as the noise", what, Lettering},
