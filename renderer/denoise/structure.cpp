@@ -20,7 +20,7 @@ constexpr int kMiddleReach = 2;  // pixels of a line
 constexpr int kAroundReach = 3;
 constexpr int kRestoreRounds = 3;
 // Standard deviations from which on a mean is structure, and is so for certain.
-constexpr float kDoubtful = 4, kCertain = 5;
+constexpr float kDoubtful = 4.5f, kCertain = 5.5f;
 constexpr float kHeaviest = 1e4f;        // of a mean among others
 constexpr float kLeastDeviation = 0.1f;  // in lightness, of a pixel: less is not seen
 // The variance of normal noise over the square of its mean distance from 0.

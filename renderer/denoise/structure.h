@@ -2,7 +2,7 @@
 //
 // The residual in lightness is summed over squares of 3 and 9 pixels a side and, in 12 directions,
 // lines of 11 pixels and bars of 3 x 15 pixels around each pixel. A sum is structure where it is
-// more than 4 times as large as its standard deviation: by the variance of its pixels, by the
+// more than 4.5 times as large as its standard deviation: by the variance of its pixels, by the
 // difference of the halves in them, or by that in the 7 x 7 pixels around each, whichever is
 // largest. So neither fireflies nor the gaps between them nor variances that are too small are
 // taken for structure.
