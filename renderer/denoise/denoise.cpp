@@ -2,6 +2,7 @@
 
 #include "renderer/denoise/filter_colours.h"
 #include "renderer/denoise/fireflies.h"
+#include "renderer/denoise/structure.h"
 
 namespace lull {
 
@@ -64,6 +65,7 @@ DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
     const std::vector<Firefly> fireflies = TakeFireflies(kFireflyLimit, &result.noisy);
     result.halves = FilterColours(result.noisy, in.features, result.variance, rowsPerFit);
     in.features = {};
+    RestoreStructure(result.noisy, result.variance, &result.halves);
 
     result.picture = result.halves.a;
     for (size_t i = 0; i < result.picture.values.size(); ++i)

@@ -27,8 +27,8 @@ struct DenoisedPicture {
 };
 
 // Denoises a picture of at least one pixel, whose memory it uses. Values that are not finite or
-// negative count as 0. The same bits for any number of threads. Takes some 5 us a pixel of a core,
-// or 3 with 2 rows a fit (see RegressionInput).
+// negative count as 0. The same bits for any number of threads. Takes some 7.5 us of
+// CPU time a pixel, or 5.5 with 2 rows a fit (see RegressionInput).
 DenoisedPicture Denoise(NoisyPicture, int rowsPerFit = 1);
 
 }  // namespace lull

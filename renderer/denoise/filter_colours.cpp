@@ -4,6 +4,7 @@
 
 #include "renderer/denoise/candidates.h"
 #include "renderer/denoise/regression.h"
+#include "renderer/denoise/sample_range.h"
 #include "renderer/denoise/scales.h"
 
 namespace lull {
@@ -60,13 +61,15 @@ struct CandidateRows {
                 const auto half = i == 0 ? &Halves::a : &Halves::b;
                 const auto other = i == 0 ? &Halves::b : &Halves::a;
                 const PatchGuide guide{level.noisy.*other, level.variance};
-                const std::vector<Planes> made =
-                    RegressTile({level.noisy.*half, level.features, guide, kPatches, kBandwidths,
-                                 level.rowsPerFit},
-                                tile);
-                for (size_t b = 0; b < made.size(); ++b)
+                std::vector<Planes> made = RegressTile({level.noisy.*half, level.features, guide,
+                                                        kPatches, kBandwidths, level.rowsPerFit},
+                                                       tile);
+                const SampleRange range = RangeOfSamples(level.noisy.*half, tile);
+                for (size_t b = 0; b < made.size(); ++b) {
+                    range.Clamp(&made[b]);
                     Paste(made[b], {0, 0, made[b].width, made[b].height}, tile.x0, tile.y0 - first,
                           &(pictures[b].*half));
+                }
             });
         });
     }
@@ -83,6 +86,8 @@ struct CandidateRows {
         const ImageTile half{crop.x0 / 2, crop.y0 / 2, (crop.x1 + 1) / 2, (crop.y1 + 1) / 2};
         Halves both{WithCoarsePart(fine.a, Crop(level.coarse.a, half)),
                     WithCoarsePart(fine.b, Crop(level.coarse.b, half))};
+        RangeOfSamples(level.noisy.a, crop).Clamp(&both.a);
+        RangeOfSamples(level.noisy.b, crop).Clamp(&both.b);
         candidates.clear();
         candidates.push_back(std::move(fine));
         candidates.push_back(std::move(both));

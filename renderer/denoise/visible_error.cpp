@@ -4,8 +4,9 @@
 #include <cmath>
 #include <span>
 
+#include "renderer/denoise/displayed_lightness.h"
+#include "renderer/denoise/structure.h"
 #include "stopping/signals/entropy_drop.h"
-#include "stopping/signals/lightness.h"
 #include "stopping/signals/svd_entropy.h"
 
 namespace lull {
@@ -35,14 +36,10 @@ T Square(T x) {
     return x * x;
 }
 
-// Returns L, in [0, 100], of what a display shows, and the slope by which luminance changes it.
-LightnessSlope<float> DisplayedLightness(float y) {
-    return y < 1 ? LightnessAt(y) : LightnessSlope<float>{100, 0};
-}
-
 // Sums up a sub-block.
 struct Sums {
     double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
+    double structureSquares = 0;
 
     void Add(const EstimatedError& error, size_t i) {
         const double l = error.lightness.values[i], d = error.deviation.values[i];
@@ -52,6 +49,7 @@ struct Sums {
         squared += error.squared.values[i];
         variance += d * d;
         least += error.least.values[i];
+        structureSquares += Square(double(error.structure.values[i]));
     }
     // Returns the square of what an observer sees of a difference in lightness.
     double Seen() const {
@@ -137,7 +135,11 @@ void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float shar
 }
 
 EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
-    EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1), {}, {}, {}};
+    EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1),
+                         {},
+                         {},
+                         {},
+                         StructureLeft(denoised.noisy, denoised.variance, denoised.halves)};
     error.squared = error.deviation = error.least = error.lightness;
     Planes slope = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
@@ -180,6 +182,7 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
     std::vector<Squares> all;
     VisibleError result;
+    double structure = 0;  // the mean of its fourth power
     for (size_t v = 0; v < kSide; ++v)
         for (size_t u = 0; u < kSide; ++u) {
             Sums sums;
@@ -188,9 +191,10 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
                     sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
+            structure += Square(sums.Seen()) * sums.structureSquares / sums.count / (kSide * kSide);
         }
     const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
-    result.estimate = std::max(belief.Root(0), result.least);
+    result.estimate = std::max({belief.Root(0), result.least, std::sqrt(std::sqrt(structure))});
     result.upper = std::max({belief.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
     return result;
 }
@@ -200,7 +204,8 @@ Planes StandardError(const DenoisedPicture& denoised) {
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)
-        result.values[i] = std::sqrt(std::max({0.f, result.values[i], squared.values[i]}));
+        result.values[i] = std::sqrt(
+            std::max({0.f, result.values[i], squared.values[i], error.structure.values[i]}));
     return result;
 }
 

@@ -12,6 +12,7 @@ struct EstimatedError {
     Planes squared;    // an estimate of it without bias (see candidates.h), and very noisy
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // what the halves of the denoised picture differ by: what still changes
+    Planes structure;  // what the samples have beyond doubt and the picture has not (structure.h)
 };
 // Measures it as it is seen (AsSeen).
 EstimatedError MeasureError(const DenoisedPicture&);
@@ -22,7 +23,8 @@ Planes AsSeen(Planes difference);
 
 // Holds the visible error of a block: the mean over its 10 x 10 sub-blocks of the root mean square
 // of the error in lightness, as it is seen, times what an observer sees of a difference there
-// (NoiseVisibility: flare and detail).
+// (NoiseVisibility: flare and detail). Structure that is missing counts by the fourth root of the
+// mean of its fourth power, if that is more, so that a line of which a block has little counts.
 struct VisibleError {
     double estimate = 0;
     double upper = 0;  // not exceeded in 95 of 100 blocks

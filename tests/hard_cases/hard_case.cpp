@@ -12,9 +12,10 @@ bool HardCaseResult::Passed() const { return std::abs(ours - answer) <= toleranc
 
 std::vector<HardCase> AllHardCases() {
     std::vector<HardCase> all;
-    for (const auto& theme : {EnergyCases, ScaleCases, DegenerateCases, DielectricCases,
-                              RoughnessCases, LightCases, AccumulationCases, ImageSizeCases,
-                              SignalCases, HeavyTailCases, DenoisingCases, RandomCases}) {
+    for (const auto& theme :
+         {EnergyCases, ScaleCases, DegenerateCases, DielectricCases, RoughnessCases, LightCases,
+          AccumulationCases, ImageSizeCases, SignalCases, HeavyTailCases, DenoisingCases,
+          StructureCases, RandomCases}) {
         std::vector<HardCase> cases = theme();
         std::move(cases.begin(), cases.end(), std::back_inserter(all));
     }

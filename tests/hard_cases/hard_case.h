@@ -44,6 +44,7 @@ std::vector<HardCase> ImageSizeCases();
 std::vector<HardCase> SignalCases();
 std::vector<HardCase> HeavyTailCases();
 std::vector<HardCase> DenoisingCases();
+std::vector<HardCase> StructureCases();
 std::vector<HardCase> RandomCases();
 
 // Returns the result that is furthest out of its tolerance, or closest to it. At least one.

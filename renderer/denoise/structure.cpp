@@ -1,0 +1,263 @@
+#include "renderer/denoise/structure.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "renderer/denoise/displayed_lightness.h"
+#include "renderer/denoise/sample_range.h"
+#include "renderer/denoise/tile.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kDirections = 12;
+constexpr int kLineReach = 5;                                                // pixels
+constexpr int kBarReach = 2, kBoxRadius = 1, kBoxSide = 2 * kBoxRadius + 1;  // in boxes, and pixels
+constexpr int kKernelReach = kBarReach * kBoxSide;
+static_assert(kKernelReach >= kLineReach);
+constexpr int kMiddleReach = 2;  // pixels of a line
+constexpr int kAroundReach = 3;
+constexpr int kRestoreRounds = 3;
+// Standard deviations from which on a mean is structure, and is so for certain.
+constexpr float kDoubtful = 4.5f, kCertain = 5.5f;
+constexpr float kHeaviest = 1e4f;        // of a mean among others
+constexpr float kLeastDeviation = 0.1f;  // in lightness, of a pixel: less is not seen
+// The variance of normal noise over the square of its mean distance from 0.
+constexpr float kVarianceOfMean = std::numbers::pi_v<float> / 2;
+
+struct Offset {
+    int x, y;
+};
+
+// Pixels around one, over which the residual is summed.
+struct Kernel {
+    std::vector<Offset> sums;    // of pixels or, if it is wide, of the boxes around them
+    std::vector<Offset> middle;  // the pixels that get the mean
+    bool isWide = false;
+
+    int Count() const { return int(sums.size()) * (isWide ? kBoxSide * kBoxSide : 1); }
+};
+
+std::vector<Offset> Box(int radius, int step) {
+    std::vector<Offset> box;
+    for (int y = -radius; y <= radius; ++y)
+        for (int x = -radius; x <= radius; ++x) box.push_back({x * step, y * step});
+    return box;
+}
+
+// Steps along the axis that the line is closer to.
+std::vector<Offset> Line(int direction, int reach, int step) {
+    const double angle = direction * std::numbers::pi / kDirections, c = std::cos(angle),
+                 s = std::sin(angle), length = std::max(std::abs(c), std::abs(s));
+    std::vector<Offset> line;
+    for (int t = -reach * step; t <= reach * step; t += step)
+        line.push_back({int(std::lround(t * c / length)), int(std::lround(t * s / length))});
+    return line;
+}
+
+// Lines of 11 pixels, bars of 3 x 15, and squares of 3 and 9 pixels a side.
+std::vector<Kernel> AllKernels() {
+    const std::vector<Offset> pixel = {{0, 0}}, box = Box(kBoxRadius, 1);
+    std::vector<Kernel> kernels = {{pixel, pixel, true}, {Box(1, kBoxSide), box, true}};
+    for (int i = 0; i < kDirections; ++i) {
+        kernels.push_back({Line(i, kLineReach, 1), Line(i, kMiddleReach, 1), false});
+        kernels.push_back({Line(i, kBarReach, kBoxSide), box, true});
+    }
+    return kernels;
+}
+
+// What is known of the residual of the mean of both halves in lightness, and its sums over boxes.
+struct Residual {
+    enum Channel {
+        kValue,
+        kVariance,    // if it is noise
+        kDifference,  // half of that of the halves, squared
+        kAround,      // the variance by the mean distance of the halves around, if noise is normal
+        kTails,       // and that by the mean of its squares
+        kChannels
+    };
+    Cutout pixels, boxes;  // with zeros kKernelReach pixels beyond the border
+};
+
+float Squared(float x) { return x * x; }
+
+void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& picture, int y,
+                     Planes* to) {
+    for (int x = 0; x < variance.width; ++x) {
+        const size_t i = size_t(y) * size_t(variance.width) + size_t(x);
+        const float a = LuminanceOf(noisy.a, i), b = LuminanceOf(noisy.b, i);
+        const float made = (LuminanceOf(picture.a, i) + LuminanceOf(picture.b, i)) / 2;
+        const float slope = DisplayedLightness(made).slope;
+        Rgb deviations;
+        for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(variance.Plane(c)[i]);
+        const auto bounded = [](float v) { return std::clamp(v, -1e9f, 1e9f); };
+        const float difference = bounded(slope * std::abs(a - b) / 2);
+        to->Plane(Residual::kValue)[i] = bounded(slope * ((a + b) / 2 - made));
+        to->Plane(Residual::kVariance)[i] =
+            Squared(bounded(slope * Luminance(deviations))) / 2 + Squared(kLeastDeviation);
+        to->Plane(Residual::kDifference)[i] = to->Plane(Residual::kTails)[i] = Squared(difference);
+        to->Plane(Residual::kAround)[i] = difference;
+    }
+}
+
+void BlurChannel(Residual::Channel channel, Planes* image) {
+    Planes blurred(image->width, image->height, 1);
+    std::copy_n(image->Plane(channel), image->Area(), blurred.values.data());
+    blurred = BoxMean(std::move(blurred), kAroundReach);
+    std::copy_n(blurred.values.data(), image->Area(), image->Plane(channel));
+}
+
+Cutout WithMargin(const Planes& image) {
+    Cutout cutout(ImageTile{0, 0, image.width, image.height}.Grown(kKernelReach), image.count);
+    for (int c = 0; c < image.count; ++c)
+        for (int y = 0; y < image.height; ++y)
+            std::copy_n(image.Row(c, y), image.width, cutout.At(c, 0, y));
+    return cutout;
+}
+
+Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& picture) {
+    Planes pixels(variance.width, variance.height, Residual::kChannels);
+    tbb::parallel_for(0, variance.height,
+                      [&](int y) { MeasureResidual(noisy, variance, picture, y, &pixels); });
+    BlurChannel(Residual::kAround, &pixels);
+    BlurChannel(Residual::kTails, &pixels);
+    for (size_t i = 0; i < pixels.Area(); ++i)
+        pixels.Plane(Residual::kAround)[i] =
+            kVarianceOfMean * Squared(pixels.Plane(Residual::kAround)[i]);
+    Cutout ofPixels = WithMargin(pixels);
+    return {std::move(ofPixels), WithMargin(BoxSum(std::move(pixels), kBoxRadius))};
+}
+
+// Structure around a pixel: the mean of the residual over a kernel, the share of it that counts,
+// and its weight among others, the squared number of standard deviations.
+struct Found {
+    int x, y;
+    size_t kernel;
+    float mean, share, weight;
+};
+
+// The squared sum over a kernel, by the variance that it has if it is noise, and that sum.
+struct KernelSum {
+    Lanes value, squared;
+};
+
+KernelSum SumOver(const Residual& residual, const Kernel& kernel, int x, int y) {
+    const Cutout& from = kernel.isWide ? residual.boxes : residual.pixels;
+    Lanes value = Lanes::Zero(), variance = value, difference = value, around = value;
+    for (const auto [dx, dy] : kernel.sums) {
+        value += LanesIn(from.At(Residual::kValue, x + dx, y + dy));
+        variance += LanesIn(from.At(Residual::kVariance, x + dx, y + dy));
+        difference += LanesIn(from.At(Residual::kDifference, x + dx, y + dy));
+        around +=
+            LanesIn(from.At(kernel.isWide ? Residual::kTails : Residual::kAround, x + dx, y + dy));
+    }
+    return {value, value.square() / variance.max(difference).max(around).max(1e-30f)};
+}
+
+// Appends what is found in the pixels [x, x + kLanes) of a row, those below `end`.
+void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x, int y, int end,
+            std::vector<Found>* found) {
+    KernelSum best{Lanes::Zero(), Lanes::Constant(Squared(kDoubtful))};
+    Eigen::Array<int, kLanes, 1> kernelOfBest = Eigen::Array<int, kLanes, 1>::Constant(-1);
+    for (size_t k = 0; k < kernels.size(); ++k) {
+        const KernelSum sum = SumOver(residual, kernels[k], x, y);
+        const auto isBetter = (sum.squared > best.squared).eval();
+        if (!isBetter.any()) continue;
+        kernelOfBest = isBetter.select(int(k), kernelOfBest);
+        best.value = isBetter.select(sum.value, best.value);
+        best.squared = isBetter.select(sum.squared, best.squared);
+    }
+    for (int i = 0; i < std::min(kLanes, end - x); ++i) {
+        if (kernelOfBest[i] < 0) continue;
+        const size_t k = size_t(kernelOfBest[i]);
+        const float share = (std::sqrt(best.squared[i]) - kDoubtful) / (kCertain - kDoubtful);
+        found->push_back({x + i, y, k, best.value[i] / float(kernels[k].Count()),
+                          std::min(share, 1.f), std::min(best.squared[i], kHeaviest)});
+    }
+}
+
+std::vector<std::vector<Found>> Find(const Residual& residual, const std::vector<Kernel>& kernels,
+                                     int width, int height) {
+    std::vector<std::vector<Found>> rows{size_t(height)};
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; x += kLanes)
+            FindAt(residual, kernels, x, y, width, &rows[size_t(y)]);
+    });
+    return rows;
+}
+
+bool IsWithin(const Planes& image, int x, int y) {
+    return x >= 0 && y >= 0 && x < image.width && y < image.height;
+}
+
+// Calls use(x, y) for the pixels of the image that a kernel around (x, y) sums.
+template <typename Use>
+void ForEachPixel(const Kernel& kernel, const Planes& image, int x, int y, const Use& use) {
+    const int radius = kernel.isWide ? kBoxRadius : 0;
+    for (const auto [dx, dy] : kernel.sums)
+        for (int v = y + dy - radius; v <= y + dy + radius; ++v)
+            for (int u = x + dx - radius; u <= x + dx + radius; ++u)
+                if (IsWithin(image, u, v)) use(u, v);
+}
+
+// Returns the mean residual of the samples of one half.
+Rgb MeanResidual(const Planes& noisy, const Planes& picture, const Kernel& kernel, int x, int y) {
+    Rgb sum = Rgb::Zero();
+    ForEachPixel(kernel, noisy, x, y, [&](int u, int v) {
+        for (int c = 0; c < kColours; ++c) sum[c] += noisy.Row(c, v)[u] - picture.Row(c, v)[u];
+    });
+    return sum / float(kernel.Count());
+}
+
+// Adds to each pixel of a half the weighted mean of all that is found by kernels with it in their
+// middle.
+void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
+              const Planes& noisy, Planes* picture) {
+    std::vector<Rgb> means(all.size());
+    tbb::parallel_for(size_t(0), all.size(), [&](size_t i) {
+        const Found& f = all[i];
+        means[i] = f.share * MeanResidual(noisy, *picture, kernels[f.kernel], f.x, f.y);
+    });
+    Planes change(noisy.width, noisy.height, kColours), weight(noisy.width, noisy.height, 1);
+    for (size_t i = 0; i < all.size(); ++i)
+        for (const auto [dx, dy] : kernels[all[i].kernel].middle) {
+            const int x = all[i].x + dx, y = all[i].y + dy;
+            if (!IsWithin(noisy, x, y)) continue;
+            weight.Row(0, y)[x] += all[i].weight;
+            for (int c = 0; c < kColours; ++c) change.Row(c, y)[x] += all[i].weight * means[i][c];
+        }
+    for (size_t i = 0; i < weight.Area(); ++i)
+        for (int c = 0; c < kColours; ++c)
+            if (weight.values[i] > 0) picture->Plane(c)[i] += change.Plane(c)[i] / weight.values[i];
+    RangeOfSamples(noisy, {0, 0, noisy.width, noisy.height}).Clamp(picture);
+}
+
+}  // namespace
+
+void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* picture) {
+    const std::vector<Kernel> kernels = AllKernels();
+    tbb::this_task_arena::isolate([&] {
+        for (int round = 0; round < kRestoreRounds; ++round) {
+            std::vector<Found> all;
+            for (const auto& row : Find(ResidualOf(noisy, variance, *picture), kernels,
+                                        variance.width, variance.height))
+                all.insert(all.end(), row.begin(), row.end());
+            if (all.empty()) return;
+            for (const auto half : {&Halves::a, &Halves::b})
+                AddFound(all, kernels, noisy.*half, &(picture->*half));
+        }
+    });
+}
+
+Planes StructureLeft(const Halves& noisy, const Planes& variance, const Halves& picture) {
+    Planes left(variance.width, variance.height, 1);
+    tbb::this_task_arena::isolate([&] {
+        for (const auto& row :
+             Find(ResidualOf(noisy, variance, picture), AllKernels(), left.width, left.height))
+            for (const Found& f : row) left.Row(0, f.y)[f.x] = f.share * f.mean * f.mean;
+    });
+    return left;
+}
+
+}  // namespace lull
