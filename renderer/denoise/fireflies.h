@@ -20,8 +20,8 @@ struct Firefly {
 // negative.
 std::vector<Firefly> TakeFireflies(float limit, Halves*);
 
-// Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness (up
-// to white), where it is seen least. The sum over the picture grows by theirs.
+// Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness
+// (up to white), where it is seen least. The sum over the picture grows by theirs.
 void GiveBack(const std::vector<Firefly>&, Planes* picture);
 
 }  // namespace lull
