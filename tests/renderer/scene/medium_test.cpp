@@ -32,8 +32,9 @@ TEST(HomogeneousMedium, TakesItsShareOfEveryRayWhereItOnlyAbsorbs) {
     const HomogeneousMedium medium{Rgb::Zero(), Rgb(1, 0.5f, 0), 0};
     Sampler sampler(SamplerKind::Random, 1);
     sampler.StartSample({0, 0}, 0);
+    const Ray ray{Vec3f::Zero(), Vec3f::UnitX(), 2};
     for (int i = 0; i < 100; ++i) {
-        const MediumSample s = medium.Sample(2, sampler);
+        const MediumSample s = medium.Sample(ray, sampler);
         EXPECT_FALSE(s.t);
         EXPECT_TRUE(s.weight.isApprox(Rgb(std::exp(-2.f), std::exp(-1.f), 1)));
     }
