@@ -71,8 +71,8 @@ typedef struct lull_denoised_picture {
     int block_count;
 } lull_denoised_picture;
 
-/* Denoises a picture; takes some 11 us of CPU time a pixel. Returns NULL, or what is wrong, and then
- * has written nothing: a text that is valid until the next call of this thread. */
+/* Denoises a picture; takes some 11 us of CPU time a pixel. Returns NULL, or what is wrong, and
+ * then has written nothing: a text that is valid until the next call of this thread. */
 LULL_API const char* lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean);
 
 #ifdef __cplusplus
