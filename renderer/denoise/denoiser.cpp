@@ -6,8 +6,8 @@ DenoiserResult RunDenoiser(NoisyPicture picture, std::span<const PictureBlock> b
                            const DenoiserOptions& options) {
     DenoisedPicture denoised = Denoise(std::move(picture), options.isQuick ? 2 : 1);
     DenoiserResult result;
-    if (options.withDeviation) result.deviation = StandardError(denoised).values;
     const EstimatedError error = MeasureError(denoised);
+    if (options.withDeviation) result.deviation = StandardError(denoised, error.structure).values;
     denoised.halves = denoised.noisy = {};  // a large picture needs the memory, here and below
     result.rgb = Interleaved(denoised.picture);
     denoised = {};

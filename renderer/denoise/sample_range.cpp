@@ -48,4 +48,14 @@ SampleRange RangeOfSamples(const Planes& noisy, const ImageTile& tile) {
             Extremes(noisy, tile, kReachOfMost, [](float a, float b) { return std::max(a, b); })};
 }
 
+void ClampToSamples(const Planes& noisy, Planes* picture) {
+    const int rows = BandRows(noisy.height);
+    for (int y = 0; y < noisy.height; y += rows)
+        ForEachTile(noisy.width, y, std::min(noisy.height, y + rows), [&](const ImageTile& tile) {
+            Planes part = Crop(*picture, tile);
+            RangeOfSamples(noisy, tile).Clamp(&part);
+            Paste(part, {0, 0, part.width, part.height}, tile.x0, tile.y0, picture);
+        });
+}
+
 }  // namespace lull

@@ -17,4 +17,7 @@ struct SampleRange {
 // fit has: where few pixels have most of the light, those between them must be able to get it.
 SampleRange RangeOfSamples(const Planes& noisy, const ImageTile&);
 
+// Clamps each pixel of a picture as large as `noisy` to that range, tile by tile on all threads.
+void ClampToSamples(const Planes& noisy, Planes* picture);
+
 }  // namespace lull

@@ -80,8 +80,6 @@ struct Residual {
     Cutout pixels, boxes;  // with zeros kKernelReach pixels beyond the border
 };
 
-float Squared(float x) { return x * x; }
-
 void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& picture, int y,
                      Planes* to) {
     for (int x = 0; x < variance.width; ++x) {
@@ -95,8 +93,8 @@ void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& 
         const float difference = bounded(slope * std::abs(a - b) / 2);
         to->Plane(Residual::kValue)[i] = bounded(slope * ((a + b) / 2 - made));
         to->Plane(Residual::kVariance)[i] =
-            Squared(bounded(slope * Luminance(deviations))) / 2 + Squared(kLeastDeviation);
-        to->Plane(Residual::kDifference)[i] = to->Plane(Residual::kTails)[i] = Squared(difference);
+            Sqr(bounded(slope * Luminance(deviations))) / 2 + Sqr(kLeastDeviation);
+        to->Plane(Residual::kDifference)[i] = to->Plane(Residual::kTails)[i] = Sqr(difference);
         to->Plane(Residual::kAround)[i] = difference;
     }
 }
@@ -124,7 +122,7 @@ Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& p
     BlurChannel(Residual::kTails, &pixels);
     for (size_t i = 0; i < pixels.Area(); ++i)
         pixels.Plane(Residual::kAround)[i] =
-            kVarianceOfMean * Squared(pixels.Plane(Residual::kAround)[i]);
+            kVarianceOfMean * Sqr(pixels.Plane(Residual::kAround)[i]);
     Cutout ofPixels = WithMargin(pixels);
     return {std::move(ofPixels), WithMargin(BoxSum(std::move(pixels), kBoxRadius))};
 }
@@ -158,7 +156,7 @@ KernelSum SumOver(const Residual& residual, const Kernel& kernel, int x, int y) 
 // Appends what is found in the pixels [x, x + kLanes) of a row, those below `end`.
 void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x, int y, int end,
             std::vector<Found>* found) {
-    KernelSum best{Lanes::Zero(), Lanes::Constant(Squared(kDoubtful))};
+    KernelSum best{Lanes::Zero(), Lanes::Constant(Sqr(kDoubtful))};
     Eigen::Array<int, kLanes, 1> kernelOfBest = Eigen::Array<int, kLanes, 1>::Constant(-1);
     for (size_t k = 0; k < kernels.size(); ++k) {
         const KernelSum sum = SumOver(residual, kernels[k], x, y);
@@ -230,7 +228,7 @@ void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
     for (size_t i = 0; i < weight.Area(); ++i)
         for (int c = 0; c < kColours; ++c)
             if (weight.values[i] > 0) picture->Plane(c)[i] += change.Plane(c)[i] / weight.values[i];
-    RangeOfSamples(noisy, {0, 0, noisy.width, noisy.height}).Clamp(picture);
+    ClampToSamples(noisy, picture);
 }
 
 }  // namespace

@@ -31,11 +31,6 @@ constexpr double kUsualDoubt = 0.25;
 // under the noise of unusual pictures.
 constexpr double kTrust = 0.8;
 
-template <typename T>
-T Square(T x) {
-    return x * x;
-}
-
 // Sums up a sub-block.
 struct Sums {
     double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
@@ -49,7 +44,7 @@ struct Sums {
         squared += error.squared.values[i];
         variance += d * d;
         least += error.least.values[i];
-        structureSquares += Square(double(error.structure.values[i]));
+        structureSquares += Sqr(double(error.structure.values[i]));
     }
     // Returns the square of what an observer sees of a difference in lightness.
     double Seen() const {
@@ -101,8 +96,8 @@ Belief FromSamples(std::span<const Squares> all) {
 
 // Returns what is usual where the halves of the denoised picture differ by this.
 Belief Usual(double least) {
-    const double mean = Square(kUsual * least);
-    return {mean, Square(2 * kUsualDoubt * mean)};
+    const double mean = Sqr(kUsual * least);
+    return {mean, Sqr(2 * kUsualDoubt * mean)};
 }
 
 // Returns what both say together, each by its doubt. As far as the samples contradict what is usual
@@ -110,7 +105,7 @@ Belief Usual(double least) {
 // Laird's estimate of what two differ by).
 Belief Together(const Belief& samples, Belief usual) {
     usual.variance +=
-        std::max(0.0, Square(samples.mean - usual.mean) - samples.variance - usual.variance);
+        std::max(0.0, Sqr(samples.mean - usual.mean) - samples.variance - usual.variance);
     const double both = samples.variance + usual.variance;
     if (both <= 0) return samples;
     const double share = usual.variance / both;  // of the samples
@@ -131,15 +126,13 @@ void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float shar
                Planes* sum) {
     Planes difference = Difference(a, b, slope);
     if (asSeen) difference = AsSeen(std::move(difference));
-    for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Square(difference.values[i]);
+    for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Sqr(difference.values[i]);
 }
 
+// Measures all but the structure.
 EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
-    EstimatedError error{Planes(denoised.picture.width, denoised.picture.height, 1),
-                         {},
-                         {},
-                         {},
-                         StructureLeft(denoised.noisy, denoised.variance, denoised.halves)};
+    EstimatedError error;
+    error.lightness = Planes(denoised.picture.width, denoised.picture.height, 1);
     error.squared = error.deviation = error.least = error.lightness;
     Planes slope = error.lightness;
     for (size_t i = 0; i < error.lightness.Area(); ++i) {
@@ -148,7 +141,7 @@ EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
         for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
         const float deviation = Luminance(deviations);  // the colours of a path go together
         error.lightness.values[i] = at.lightness;
-        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Square(at.slope * deviation);
+        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Sqr(at.slope * deviation);
         slope.values[i] = at.slope;
     }
     const auto add = [&](const Planes& a, const Planes& b, float share, Planes* sum) {
@@ -176,7 +169,11 @@ Planes AsSeen(Planes difference) {
     return difference;
 }
 
-EstimatedError MeasureError(const DenoisedPicture& denoised) { return Measure(denoised, true); }
+EstimatedError MeasureError(const DenoisedPicture& denoised) {
+    EstimatedError error = Measure(denoised, true);
+    error.structure = StructureLeft(denoised.noisy, denoised.variance, denoised.halves);
+    return error;
+}
 
 VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, int x1, int y1) {
     const std::vector<int> xs = SplitEvenly(x1 - x0, kSide), ys = SplitEvenly(y1 - y0, kSide);
@@ -191,7 +188,7 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
                     sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
-            structure += Square(sums.Seen()) * sums.structureSquares / sums.count / (kSide * kSide);
+            structure += Sqr(sums.Seen()) * sums.structureSquares / sums.count / (kSide * kSide);
         }
     const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
     result.estimate = std::max({belief.Root(0), result.least, std::sqrt(std::sqrt(structure))});
@@ -199,13 +196,13 @@ VisibleError MeasureVisibleError(const EstimatedError& error, int x0, int y0, in
     return result;
 }
 
-Planes StandardError(const DenoisedPicture& denoised) {
+Planes StandardError(const DenoisedPicture& denoised, const Planes& structure) {
     const EstimatedError error = Measure(denoised, false);
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
     for (size_t i = 0; i < result.Area(); ++i)
-        result.values[i] = std::sqrt(
-            std::max({0.f, result.values[i], squared.values[i], error.structure.values[i]}));
+        result.values[i] =
+            std::sqrt(std::max({0.f, result.values[i], squared.values[i], structure.values[i]}));
     return result;
 }
 

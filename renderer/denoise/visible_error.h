@@ -34,7 +34,8 @@ struct VisibleError {
 // Measures the pixels [x0, x1) x [y0, y1), at least 10 a side.
 VisibleError MeasureVisibleError(const EstimatedError&, int x0, int y0, int x1, int y1);
 
-// Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around.
-Planes StandardError(const DenoisedPicture&);
+// Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
+// with what is missing of structure (EstimatedError::structure).
+Planes StandardError(const DenoisedPicture&, const Planes& structure);
 
 }  // namespace lull

@@ -16,8 +16,9 @@ TEST(RunDenoiser, MeasuresThePictureThatItReturns) {
     const PictureBlock block{5, 10, 35, 30};
     const DenoiserResult result = RunDenoiser(NoisyExample(), {&block, 1});
     EXPECT_EQ(result.rgb, Interleaved(denoised.picture));
-    EXPECT_EQ(result.deviation, StandardError(denoised).values);
-    const VisibleError expected = MeasureVisibleError(MeasureError(denoised), 5, 10, 35, 30);
+    const EstimatedError error = MeasureError(denoised);
+    EXPECT_EQ(result.deviation, StandardError(denoised, error.structure).values);
+    const VisibleError expected = MeasureVisibleError(error, 5, 10, 35, 30);
     ASSERT_TRUE(result.blocks.at(0));
     EXPECT_GT(expected.upper, 0);
     EXPECT_EQ(result.blocks[0]->estimate, expected.estimate);

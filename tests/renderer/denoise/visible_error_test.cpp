@@ -87,7 +87,7 @@ TEST(VisibleError, IsNothingWhereNothingIsWrong) {
     const DenoisedPicture denoised = Denoise(AddNoise(truth, FlatFeatures(50, 50), 0, 1));
     const EstimatedError error = MeasureError(denoised);
     EXPECT_LT(MeasureVisibleError(error, 0, 0, 50, 50).upper, 0.02);
-    for (const float e : StandardError(denoised).values) EXPECT_LT(e, 0.02f);
+    for (const float e : StandardError(denoised, error.structure).values) EXPECT_LT(e, 0.02f);
 }
 
 TEST(VisibleError, IsNotSeenAboveWhite) {
