@@ -1,4 +1,6 @@
 // The command line of lull.
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -63,22 +65,27 @@ size_t Distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
+// Returns the name that a word may have been meant to be; "" where none is near.
+std::string NearestName(const std::string& word, const std::vector<std::string>& names) {
+    const auto nearest =
+        std::ranges::min_element(names, {}, [&](const auto& name) { return Distance(word, name); });
+    const bool isNear = nearest != names.end() &&
+                        Distance(word, *nearest) <= std::max<size_t>(1, nearest->size() / 3);
+    return isNear ? *nearest : "";
+}
+
 // Says which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
-    std::string nearest, all;
-    for (const CLI::App* command : app.get_subcommands({})) {
-        const std::string& name = command->get_name();
-        if (name == word || word.starts_with('-')) return "";
-        all += (all.empty() ? "" : ", ") + name;
-        if (nearest.empty() || Distance(word, name) < Distance(word, nearest)) nearest = name;
-    }
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (word.starts_with('-') || std::ranges::find(names, word) != names.end()) return "";
     const std::string start = "there is no command '" + word + "'";
-    if (Distance(word, nearest) <= std::max<size_t>(1, nearest.size() / 3))
+    if (const std::string nearest = NearestName(word, names); !nearest.empty())
         return start + "; did you mean '" + nearest + "'?";
     // Who leaves it out gives a scene.
     if (word.find('.') != std::string::npos)
         return start + "; to render it, type lull render " + word;
-    return start + "; there are " + all;
+    return fmt::format("{}; there are {}", start, fmt::join(names, ", "));
 }
 
 // Returns why the words of a command cannot be read, and which option one may have been meant to
@@ -96,15 +103,12 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
         std::ranges::find_if(rest, [](const auto& w) { return w.starts_with("-"); });
     if (option == rest.end()) return "unexpected argument '" + rest.front() + "'" + help;
     const std::string word = option->substr(0, option->find('='));
-    std::string nearest;
+    std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
-        for (const std::string& name : known->get_lnames())
-            if (nearest.empty() || Distance(word, "--" + name) < Distance(word, nearest))
-                nearest = "--" + name;
-    const std::string start = "there is no option " + word;
-    return Distance(word, nearest) <= std::max<size_t>(1, nearest.size() / 3)
-               ? start + "; did you mean " + nearest + "?"
-               : start + help;
+        for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
+    const std::string nearest = NearestName(word, names);
+    return "there is no option " + word +
+           (nearest.empty() ? help : "; did you mean " + nearest + "?");
 }
 
 ExitCode Main(Job* job, int argc, char** argv) {

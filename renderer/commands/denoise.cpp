@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "renderer/base/error.h"
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/denoise/dependence.h"
@@ -103,7 +104,9 @@ ExitCode RunDenoise(Options options) {
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
     // What follows needs the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
-    const DenoisedImage denoised = DenoiseAndSay(std::move(picture), region, blocks, options.quiet);
+    const auto start = std::chrono::steady_clock::now();
+    const DenoisedImage denoised = DenoiseImage(std::move(picture), region, blocks);
+    PrintDenoised(denoised, SecondsSince(start), options.quiet);
 
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));
     std::ranges::move(MakeDenoisedChannels(denoised, noisy), std::back_inserter(exr.channels));

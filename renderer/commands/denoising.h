@@ -1,17 +1,12 @@
-// Denoises finished pictures, for commands that do.
+// Messages of the commands that denoise.
 #pragma once
-
-#include <functional>
 
 #include "renderer/commands/talk.h"
 #include "renderer/results/denoised_image.h"
 
 namespace lull {
 
-// Is DenoiseImage(), which says how long it took and how clean the picture is, unless `quiet`;
-// before, `check` can take back errors of blocks that are not known.
-DenoisedImage DenoiseAndSay(NoisyPicture, const PixelRect& region, const std::vector<Block>& blocks,
-                            bool quiet, const Talk& = {},
-                            const std::function<void(DenoisedImage*)>& check = {});
+// Prints how long denoising took and how clean the picture is, unless `quiet`.
+void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Talk& = {});
 
 }  // namespace lull

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/guide_options.h"
@@ -244,9 +245,10 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     film.DropHalf();
     if (!p.request.denoise) return made;
     const Talk talk = TalkOf(settings);
-    made.image = DenoiseAndSay(
-        std::move(picture), region, MakeBlocks(region, settings.schedule), settings.quiet, talk,
-        [&](DenoisedImage* image) { DoubtBlocks(result, region, talk, image); });
+    const auto start = std::chrono::steady_clock::now();
+    made.image = DenoiseImage(std::move(picture), region, MakeBlocks(region, settings.schedule));
+    DoubtBlocks(result, region, talk, &*made.image);
+    PrintDenoised(*made.image, SecondsSince(start), settings.quiet, talk);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;
 }

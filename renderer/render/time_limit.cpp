@@ -46,9 +46,8 @@ double ParseDuration(const std::string& text) {
                                                    std::chars_format::fixed);
         if (error != std::errc()) refuse();
         left.remove_prefix(size_t(rest - left.data()));
-        const bool isPlain = left.empty() && rest == text.data() + text.size() && seconds == 0 &&
-                             largerUnit == INFINITY;
-        const double unit = isPlain ? 1 : TakeUnit(&left);
+        const bool isNumberAlone = left.empty() && largerUnit == INFINITY;
+        const double unit = isNumberAlone ? 1 : TakeUnit(&left);
         if (unit == 0 || unit >= largerUnit || !(value >= 0)) refuse();
         seconds += value * unit;
         largerUnit = unit;

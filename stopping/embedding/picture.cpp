@@ -1,6 +1,5 @@
 #include "stopping/embedding/picture.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,15 +13,6 @@ namespace lull {
 
 namespace {
 
-struct LinearTable {
-    std::array<float, 256> values;
-
-    LinearTable() {
-        for (int code = 0; code < 256; ++code)
-            values[size_t(code)] = float(DecodeSrgb(code / 255.0));
-    }
-};
-
 // Values need not be aligned: strides are in bytes.
 float AsItIs(const std::byte* at) {
     float value;
@@ -35,10 +25,7 @@ float FromFloat(const std::byte* at) {
     return std::isfinite(value) ? value : 0;
 }
 
-float FromSrgb8(const std::byte* at) {
-    static const LinearTable linear;
-    return linear.values[std::to_integer<size_t>(*at)];
-}
+float FromSrgb8(const std::byte* at) { return float(DecodeSrgb8()[std::to_integer<size_t>(*at)]); }
 
 struct Strides {
     ptrdiff_t row, pixel, channel;

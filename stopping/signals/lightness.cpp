@@ -1,7 +1,6 @@
 #include "stopping/signals/lightness.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -47,8 +46,7 @@ struct LuminanceTable {
 
     LuminanceTable() {
         for (int i = 0; i < 3; ++i)
-            for (int c = 0; c < 256; ++c)
-                share[i][c] = kLuminanceWeights[i] * DecodeSrgb(c / 255.0);
+            for (int c = 0; c < 256; ++c) share[i][c] = kLuminanceWeights[i] * DecodeSrgb8()[c];
     }
 };
 
@@ -56,6 +54,16 @@ struct LuminanceTable {
 
 double DecodeSrgb(double v) {
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+const std::array<double, 256>& DecodeSrgb8() {
+    static const std::array<double, 256> table = [] {
+        std::array<double, 256> linear;
+        for (size_t code = 0; code < linear.size(); ++code)
+            linear[code] = DecodeSrgb(double(code) / 255);
+        return linear;
+    }();
+    return table;
 }
 
 void EncodeSrgb8(std::span<const float> linear, std::span<uint8_t> srgb) {

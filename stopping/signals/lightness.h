@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -18,6 +19,9 @@ inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
 // Returns the linear value, in [0, 1], of a component in [0, 1] that follows the sRGB transfer
 // curve.
 double DecodeSrgb(double v);
+
+// Returns the same of all 8-bit components.
+const std::array<double, 256>& DecodeSrgb8();
 
 // Applies the sRGB transfer curve (IEC 61966-2-1) to linear values, clamps to [0, 1] and rounds
 // to 8 bits. NaN becomes 0. Throws std::invalid_argument if the lengths differ.

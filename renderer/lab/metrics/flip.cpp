@@ -50,8 +50,7 @@ Triple RelativeFromYcxcz(const Triple& c) {
 }
 
 ColourPlanes OpponentPlanes(std::span<const uint8_t> srgb) {
-    std::array<double, 256> linear;
-    for (int i = 0; i < 256; ++i) linear[i] = DecodeSrgb(i / 255.0);
+    const std::array<double, 256>& linear = DecodeSrgb8();
     ColourPlanes planes;
     for (std::vector<float>& plane : planes) plane.reserve(srgb.size() / 3);
     for (size_t i = 0; i < srgb.size(); i += 3) {

@@ -43,11 +43,10 @@ double MeanOf(const std::vector<float>& map, int width, const PixelRect& rect) {
 
 // Decodes 8-bit sRGB values.
 std::vector<float> LinearValues(std::span<const uint8_t> srgb) {
-    std::array<float, 256> linear;
-    for (int i = 0; i < 256; ++i) linear[size_t(i)] = float(DecodeSrgb(i / 255.0));
+    const std::array<double, 256>& linear = DecodeSrgb8();
     std::vector<float> values;
     values.reserve(srgb.size());
-    for (const uint8_t v : srgb) values.push_back(linear[v]);
+    for (const uint8_t v : srgb) values.push_back(float(linear[v]));
     return values;
 }
 
