@@ -12,9 +12,9 @@ namespace lull {
 
 void AddAovOptions(CLI::App& app, AovSet* wanted) {
     auto* aov =
-        app.add_option_function<std::string>(
+        app.add_option_function<std::vector<std::string>>(
                "--aov",
-               [=](const std::string& names) {
+               [=](const std::vector<std::string>& names) {
                    try {
                        const bool throughSpecular = wanted->throughSpecular;
                        *wanted = ParseAovs(names);
@@ -24,6 +24,8 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                    }
                },
                "Layers of the EXR, of what is seen first; noise is that of each pixel")
+            ->delimiter(',')
+            ->allow_extra_args(false)
             ->type_name("albedo|normal|depth|position|object|material|alpha|cryptomatte|noise,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Of what is seen in mirrors and through glass, instead of these")

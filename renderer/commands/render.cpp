@@ -16,11 +16,9 @@
 #include "renderer/commands/render_options.h"
 #include "renderer/commands/render_talk.h"
 #include "renderer/mpi/job.h"
-#include "renderer/render/block_denoiser.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/render/half_buffer.h"
 #include "renderer/results/denoiser_channels.h"
-#include "stopping/rules/denoised.h"
 
 namespace lull {
 
@@ -36,7 +34,6 @@ struct PreparedRender {
     const RenderRequest request;
     const std::function<double()> clock;
     RenderJob render;
-    std::shared_ptr<BlockDenoiser> denoiser;  // null: blocks are not denoised
     Rule rule;
     FilmOptions film;
     RenderFiles files;
@@ -66,12 +63,8 @@ void ReadRule(PreparedRender* p) {
     if (settings.cap) schedule.cap = *settings.cap;
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
-    std::map<std::string, SignalMeasure> measures;
-    if (p->request.denoise) {
-        p->denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(region, schedule));
-        measures[kDenoisedRuleName] = MeasureOf(p->denoiser);
-    }
-    p->rule = ReadRule("--stop", rule, settings, region, std::move(measures));
+    if (p->request.denoise) p->render.DenoiseBlocks();
+    p->rule = p->render.ReadRule("--stop", rule);
     schedule.smallestSide = p->rule.smallestSide;
     schedule.passLength = PassLengthFor(p->rule, region, schedule);
 }
@@ -187,9 +180,8 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
 // Renders, and shows pictures on the way where they are asked for.
 RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     if (p->clock) p->render.ranks->SetClock(p->clock);
-    if (p->denoiser) p->denoiser->Show(&session->TheFilm(), session->Features());
-    if (p->denoiser && p->display)
-        p->denoiser->ShowPictures(
+    if (p->render.denoiser && p->display)
+        p->render.denoiser->ShowPictures(
             [display = p->display.get()](const PixelRect& pixels, std::span<const float> rgb) {
                 display->ShowDenoised(pixels, rgb);
             });

@@ -10,6 +10,7 @@
 #include "renderer/commands/interrupt.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/mpi/job.h"
+#include "stopping/rules/denoised.h"
 
 namespace lull {
 
@@ -61,6 +62,16 @@ void RenderJob::LockCheckpoint() {
         checkpointLock.emplace(lull::LockCheckpoint(file));
 }
 
+void RenderJob::DenoiseBlocks() {
+    denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
+}
+
+Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) const {
+    std::map<std::string, SignalMeasure> measures;
+    if (denoiser) measures[kDenoisedRuleName] = MeasureOf(denoiser);
+    return lull::ReadRule(option, rule, settings, input.region, std::move(measures));
+}
+
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
     provenance = MakeProvenance(settings, *scene, input.film);
@@ -78,6 +89,7 @@ SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
 }
 
 RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
+    if (denoiser) denoiser->Show(&session->TheFilm(), session->Features());
     session->Resume();
     CatchInterrupts();
     return session->Run(render);

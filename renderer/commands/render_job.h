@@ -17,6 +17,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/files/file_lock.h"
 #include "renderer/files/outputs.h"
+#include "renderer/render/block_denoiser.h"
 
 namespace lull {
 
@@ -38,6 +39,10 @@ class RenderJob {
     // Takes that of the settings, which have changed, instead. Throws Error if another process has
     // it.
     void LockCheckpoint();
+    // Lets rules look at what the denoiser makes of blocks while the render goes on.
+    void DenoiseBlocks();
+    // Reads a stopping rule that was given with `option`. Throws Error.
+    Rule ReadRule(const std::string& option, const std::string& rule) const;
     // Compiles the scene, and sets the provenance; the rule is left to be filled in.
     void Compile();
     // Returns what checkpoints and ranks have to agree on, by the provenance as it is.
@@ -59,6 +64,7 @@ class RenderJob {
     SceneInput input;
     std::unique_ptr<const Scene> scene;  // null before Compile()
     Provenance provenance;
+    std::shared_ptr<BlockDenoiser> denoiser;  // null: blocks are not denoised
 
   private:
     std::optional<FileLock> checkpointLock;

@@ -38,13 +38,10 @@ std::string TextOf(const AovSet& set) {
     return NameOf(set) + (set.throughSpecular ? " through specular" : "");
 }
 
-AovSet ParseAovs(const std::string& names) {
+AovSet ParseAovs(const std::vector<std::string>& names) {
     AovSet set;
-    for (size_t begin = 0; begin <= names.size();) {
-        const size_t end = std::min(names.find(',', begin), names.size());
-        const std::string name = names.substr(begin, end - begin);
-        const auto layer = std::find_if(kLayers.begin(), kLayers.end(),
-                                        [&](const NamedLayer& l) { return l.name == name; });
+    for (const std::string& name : names) {
+        const auto layer = std::ranges::find(kLayers, name, &NamedLayer::name);
         if (layer == kLayers.end())
             throw Error(
                 fmt::format("there is no layer \"{}\", but albedo, normal, depth, position, "
@@ -52,7 +49,6 @@ AovSet ParseAovs(const std::string& names) {
                             "them",
                             name));
         set.*layer->wanted = true;
-        begin = end + 1;
     }
     return set;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "renderer/base/color.h"
 #include "renderer/film/pixel_plane.h"
@@ -35,8 +36,8 @@ std::string NameOf(const AovSet&);
 // Says the same in words, with throughSpecular, for checkpoints and headers.
 std::string TextOf(const AovSet&);
 
-// Reads such names, in any order. Throws Error naming the first unknown one, or if there is none.
-AovSet ParseAovs(const std::string& names);
+// Reads such names, in any order. Throws Error naming the first unknown one.
+AovSet ParseAovs(const std::vector<std::string>& names);
 
 // Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
 struct AovPixel {

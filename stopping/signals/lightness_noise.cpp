@@ -96,7 +96,7 @@ std::vector<float> Texture(const std::vector<float>& lightness, int width, int h
 // Collects sums over the pixels of a sub-block.
 struct PixelSums {
     int count = 0;
-    double lightness = 0, squaredLightness = 0, texture = 0, absoluteNoise = 0;
+    double lightness = 0, squaredLightness = 0, texture = 0;
     double squaredNoise = 0, squaredMasked = 0, squaredHalf = 0;
 
     void Add(const LightnessNoise& pixels, size_t i) {
@@ -106,7 +106,6 @@ struct PixelSums {
         lightness += l;
         squaredLightness += l * l;
         texture += pixels.texture[i];
-        absoluteNoise += std::abs(noise);
         squaredNoise += noise * noise;
         squaredMasked += masked * masked;
         squaredHalf += half * half;
@@ -178,8 +177,6 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
             result.deviation.push_back(float(std::sqrt(std::max(0.0, variance))));
             result.texture.push_back(float(sums.texture / sums.count));
             result.noise.push_back(float(std::sqrt(sums.squaredNoise / sums.count)));
-            result.noiseMean.push_back(
-                float(std::sqrt(M_PI / 2) * (sums.absoluteNoise / sums.count)));
             result.maskedNoise.push_back(float(std::sqrt(sums.squaredMasked / sums.count)));
             result.halfNoise.push_back(float(std::sqrt(sums.squaredHalf / sums.count)));
         }

@@ -37,11 +37,10 @@ LightnessNoise ComputeLightnessNoise(const BlockView& view);
 inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
 
 // Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
-// maskedNoise and halfNoise are root mean squares; noiseMean is the mean of |noise| sqrt(pi / 2),
-// which estimates the mean standard deviation. Throws std::invalid_argument if the estimates have
-// another size or there are too few pixels for the sub-blocks.
+// maskedNoise and halfNoise are root mean squares. Throws std::invalid_argument if the estimates
+// have another size or there are too few pixels for the sub-blocks.
 struct LightnessNoiseStatistics {
-    std::vector<float> lightness, deviation, texture, noise, noiseMean, maskedNoise, halfNoise;
+    std::vector<float> lightness, deviation, texture, noise, maskedNoise, halfNoise;
 };
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);

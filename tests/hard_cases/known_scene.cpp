@@ -5,9 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
-#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {
@@ -20,11 +18,9 @@ std::unique_ptr<const Scene> MakeScene(const KnownScene& known) {
         "Film \"image\" \"integer xresolution\" [{}] \"integer yresolution\" [{}]\n"
         "Integrator \"path\" {}\nWorldBegin\n{}\nWorldEnd\n",
         known.camera, known.fov, known.size, known.size, known.integrator, known.world);
-    Warnings warnings;
-    const Description description = ParsePbrt(directory.Write("case.pbrt", text), warnings);
     CompileOptions options;
     options.threads = 1;
-    return Compile(description, options, warnings);
+    return SceneIn(directory.Write("case.pbrt", text), options);
 }
 
 HardCaseResult CompareRadiance(const Scene& scene, double answer, double relative, int samples,

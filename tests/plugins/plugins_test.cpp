@@ -6,8 +6,7 @@
 #include <filesystem>
 
 #include "renderer/image/image_io.h"
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull {
@@ -80,11 +79,9 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
 }
 
 std::unique_ptr<const Scene> Load(const std::string& name, TextureFiltering filtering) {
-    Warnings warnings;
     CompileOptions options;
     options.filtering = filtering;
-    const fs::path file = fs::path(LULL_PLUGINS_DIR) / "scenes" / (name + ".pbrt");
-    return Compile(ParsePbrt(file.string(), warnings), options, warnings);
+    return SceneIn(fmt::format("{}/scenes/{}.pbrt", LULL_PLUGINS_DIR, name), options);
 }
 
 class Plugins : public testing::TestWithParam<std::string> {};

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "renderer/input/pbrt_parser.h"
+#include "renderer/scene/compile.h"
+
 namespace lull {
 
 // Returns the files of LULL_BENCH_SCENES, separated by colons, or our own scenes by name.
@@ -23,6 +26,14 @@ inline std::vector<std::string> BenchScenes() {
             files.push_back(file.string());
     std::sort(files.begin(), files.end());
     return files;
+}
+
+// Compiles one of them; what it lacks is replaced, and nobody hears of it.
+inline std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& resolution) {
+    Warnings warnings({}, true);
+    CompileOptions options;
+    options.film.resolution = resolution;
+    return Compile(ParsePbrt(file, warnings), options, warnings);
 }
 
 }  // namespace lull

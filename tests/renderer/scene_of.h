@@ -15,15 +15,21 @@ inline std::string WorldText(const std::string& world, const std::string& before
     return before + "\nWorldBegin\n" + world + "\nWorldEnd\n";
 }
 
-// Compiles the scene that a pbrt-v3 file, test.pbrt, describes, on one thread. Without `warnings`
-// nobody hears of them: many scenes of tests have no lights, or are of odd sizes. Throws Error.
+// Compiles the scene of a pbrt-v3 file. Without `warnings` nobody hears of them: many scenes of
+// tests have no lights, or are of odd sizes. Throws Error.
+inline std::unique_ptr<const Scene> SceneIn(const std::string& file,
+                                            const CompileOptions& options = {},
+                                            Warnings* warnings = nullptr) {
+    Warnings own;
+    Warnings& all = warnings ? *warnings : own;
+    return Compile(ParsePbrt(file, all), options, all);
+}
+
+// Does the same with a file of that text, test.pbrt, on one thread.
 inline std::unique_ptr<const Scene> SceneOf(const std::string& text, CompileOptions options = {},
                                             Warnings* warnings = nullptr) {
     options.threads = 1;
-    const TemporaryDirectory directory;
-    Warnings own;
-    Warnings& all = warnings ? *warnings : own;
-    return Compile(ParsePbrt(directory.Write("test.pbrt", text), all), options, all);
+    return SceneIn(TemporaryDirectory().Write("test.pbrt", text), options, warnings);
 }
 
 }  // namespace lull

@@ -18,7 +18,6 @@
 #include "renderer/lab/comparison/bench.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/lab/pages/bench_page.h"
-#include "renderer/render/block_denoiser.h"
 #include "stopping/rules/denoised.h"
 
 namespace lull {
@@ -90,21 +89,16 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer(kFooter);
 }
 
-std::vector<ObservedRule> MakeRules(const Options& options, const PixelRect& region,
-                                    const std::shared_ptr<BlockDenoiser>& denoiser) {
+std::vector<ObservedRule> MakeRules(const Options& options, const RenderJob& render) {
     const ScheduleOptions& schedule = options.render.schedule;
     std::vector<std::string> texts = BenchRules(schedule.passLength, schedule.cap);
     texts.push_back("learned");
-    std::map<std::string, SignalMeasure> measures;
-    if (denoiser) {
-        texts.push_back(kDenoisedRuleName);
-        measures[kDenoisedRuleName] = MeasureOf(denoiser);
-    }
+    if (options.denoise) texts.push_back(kDenoisedRuleName);
     for (const std::string& rule : options.rules)
         if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
     std::vector<ObservedRule> rules;
     for (const std::string& text : texts) {
-        const Rule rule = ReadRule("--rule", text, options.render, region, measures);
+        const Rule rule = render.ReadRule("--rule", text);
         rules.push_back({text, rule.text, rule.smallestSide, CriteriaOf(rule),
                          text.starts_with(kDenoisedRuleName)});
     }
@@ -142,7 +136,6 @@ struct Bench {
     RenderJob render;
     std::string sceneHash;
     std::vector<ObservedRule> rules;
-    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
     std::vector<ExternalImage> external;
     std::vector<RgbImage> externalImages;
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
@@ -170,10 +163,9 @@ std::unique_ptr<Bench> Prepare(const Options& options, Job* ranks) {
     const PixelRect& region = render.input.region;
     if (options.denoise) {
         CheckLayersFit({}, true, region);
-        bench->denoiser =
-            std::make_shared<BlockDenoiser>(MakeBlocks(region, render.settings.schedule));
+        render.DenoiseBlocks();
     }
-    bench->rules = MakeRules(options, region, bench->denoiser);
+    bench->rules = MakeRules(options, render);
     if (!options.external.empty()) bench->external = ReadExternalImages(options.external);
     CheckFiles(bench.get());
     if (!options.reference.empty()) bench->reference = ReadImageOfSize(options.reference, region);
@@ -260,7 +252,6 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     how.render.makeCriterion = MakeObservers(bench->rules, region, settings.schedule,
                                              {.snapshots = true, .goesOn = true}, &histories);
     Session session(*render.scene, region, how);
-    if (bench->denoiser) bench->denoiser->Show(&session.TheFilm(), session.Features());
     if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
     const RenderResult result = render.Run(&session);
     if (result.cancelled) return false;

@@ -12,7 +12,6 @@
 #include "renderer/lab/commands/comparison_table.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/mpi/job.h"
-#include "renderer/render/block_denoiser.h"
 #include "renderer/results/block_files.h"
 #include "renderer/results/image_files.h"
 #include "stopping/rules/denoised.h"
@@ -102,7 +101,6 @@ struct Compared {
     RenderJob render;
     std::vector<ObservedRule> rules;
     std::string humanChecksum = "none";
-    std::shared_ptr<BlockDenoiser> denoiser;  // null: nothing is denoised
     ComparisonReport report;
     std::vector<ComparedImage> fromFiles;
 };
@@ -124,11 +122,9 @@ void AddOtherRules(Compared* compared) {
     }
     if (!options.denoise) return;
     CheckLayersFit({}, true, region);
-    compared->denoiser =
-        std::make_shared<BlockDenoiser>(MakeBlocks(region, options.render.schedule));
+    compared->render.DenoiseBlocks();
     compared->rules.push_back(
-        MakeRule("denoised", ReadRule("--denoise", kDenoisedRuleName, options.render, region,
-                                      {{kDenoisedRuleName, MeasureOf(compared->denoiser)}})));
+        MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));
     compared->rules.back().isDenoised = true;
 }
 
@@ -137,7 +133,7 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, Job* ranks) {
     auto compared = std::make_unique<Compared>(options, ranks);
     RenderJob& render = compared->render;
     const PixelRect& region = render.input.region;
-    const Rule automatic = ReadRule("--stop", options.rule, options.render, region);
+    const Rule automatic = render.ReadRule("--stop", options.rule);
     compared->rules.push_back(MakeRule("automatic", automatic));
     AddOtherRules(compared.get());
     std::vector<std::string> rendered;
@@ -268,7 +264,6 @@ ExitCode CompareRenders(CompareOptions options, Job* ranks) {
     const std::unique_ptr<Compared> compared = Prepare(options, ranks);
     const RenderJob& render = compared->render;
     Session session(*render.scene, render.input.region, MakeOptions(compared.get()));
-    if (compared->denoiser) compared->denoiser->Show(&session.TheFilm(), session.Features());
     const RenderResult result = render.Run(&session);
     if (const auto code = render.End(result.cancelled)) return *code;
 

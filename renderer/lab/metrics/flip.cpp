@@ -93,19 +93,13 @@ std::vector<float> FilterByContrast(const std::vector<float>& plane, int width, 
     return result;
 }
 
-double LabCurve(double t) {
-    constexpr double delta = 6.0 / 29;
-    return t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + 4.0 / 29;
-}
-
 // Returns L*a*b* of linear RGB, with a* and b* scaled by L* / 100, as colours differ less in the
 // dark (Hunt).
 Triple HuntLab(const Triple& rgb) {
-    Triple f = Apply(kXyzFromRgb, rgb);
-    for (int c = 0; c < 3; ++c) f[c] = LabCurve(f[c] / White()[c]);
-    const double lightness = 116 * f[1] - 16;
-    return {lightness, 0.01 * lightness * 500 * (f[0] - f[1]),
-            0.01 * lightness * 200 * (f[1] - f[2])};
+    Triple l = Apply(kXyzFromRgb, rgb);
+    for (int c = 0; c < 3; ++c) l[c] = LightnessAt(l[c] / White()[c]).lightness;
+    const double share = 0.01 * l[1] / 116;
+    return {l[1], share * 500 * (l[0] - l[1]), share * 200 * (l[1] - l[2])};
 }
 
 // The distance that suits large differences of colour (paper, section 4.1.2).

@@ -43,8 +43,8 @@ void AppendRecord(const BlockView& view, std::vector<float>* to) {
     const LightnessNoise noise = ComputeLightnessNoise(view);
     const LightnessNoiseStatistics s =
         SubBlockStatistics(noise, view.width, view.height, kStatisticsSubBlocks);
-    for (const std::vector<float>* channel : {&s.lightness, &s.deviation, &s.texture, &s.noise,
-                                              &s.noiseMean, &s.maskedNoise, &s.halfNoise})
+    for (const std::vector<float>* channel :
+         {&s.lightness, &s.deviation, &s.texture, &s.noise, &s.maskedNoise, &s.halfNoise})
         Append(*channel, to);
     to->push_back(float(DammertzError(view)));
     to->push_back(float(LuxTileError(view)));

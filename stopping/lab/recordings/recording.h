@@ -24,10 +24,10 @@ struct Channel {
 
 // Holds all of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
-// deviation are mean and standard deviation of L; texture is the mean of t, and noise, noise_mean,
+// deviation are mean and standard deviation of L; texture is the mean of t, and noise,
 // masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
 // of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L.
-inline constexpr std::array<Channel, 16> kChannels = {{{"h4", 4},
+inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"h25", 25},
                                                        {"h100", 100},
                                                        {"h400", 400},
@@ -37,7 +37,6 @@ inline constexpr std::array<Channel, 16> kChannels = {{{"h4", 4},
                                                        {"deviation", 100},
                                                        {"texture", 100},
                                                        {"noise", 100},
-                                                       {"noise_mean", 100},
                                                        {"masked_noise", 100},
                                                        {"half_noise", 100},
                                                        {"dammertz", 1},

@@ -17,7 +17,7 @@ struct OnePixel {
     Film film{kPixel};
     AovFilm aovs;
 
-    explicit OnePixel(const char* layers) : aovs(kPixel, ParseAovs(layers)) {}
+    explicit OnePixel(const std::vector<std::string>& layers) : aovs(kPixel, ParseAovs(layers)) {}
     void Add(const FirstHit& hit, const Rgb& radiance = Rgb::Zero()) {
         AddTo(&film, kPixel.min, radiance);
         aovs.At(kPixel.min).Add(hit, radiance);
@@ -43,30 +43,35 @@ FirstHit HitAt(float depth, uint32_t object, float offset2) {
 }
 
 TEST(AovSet, HasNames) {
-    EXPECT_EQ(NameOf(ParseAovs("noise,albedo,normal,depth,position,object,material")),
-              "albedo,normal,depth,position,object,material,noise");
-    EXPECT_TRUE(ParseAovs("depth").FirstHits());
-    EXPECT_FALSE(ParseAovs("noise").FirstHits());
-    EXPECT_TRUE(ParseAovs("noise").Any());
+    EXPECT_EQ(
+        NameOf(ParseAovs({"noise", "albedo", "normal", "depth", "position", "object", "material"})),
+        "albedo,normal,depth,position,object,material,noise");
+    EXPECT_TRUE(ParseAovs({"depth"}).FirstHits());
+    EXPECT_FALSE(ParseAovs({"noise"}).FirstHits());
+    EXPECT_TRUE(ParseAovs({"noise"}).Any());
     EXPECT_FALSE(AovSet().Any());
-    for (const char* bad : {"", "albedo,", ",albedo", "Albedo", "albedo normal", "albedo,,noise"})
-        EXPECT_TRUE(Contains(ErrorOf([&] { ParseAovs(bad); }), "there is no layer")) << bad;
+    for (const char* bad : {"", "Albedo", "albedo normal", "albedo,noise"})
+        EXPECT_TRUE(Contains(ErrorOf([&] {
+                                 ParseAovs({"depth", bad});
+                             }),
+                             "there is no layer"))
+            << bad;
 }
 
 TEST(AovFilm, HasTheChannelsThatAreWanted) {
-    const auto names = [](const char* layers) {
+    const auto names = [](const std::vector<std::string>& layers) {
         std::string text;
         const OnePixel pixel(layers);
         for (const ExrChannel& c : MakeAovChannels(pixel.aovs, pixel.film)) text += c.name + " ";
         return text;
     };
-    EXPECT_EQ(names("albedo,normal"), "albedo.R albedo.G albedo.B N.X N.Y N.Z ");
-    EXPECT_EQ(names("depth,position,object,material,noise"),
+    EXPECT_EQ(names({"albedo", "normal"}), "albedo.R albedo.G albedo.B N.X N.Y N.Z ");
+    EXPECT_EQ(names({"depth", "position", "object", "material", "noise"}),
               "Z P.X P.Y P.Z objectID materialID noise ");
 }
 
 TEST(AovFilm, AveragesOverAllSamplesOrThoseThatMetSomething) {
-    OnePixel pixel("albedo,normal,depth,position,object,material");
+    OnePixel pixel({"albedo", "normal", "depth", "position", "object", "material"});
     pixel.Add(HitAt(2, 1, 0.3f));
     pixel.Add(HitAt(4, 2, 0.1f));
     pixel.Add({.albedo = Rgb(1, 0, 0), .offset2 = 0.2f});  // the sky
@@ -82,7 +87,7 @@ TEST(AovFilm, AveragesOverAllSamplesOrThoseThatMetSomething) {
 }
 
 TEST(AovFilm, WeighsAsThePixelFilterDoes) {
-    OnePixel pixel("albedo,depth");
+    OnePixel pixel({"albedo", "depth"});
     FirstHit hit = HitAt(2, 1, 0);
     for (const float weight : {1.25f, 1.25f, 1.25f, -0.75f}) {
         hit.weight = weight;
@@ -94,7 +99,7 @@ TEST(AovFilm, WeighsAsThePixelFilterDoes) {
 }
 
 TEST(AovFilm, KnowsOfPixelsThatMetNothing) {
-    OnePixel pixel("albedo,normal,depth,position,object,material,noise");
+    OnePixel pixel({"albedo", "normal", "depth", "position", "object", "material", "noise"});
     EXPECT_EQ(pixel.Value("albedo.R"), 0);  // not even a sample
     EXPECT_EQ(pixel.Value("noise"), 100);
     pixel.Add({});
@@ -114,7 +119,7 @@ TEST(AovFilm, NoiseIsTheStandardErrorInLightness) {
         std::uniform_real_distribution<float> sample(0.6f * mean, 1.4f * mean);
         double sum = 0, squares = 0, said = 0;
         for (int i = 0; i < kPixels; ++i) {
-            OnePixel pixel("noise");
+            OnePixel pixel({"noise"});
             for (int k = 0; k < kSamples; ++k) pixel.Add({}, Rgb::Constant(sample(random)));
             const double y = Luminance(pixel.film.At(kPixel.min).Mean());
             const double L = y > 0.008856 ? 116 * std::cbrt(y) - 16 : 116 * 7.787 * y;

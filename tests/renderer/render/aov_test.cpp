@@ -11,6 +11,8 @@ namespace lull::aov_test {
 namespace {
 
 const PixelRect kRegion = {{5, 3}, {75, 63}};
+const std::vector<std::string> kLayers = {"albedo", "normal",   "depth", "position",
+                                          "object", "material", "noise"};
 
 struct Rendered {
     Film film;
@@ -18,9 +20,7 @@ struct Rendered {
     RenderSetup options;
     RenderResult result;
 
-    Rendered()
-        : film(kRegion),
-          aovs(kRegion, ParseAovs("albedo,normal,depth,position,object,material,noise")) {
+    Rendered() : film(kRegion), aovs(kRegion, ParseAovs(kLayers)) {
         options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
         options.sampler = SamplerKind::Random;
         options.threads = 1;

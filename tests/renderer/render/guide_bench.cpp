@@ -11,10 +11,8 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
-#include "renderer/input/pbrt_parser.h"
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/render.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bench_scenes.h"
 
 namespace lull {
@@ -59,11 +57,8 @@ struct Images {
 };
 
 void BenchGuide(benchmark::State& state, const std::string& file) {
-    Warnings warnings({}, true);
     const int side = FromEnvironment("LULL_BENCH_SIDE", 64);
-    CompileOptions options;
-    options.film.resolution = Vec2i(side, side);
-    const auto scene = Compile(ParsePbrt(file, warnings), options, warnings);
+    const auto scene = LoadScene(file, {side, side});
     if (const auto why = WhyNotGuided(*scene, Estimator::Combined))
         return state.SkipWithError(why->c_str());
     const PixelRect region{{0, 0}, {side, side}};

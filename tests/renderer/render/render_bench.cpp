@@ -30,13 +30,6 @@ double ProcessSeconds() {
            1e-6 * double(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
-std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& resolution) {
-    Warnings warnings({}, true);
-    CompileOptions options;
-    options.film.resolution = resolution;
-    return Compile(ParsePbrt(file, warnings), options, warnings);
-}
-
 // Returns the most memory that this process has had since ForgetPeak(), in MB (Linux only).
 double PeakMegabytes() {
     std::ifstream status("/proc/self/status");
@@ -80,7 +73,7 @@ void RenderRegion(benchmark::State& state, const Scene& scene, Estimator estimat
     RenderOptions options;
     options.schedule = schedule;
     options.sampler = SamplerKind::Random;
-    options.makeCriterion = CriteriaOf(factory);
+    options.makeCriterion = CriteriaOf(rule);
     int64_t samples = 0;
     double wall = 0, busy = 0;
     const double cpuBefore = ProcessSeconds();

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/image/image_io.h"
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull {
@@ -33,8 +30,7 @@ struct LightScene {
         const std::string text = "Camera \"perspective\"\nWorldBegin\n" + world +
                                  "\nShape \"trianglemesh\" \"integer indices\" [0 1 2] "
                                  "\"point P\" [0 0 -50  .01 0 -50  0 .01 -50]\nWorldEnd\n";
-        const Description d = ParsePbrt(directory.Write("test.pbrt", text), warnings);
-        scene = Compile(d, {}, warnings);
+        scene = SceneIn(directory.Write("test.pbrt", text), {}, &warnings);
         for (const auto& [kind, count] : warnings.Counts()) ADD_FAILURE() << kind;
     }
 };

@@ -4,9 +4,8 @@
 
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "tests/renderer/input/gltf_files.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
 // Its names would be in the way of those of the other tests.
@@ -15,12 +14,17 @@ namespace {
 
 constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
 
-std::unique_ptr<const Scene> Compiled(const Description& description, int size) {
+CompileOptions ImageOf(int size) {
     CompileOptions options;
     options.threads = 1;
     options.film.resolution = Vec2i(size, size);
+    return options;
+}
+
+// Compiles the text of a pbrt-v3 file.
+std::unique_ptr<const Scene> Compiled(const std::string& text, int size) {
     Warnings warnings;
-    auto scene = Compile(description, options, warnings);
+    auto scene = SceneOf(text, ImageOf(size), &warnings);
     EXPECT_EQ(warnings.Total(), 0);
     return scene;
 }
@@ -36,8 +40,9 @@ std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
     const GltfFolder folder;
     Warnings warnings;
     const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
+    auto scene = Compile(d, ImageOf(size), warnings);
     EXPECT_EQ(warnings.Total(), 0);
-    return Compiled(d, size);
+    return scene;
 }
 
 struct Total {
@@ -130,30 +135,26 @@ TEST(GltfScenes, AgreeWithPbrt) {
     const std::string square =
         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
         "\"point P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\n";
-    const TemporaryDirectory directory;
-    Warnings warnings;
-    const Description pbrt = ParsePbrt(
-        directory.Write(
-            "scene.pbrt",
-            fmt::format("Scale -1 1 1\nLookAt 0.25 0.5 4  0.25 0.5 0  0 1 0\n"
-                        "Camera \"perspective\" \"float fov\" [{}]\n"
-                        "Integrator \"path\" \"integer maxdepth\" [12]\nWorldBegin\n"
-                        "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0.5 -1 0.5]\n"
-                        "AttributeBegin Material \"matte\" \"rgb Kd\" [.7 .6 .5] Scale 2 2 1\n{}"
-                        "AttributeEnd\n"
-                        "AttributeBegin Material \"matte\" \"rgb Kd\" [.2 .5 .8]\n"
-                        "Translate -1 0 1 Rotate 90 0 1 0\n{}AttributeEnd\n"
-                        "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
-                        "AreaLightSource \"diffuse\" \"rgb L\" [5 4 3]\n"
-                        "Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1\n{}"
-                        "AttributeEnd\nWorldEnd\n",
-                        180 / kPi, square, square, square)),
-        warnings);
+    const auto pbrt = Compiled(
+        fmt::format("Scale -1 1 1\nLookAt 0.25 0.5 4  0.25 0.5 0  0 1 0\n"
+                    "Camera \"perspective\" \"float fov\" [{}]\n"
+                    "Integrator \"path\" \"integer maxdepth\" [12]\nWorldBegin\n"
+                    "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0.5 -1 0.5]\n"
+                    "AttributeBegin Material \"matte\" \"rgb Kd\" [.7 .6 .5] Scale 2 2 1\n{}"
+                    "AttributeEnd\n"
+                    "AttributeBegin Material \"matte\" \"rgb Kd\" [.2 .5 .8]\n"
+                    "Translate -1 0 1 Rotate 90 0 1 0\n{}AttributeEnd\n"
+                    "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
+                    "AreaLightSource \"diffuse\" \"rgb L\" [5 4 3]\n"
+                    "Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1\n{}"
+                    "AttributeEnd\nWorldEnd\n",
+                    180 / kPi, square, square, square),
+        8);
     constexpr int kSamples = 1000;
     const auto pixelsOf = [](const Scene& scene, uint64_t seed) {
         return MeasurePixels(scene, Estimator::Combined, SamplerKind::Random, kSamples, seed);
     };
-    const PixelStatistics a = pixelsOf(*Compiled(file, 8), 1), b = pixelsOf(*Compiled(pbrt, 8), 2);
+    const PixelStatistics a = pixelsOf(*Compiled(file, 8), 1), b = pixelsOf(*pbrt, 2);
     for (size_t i = 0; i < a.mean.size(); ++i)
         for (int c = 0; c < 3; ++c) {
             const double error = std::sqrt((a.variance[i][c] + b.variance[i][c]) / kSamples);
@@ -209,21 +210,17 @@ TEST(GltfMaterial, NeverAddsEnergy) {
          "[.5] \"float clearcoatfactor\" [1]",
          0.8},
     };
-    const TemporaryDirectory directory;
     for (const Case& c : cases) {
         SCOPED_TRACE(c.parameters);
-        Warnings warnings;
-        const Description d = ParsePbrt(
-            directory.Write("scene.pbrt",
-                            fmt::format("LookAt 0 0 -2.5  0 0 0  0 1 0\n"
-                                        "Camera \"perspective\" \"float fov\" [40]\n"
-                                        "Integrator \"path\" \"integer maxdepth\" [200]\n"
-                                        "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-                                        "Material \"metallicroughness\" {}\n"
-                                        "Shape \"sphere\" \"float radius\" [2]\nWorldEnd\n",
-                                        c.parameters)),
-            warnings);
-        const auto scene = Compiled(d, 6);
+        const auto scene =
+            Compiled(fmt::format("LookAt 0 0 -2.5  0 0 0  0 1 0\n"
+                                 "Camera \"perspective\" \"float fov\" [40]\n"
+                                 "Integrator \"path\" \"integer maxdepth\" [200]\n"
+                                 "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+                                 "Material \"metallicroughness\" {}\n"
+                                 "Shape \"sphere\" \"float radius\" [2]\nWorldEnd\n",
+                                 c.parameters),
+                     6);
         Total totals[2];
         for (int i = 0; i < 2; ++i) {
             totals[i] = Measure(*scene, kEstimators[i]);

@@ -7,8 +7,7 @@
 #include <filesystem>
 
 #include "renderer/image/image_io.h"
-#include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 #include "tests/shared_folder.h"
 
@@ -138,12 +137,11 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
 
 std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estimator estimator,
                                        TextureFiltering filtering) {
-    Warnings warnings;
     CompileOptions options;
     options.lightsAsPbrtV3 = estimator == Estimator::PbrtV3;
     options.film.resolution = Vec2i(128, 128);
     options.filtering = filtering;
-    return Compile(ParsePbrt(file.string(), warnings), options, warnings);
+    return SceneIn(file.string(), options);
 }
 
 // Says whether pbrt-v3's texture filtering shows at 128x128, so that the test has to ask for it:

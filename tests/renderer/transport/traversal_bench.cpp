@@ -76,13 +76,6 @@ struct Measurement {
     size_t RayCount() const { return nearestCount + occlusionCount; }
 };
 
-std::unique_ptr<const Scene> LoadScene(const std::string& file) {
-    Warnings warnings({}, true);
-    CompileOptions options;
-    options.film.resolution = Vec2i(kSide, kSide);
-    return Compile(ParsePbrt(file, warnings), options, warnings);
-}
-
 // Renders the image tile by tile, recording into `log` unless it is null. With the combined
 // estimator each nearest-hit ray is the next bounce of its path.
 void RenderImage(const Scene& scene, int samplesPerPixel, RayLog* log) {
@@ -161,7 +154,7 @@ size_t Trace(const Scene& scene, RTCScene world, std::span<const RecordedRay> ra
 Measurement MeasureScene(const std::string& file) {
     const char* spp = std::getenv("LULL_BENCH_SPP");
     const int samplesPerPixel = spp ? std::max(1, std::atoi(spp)) : 4;
-    const auto scene = LoadScene(file);
+    const auto scene = LoadScene(file, {kSide, kSide});
     RayLog log;
     RenderImage(*scene, samplesPerPixel, &log);
 

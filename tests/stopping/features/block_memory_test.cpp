@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/stopping/cut_states.h"
+
 namespace lull {
 namespace {
 
@@ -102,10 +104,10 @@ TEST(BlockMemory, GoesOnAfterARestart) {
         second.Add(At(spp));
         EXPECT_EQ(*first.WindowAt(spp), *second.WindowAt(spp)) << spp;
     }
-    for (size_t size = 0; size < writer.bytes.size(); size += 101) {
-        StateReader cut(std::span(writer.bytes).first(size));
-        EXPECT_THROW(BlockMemory(settings).Restore(&cut), std::runtime_error);
-    }
+    ExpectRefusesCut(writer.bytes, 101, [&](auto bytes) {
+        StateReader cut(bytes);
+        BlockMemory(settings).Restore(&cut);
+    });
 }
 
 TEST(BlockMemory, RefusesSettingsOfNoSense) {

@@ -7,6 +7,7 @@
 
 #include "stopping/base/block_view.h"
 #include "stopping/rules/rule_table.h"
+#include "tests/stopping/rules/restarts.h"
 #include "tests/stopping/signals/block_images.h"
 
 namespace lull {
@@ -90,31 +91,14 @@ TEST(EntropyRule, ChecksWhereRecordingsHavePasses) {
 }
 
 TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
-    const std::vector<Decision> expected =
-        Decide(MakeCriterion(EntropyRule(1.5, {}, 20)).get(), 0, 4000);
-    for (const int split : {20, 60, 120, 200}) {
-        const auto before = MakeCriterion(EntropyRule(1.5, {}, 20)),
-                   after = MakeCriterion(EntropyRule(1.5, {}, 20));
-        Decide(before.get(), 0, split);
-        after->Restore(before->Save());
-        EXPECT_EQ(after->Save(), before->Save());
-        const std::vector<Decision> rest = Decide(after.get(), split, 4000);
-        ASSERT_EQ(rest.size() + size_t(split / 20), expected.size());
-        for (size_t i = 0; i < rest.size(); ++i)
-            EXPECT_EQ(rest[i].value, expected[size_t(split / 20) + i].value);
-    }
+    ExpectGoesOn(EntropyRule(1.5, {}, 20), {20, 60, 120, 200}, 4000, Decide);
 }
 
 TEST(EntropyRule, RefusesOtherState) {
     const auto rule = MakeCriterion(EntropyRule(1.5, {}, 20));
     Decide(rule.get(), 0, 300);
     const std::vector<std::byte> state = rule->Save();
-    for (size_t size = 0; size < state.size(); size += 97)
-        EXPECT_THROW(MakeCriterion(EntropyRule(1.5, {}, 20))->Restore(std::span(state).first(size)),
-                     std::runtime_error);
-    std::vector<std::byte> longer = state;
-    longer.push_back({});
-    EXPECT_THROW(MakeCriterion(EntropyRule(1.5, {}, 20))->Restore(longer), std::runtime_error);
+    ExpectRefusesOtherLengths(EntropyRule(1.5, {}, 20), state, 97);
     EXPECT_THROW(MakeCriterion(ParseRule("lnoise:1"))->Restore(state), std::runtime_error);
 }
 

@@ -13,6 +13,7 @@
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/network/random_network.h"
+#include "tests/stopping/rules/restarts.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
 
@@ -41,6 +42,10 @@ std::vector<Decision> RunPasses(Criterion* criterion, int first, int end, int pa
         if (decisions.back().stop) break;
     }
     return decisions;
+}
+
+std::vector<Decision> RunAfter(Criterion* criterion, int begin, int end) {
+    return RunPasses(criterion, begin + 20, end);
 }
 
 TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
@@ -136,22 +141,7 @@ TEST(Learned, GoesOnAsIfNeverInterrupted) {
     for (int voteSpacing : {0, 40, 80}) {
         const ModelSettings settings = {.k = 4, .m = 25, .votes = 1000, .voteSpacing = voteSpacing};
         const auto model = MakeModel(RandomNetwork(25, {8, 4}, 3), settings);
-        const std::vector<Decision> expected =
-            RunPasses(MakeCriterion(LearnedRule(model, 20)).get(), 20, 600);
-        for (int split : {20, 100, 140, 260, 420}) {
-            const auto before = MakeCriterion(LearnedRule(model, 20)),
-                       after = MakeCriterion(LearnedRule(model, 20));
-            RunPasses(before.get(), 20, split);
-            after->Restore(before->Save());
-            EXPECT_EQ(after->Save(), before->Save());
-            const std::vector<Decision> rest = RunPasses(after.get(), split + 20, 600);
-            for (size_t i = 0; i < rest.size(); ++i) {
-                const Decision& e = expected[size_t(split / 20) + i];
-                EXPECT_EQ(rest[i].checked, e.checked);
-                EXPECT_EQ(rest[i].value, e.value);
-                EXPECT_EQ(rest[i].votes, e.votes);
-            }
-        }
+        ExpectGoesOn(LearnedRule(model, 20), {20, 100, 140, 260, 420}, 600, RunAfter);
     }
 }
 
@@ -171,18 +161,8 @@ TEST(Learned, GoesOnWithFallsOfEntropies) {
     const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
     const auto whole = MakeCriterion(LearnedRule(model, 20));
     EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
-    const std::vector<Decision> expected = RunPasses(whole.get(), 20, 1000);
-    EXPECT_TRUE(expected.back().value != 1);
-    for (const int split : {20, 140, 500}) {
-        const auto before = MakeCriterion(LearnedRule(model, 20)),
-                   after = MakeCriterion(LearnedRule(model, 20));
-        RunPasses(before.get(), 20, split);
-        after->Restore(before->Save());
-        EXPECT_EQ(after->Save(), before->Save());
-        const std::vector<Decision> rest = RunPasses(after.get(), split + 20, 1000);
-        for (size_t i = 0; i < rest.size(); ++i)
-            EXPECT_EQ(rest[i].value, expected[size_t(split / 20) + i].value);
-    }
+    EXPECT_TRUE(RunPasses(whole.get(), 20, 1000).back().value != 1);
+    ExpectGoesOn(LearnedRule(model, 20), {20, 140, 500}, 1000, RunAfter);
 }
 
 // Returns a network without LSTM that is undecided where the last of `steps` inputs is `limit`.
@@ -258,12 +238,7 @@ TEST(Learned, RefusesOtherState) {
     const auto criterion = MakeCriterion(LearnedRule(model, 20));
     RunPasses(criterion.get(), 20, 100);
     const std::vector<std::byte> state = criterion->Save();
-    for (size_t size = 0; size < state.size(); size += 7)
-        EXPECT_THROW(MakeCriterion(LearnedRule(model, 20))->Restore(std::span(state).first(size)),
-                     std::runtime_error);
-    std::vector<std::byte> longer = state;
-    longer.push_back({});
-    EXPECT_THROW(MakeCriterion(LearnedRule(model, 20))->Restore(longer), std::runtime_error);
+    ExpectRefusesOtherLengths(LearnedRule(model, 20), state, 7);
     const auto other = MakeModel(RandomNetwork(100, {8, 4}, 1), {});
     EXPECT_THROW(MakeCriterion(LearnedRule(other, 20))->Restore(state), std::runtime_error);
 }

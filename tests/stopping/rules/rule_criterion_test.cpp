@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/stopping/cut_states.h"
+
 namespace lull {
 namespace {
 
@@ -97,8 +99,7 @@ TEST(RuleCriterion, DecidesOnSignalsAloneAsOnWhatItMeasures) {
 TEST(RuleCriterion, RefusesStatesThatAreNotItsOwn) {
     const auto rule = MakeCriterion(OwnRule({.first = 20, .growth = 2}, 3));
     std::vector<std::byte> state = rule->Save();
-    for (size_t size = 0; size < state.size(); ++size)
-        EXPECT_THROW(rule->Restore(std::span(state).first(size)), std::runtime_error) << size;
+    ExpectRefusesCut(state, 1, [&](auto cut) { rule->Restore(cut); });
     state[0] ^= std::byte(1);
     EXPECT_THROW(rule->Restore(state), std::runtime_error);
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stopping/signals/entropy_drop.h"
+#include "tests/stopping/cut_states.h"
 
 namespace lull {
 namespace {
@@ -96,13 +97,13 @@ TEST(History, GoesOnAfterARestart) {
         EXPECT_EQ(*LatestDrop(second, weights), *LatestDrop(first, weights));
     }
 
-    for (size_t size = 0; size < writer.bytes.size(); size += 5) {
-        StateReader cut(std::span(writer.bytes).first(size));
-        EXPECT_THROW(History<float>().Restore(&cut, 2), std::runtime_error);
-    }
+    const auto restore = [](std::span<const std::byte> state) {
+        StateReader damaged(state);
+        History<float>().Restore(&damaged, 2);
+    };
+    ExpectRefusesCut(writer.bytes, 5, restore);
     writer.bytes[4] = writer.bytes[5] = std::byte(0xff);  // an spp beyond the next one
-    StateReader damaged(writer.bytes);
-    EXPECT_THROW(History<float>().Restore(&damaged, 2), std::runtime_error);
+    EXPECT_THROW(restore(writer.bytes), std::runtime_error);
 }
 
 }  // namespace

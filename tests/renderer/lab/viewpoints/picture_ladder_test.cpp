@@ -6,6 +6,7 @@
 
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"
+#include "tests/stopping/cut_states.h"
 
 namespace lull {
 namespace {
@@ -85,11 +86,10 @@ TEST(PictureLadder, GoesOnFromASavedStateWithItsCompanion) {
     EXPECT_EQ(second, whole);
     EXPECT_EQ(after.Save(), uninterrupted.Save());
 
-    std::vector<std::byte> state = before.Save();
+    const std::vector<std::byte> state = before.Save();
     PictureLadder alone({20, 60, 100}, nullptr, &first);
     EXPECT_THROW(alone.Restore(state), std::runtime_error);
-    for (size_t size = 0; size < state.size(); size += 3)
-        EXPECT_THROW(after.Restore(std::span(state).first(size)), std::runtime_error) << size;
+    ExpectRefusesCut(state, 3, [&](auto cut) { after.Restore(cut); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "stopping/base/parallel.h"
 #include "stopping/lab/evaluation/roc.h"
 #include "stopping/rules/learned.h"
+#include "tests/stopping/cut_states.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull {
@@ -79,9 +80,8 @@ TEST(Trainer, RefusesTheStateOfAnotherTraining) {
     TrainingOptions other = SmallOptions();
     other.dropout = 0.3;
     EXPECT_THROW(Trainer(data.samples, other).Restore(state), std::runtime_error);
-    for (size_t size = 0; size < state.size(); size += 997)
-        EXPECT_THROW(Trainer(data.samples, SmallOptions()).Restore(std::span(state).first(size)),
-                     std::runtime_error);
+    ExpectRefusesCut(state, 997,
+                     [&](auto cut) { Trainer(data.samples, SmallOptions()).Restore(cut); });
 }
 
 TEST(Trainer, TellsHowFarItIs) {
