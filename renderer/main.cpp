@@ -74,7 +74,7 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
     return isNear ? *nearest : "";
 }
 
-// Says which command a word may have been meant to be; "" where it is one, or an option.
+// Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());

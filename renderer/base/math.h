@@ -90,7 +90,7 @@ inline void CoordinateSystem(const Vec3f& n, Vec3f* s, Vec3f* t) {
     *t = Vec3f(b, sign + Sqr(n.y()) * a, -n.y());
 }
 
-// Holds an orthonormal frame; "local" has n along +z, as all BSDFs here expect.
+// An orthonormal frame; "local" has n along +z, as all BSDFs here expect.
 struct Frame {
     Vec3f s, t, n;
 

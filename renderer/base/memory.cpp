@@ -49,7 +49,7 @@ constexpr uintptr_t kLargePage = uintptr_t(1) << 21;
 
 uintptr_t RoundedUp(uintptr_t at) { return (at + kLargePage - 1) / kLargePage * kLargePage; }
 
-// Holds a range of addresses that belongs to no file.
+// A range of addresses that belongs to no file.
 struct AnonymousRange {
     uintptr_t begin, end;
     uintptr_t kibibytesInUse;
@@ -75,7 +75,7 @@ std::vector<AnonymousRange> AnonymousRanges() {
     return ranges;
 }
 
-// Says whether nine tenths of a large page's addresses are in memory.
+// Returns whether nine tenths of a large page's addresses are in memory.
 bool IsNearlyAllInUse(uintptr_t at, std::vector<unsigned char>* pages) {
     if (mincore(reinterpret_cast<void*>(at), kLargePage, pages->data()) != 0) return false;
     const auto inUse =

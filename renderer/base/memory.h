@@ -33,7 +33,7 @@ inline void Prefetch(const void* p) {
 // not touch the memory of its host.
 void MoveIntoLargePages();
 
-// Holds zeros, which take memory only where they are written: page by page, or in pages of 2 MB if
+// Zeros, which take memory only where they are written: page by page, or in pages of 2 MB if
 // there are at least that many bytes and the system has such pages.
 class LazyZeros {
   public:

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds the four nodes that a spline reads at a point, and their weights (pbrt 3rd ed., 8.6.1).
+// The four nodes that a spline reads at a point, and their weights (pbrt 3rd ed., 8.6.1).
 // Nodes beyond the ends have weight 0.
 struct SplineWeights {
     int first;

@@ -1,4 +1,4 @@
-// Says what colour a surface has, whatever the light.
+// Computes the colour of a surface, whatever the light.
 #pragma once
 
 #include "renderer/bsdf/bsdf.h"

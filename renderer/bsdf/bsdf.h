@@ -50,7 +50,7 @@ class Bsdf {
     int LobeCount(LobeSet set) const {
         return set == LobeSet::All ? lobeCount : lobeCount - specularCount;
     }
-    // Says whether light from the other side of the surface can be scattered to this one, other
+    // Returns whether light from the other side of the surface can be scattered to this one, other
     // than by specular lobes.
     bool Transmits() const;
     const Lobe& At(int i) const { return lobes[i]; }
@@ -75,7 +75,7 @@ class Bsdf {
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
 
   private:
-    // Says whether world directions are on the same side of the surface, so that lobes reflect.
+    // Returns whether world directions are on the same side of the surface, so that lobes reflect.
     bool Reflects(const Vec3f& wo, const Vec3f& wi) const { return wi.dot(ng) * wo.dot(ng) > 0; }
     const Lobe& Choose(int choice, LobeSet set) const;
     BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const;

@@ -1,4 +1,4 @@
-// Holds the lobes of Disney's principled material (Burley 2012 and 2015) as pbrt-v3 has them. See
+// The lobes of Disney's principled material (Burley 2012 and 2015) as pbrt-v3 has them. See
 // lobes.h for what a lobe is.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds one of the parts that are cosine-sampled.
+// One of the parts that are cosine-sampled.
 struct DisneyDiffuse {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     enum class Part { Base, FakeSubsurface, RetroReflection, Sheen };

@@ -1,4 +1,4 @@
-// Holds tabulated isotropic scattering: splines over both cosines and a Fourier series over the
+// Tabulated isotropic scattering: splines over both cosines and a Fourier series over the
 // azimuth between the directions (Jakob et al. 2014). See lobes.h for what a lobe is.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds f times |cos wi|, between nodes of mu: the cosines of wo and of -wi. Entry (o, i) of a
+// f times |cos wi|, between nodes of mu: the cosines of wo and of -wi. Entry (o, i) of a
 // table is at o * nodes + i.
 struct FourierTable {
     static constexpr int kMaxOrder = 4096;

@@ -22,7 +22,7 @@ inline float FresnelDielectric(float cosI, float eta) {
     return 0.5f * (Sqr(parallel) + Sqr(perpendicular));
 }
 
-// Holds a colour in four lanes, the last one padding: roots and quotients take one instruction
+// A colour in four lanes, the last one padding: roots and quotients take one instruction
 // each.
 using RgbLanes = Eigen::Array4f;
 

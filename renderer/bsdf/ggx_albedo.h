@@ -3,7 +3,7 @@
 
 namespace lull {
 
-// Holds the albedo of MicrofacetReflection with Schlick's reflectance, split by its two ends: the
+// The albedo of MicrofacetReflection with Schlick's reflectance, split by its two ends: the
 // light reflected is f0 * ofF0 + f90 * ofF90.
 struct GgxAlbedo {
     float ofF0, ofF90;

@@ -1,4 +1,4 @@
-// Holds the scattering of a hair (Marschner et al. 2003; d'Eon et al. 2011; Chiang et al. 2016, as
+// The scattering of a hair (Marschner et al. 2003; d'Eon et al. 2011; Chiang et al. 2016, as
 // pbrt-v3 has it). See lobes.h for what a lobe is.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Holds the lobes of glTF's material: a base under a rough dielectric interface, metal, anything in
+// The lobes of glTF's material: a base under a rough dielectric interface, metal, anything in
 // between, and thin sheets. (glTF 2.0, appendix B; KHR_materials_specular, _ior, _transmission and
 // _clearcoat.) See lobes.h for what a lobe is.
 #pragma once
@@ -114,7 +114,7 @@ struct LayeredReflection {
     }
 
   private:
-    // Holds what reaches the base from one direction, and how often the base is to be sampled: by
+    // What reaches the base from one direction, and how often the base is to be sampled: by
     // how much light it and the interface reflect there.
     struct Split {
         float through = 0, diffuseShare = 0;

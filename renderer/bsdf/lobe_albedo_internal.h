@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Say what the estimates below make of a colour: its luminance, or the colour itself.
+// What the estimates below make of a colour: its luminance, or the colour itself.
 struct ToLuminance {
     using Value = float;
     float operator()(const Rgb& c) const { return Luminance(c); }

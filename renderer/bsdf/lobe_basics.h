@@ -1,4 +1,4 @@
-// Holds what every kind of lobe uses: its values and how directions are compared and chosen.
+// What every kind of lobe uses: its values and how directions are compared and chosen.
 #pragma once
 
 #include "renderer/base/sampling.h"

@@ -1,4 +1,4 @@
-// Holds the lobe of cloth whose fibres stand out of it (KHR_materials_sheen). See lobes.h for what
+// The lobe of cloth whose fibres stand out of it (KHR_materials_sheen). See lobes.h for what
 // a lobe is.
 #pragma once
 

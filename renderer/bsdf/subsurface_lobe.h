@@ -1,4 +1,4 @@
-// Holds the lobe by which light leaves a translucent solid.
+// The lobe by which light leaves a translucent solid.
 #pragma once
 
 #include "renderer/bsdf/lobe_basics.h"

@@ -25,7 +25,7 @@ FileLock LockCheckpoint(const std::string& file);
 // the render would replace it.
 void CheckCheckpoint(const CheckpointOptions&);
 
-// Says how a render goes on that has ended early: by which command, if it has a checkpoint.
+// Returns how a render goes on that has ended early: by which command, if it has a checkpoint.
 std::string HowToGoOn(const CheckpointOptions&);
 
 }  // namespace lull

@@ -14,7 +14,7 @@ namespace lull {
 struct ClockOptions {
     std::string time, until;  // as given; both empty: no clock
 
-    // Says it in words, for headers; empty where there is none.
+    // Returns it in words, for headers; empty where there is none.
     std::string Text() const;
 };
 

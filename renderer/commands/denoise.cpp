@@ -41,7 +41,7 @@ Examples:
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
 
-// Says whether a channel is one that the denoised picture does without or has anew.
+// Returns whether a channel is one that the denoised picture does without or has anew.
 bool IsReplaced(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name == "error" ||
            name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");

@@ -98,7 +98,7 @@ std::string FilmText(const FilmSettings& film, const std::string& file) {
     return text + ", image " + DefaultOutput(film.filename, file);
 }
 
-// Says what is used, and what the file asks for if that is something else.
+// Returns what is used, and what the file asks for if that is something else.
 std::string UsedText(const std::string& used, const Entity& asked) {
     if (!asked.loc.file || asked.name == used) return used;
     return fmt::format("{} ({} in the file)", used, asked.name);

@@ -43,7 +43,7 @@ std::string WayOf(const PathStep& step) {
         Numbers(step.direction), density);
 }
 
-// Says why there is no further step.
+// Returns why there is no further step.
 std::string EndOf(const PathLog& log, const Scene& scene) {
     if (log.steps.empty()) return "It meets nothing that shines or scatters.\n";
     const PathStep& last = log.steps.back();

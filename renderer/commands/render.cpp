@@ -79,8 +79,8 @@ void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warni
                                      schedule.smallestSide));
 }
 
-// Says how the film is kept: whoever goes on from a checkpoint may look at the half. Throws Error
-// where the memory cannot hold it.
+// Returns how the film is kept: whoever goes on from a checkpoint may look at the half. Throws
+// Error where the memory cannot hold it.
 FilmOptions CheckedFilm(const PreparedRender& p) {
     const RenderSettings& settings = p.render.settings;
     const FilmOptions film{
@@ -245,7 +245,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     return made;
 }
 
-// Says how the render ended, writes all files, and says how it goes on.
+// Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.render.settings;
     const Talk talk = TalkOf(settings);

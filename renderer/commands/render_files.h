@@ -19,13 +19,13 @@ RenderFiles NameFiles(const std::string& output, const std::string& report);
 // the scene if that is empty or "scene", as of many scenes.
 std::string DefaultOutput(const std::string& filename, const std::string& scene);
 
-// Says whether `output` ends as an image that can be written.
+// Returns whether `output` ends as an image that can be written.
 bool HasImageExtension(const std::string& output);
 
 // Returns all files that may be written or removed, for CheckOutputs().
 std::vector<NamedFile> OutputsOf(const RenderFiles&);
 
-// Holds what there is to write of a render; `histories` have the curves for a page.
+// What there is to write of a render; `histories` have the curves for a page.
 struct FinishedRender {
     PictureOrigin origin;
     const Film& film;

@@ -30,7 +30,7 @@ class RenderJob {
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;
 
-    // Says whether this is the first rank.
+    // Returns whether this is the first rank.
     bool Leads() const;
     // There, throws Error where a result or the checkpoint would replace another or an input, of
     // which those of the scene are known, or could not be written now. Takes the checkpoint for
@@ -73,7 +73,7 @@ class RenderJob {
 // Lets errors and warnings be JSON where all there is to say is; to be called first of all.
 void SetWording(const RenderSettings&, Job* ranks);
 
-// Is RenderJob::MakeSessionOptions(), without a checkpoint; the ranks may be null.
+// RenderJob::MakeSessionOptions() without a checkpoint; the ranks may be null.
 SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, bool adaptive, Job* ranks);
 
 }  // namespace lull

@@ -22,9 +22,9 @@ struct RenderRequest {
 
     // Returns what --stop, --spp and --denoise come to.
     std::string Rule() const;
-    // Says whether the report is a page, with curves.
+    // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
-    // Says whether what a denoiser is shown is collected.
+    // Returns whether what a denoiser is shown is collected.
     bool CollectsFeatures() const { return denoise || denoiseLayers; }
 };
 

@@ -1,4 +1,4 @@
-// Holds what all commands that render by stopping rules have in common.
+// What all commands that render by stopping rules have in common.
 #pragma once
 
 #include "renderer/commands/checkpoint_options.h"
@@ -45,7 +45,7 @@ std::string ModelFolder();
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
 
-// Says from what an image is made; the rule is left to be filled in.
+// Returns from what an image is made; the rule is left to be filled in.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
 // Returns how to say things beside that.

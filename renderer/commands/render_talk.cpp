@@ -14,7 +14,7 @@ namespace lull {
 
 namespace {
 
-// Says which blocks have ended, and how: what a rule was not content with at the cap is not
+// Returns which blocks have ended, and how: what a rule was not content with at the cap is not
 // stopped.
 std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     const RenderProgress& p = result.progress;
@@ -26,7 +26,7 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     return text;
 }
 
-// Says what was saved, unless that is nothing.
+// Returns what was saved, unless that is nothing.
 std::string SavingsOf(const Savings& savings, int cap) {
     constexpr double least = 0.0005;  // is shown as 0.1 %
     if (savings.SampleShare() < least) return "";
@@ -53,7 +53,7 @@ void WarnOfRejected(int64_t rejected, const Talk& talk) {
         talk.Warn(fmt::format("{} samples were not finite or negative: taken as black", rejected));
 }
 
-// Says how much ranks of different speed had to do in the end.
+// Prints how much ranks of different speed had to do in the end.
 void PrintShares(const std::vector<double>& shares) {
     const auto [least, most] = std::ranges::minmax(shares);
     if (most - least < 0.01) return;
@@ -62,7 +62,7 @@ void PrintShares(const std::vector<double>& shares) {
     Say("\n");
 }
 
-// Says which blocks went to the cap, what their rule found there, and which cap would do.
+// Prints which blocks went to the cap, what their rule found there, and which cap would do.
 void PrintCapped(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
@@ -85,7 +85,7 @@ void PrintCapped(const Provenance& provenance, const RenderResult& result) {
         Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
 }
 
-// Says what was missing when the time was up. The noise of blocks is not known within their first
+// Prints what was missing when the time was up. The noise of blocks is not known within their first
 // pass, nor before the next one after a render was resumed.
 void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;

@@ -1,4 +1,4 @@
-// Says how a render ended: in words, or as JSON events.
+// Prints how a render ended: in words, or as JSON events.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ void PrintResult(const RenderSettings&, const Provenance&, const RenderResult&, 
 // Returns what says of a block that it has stopped, as JSON.
 std::function<void(int index, const Block&)> StopEvents(RuleTrend::Kind);
 
-// Says as JSON which files there are and, as the last object, how the render ended.
+// Prints as JSON which files there are and, as the last object, how the render ended.
 void SayEnd(const ResultFiles&, const RenderResult&, int64_t rejected);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Holds what all commands that load a scene have in common.
+// What all commands that load a scene have in common.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -35,7 +35,7 @@ Description LoadDescription(const SceneOptions&, Warnings&);
 // Throws Error if the memory cannot hold such a film.
 void CheckFilmFits(const PixelRect& region, const FilmOptions&);
 
-// Holds a scene that has been read, and its film as the options change it, before it is compiled,
+// A scene that has been read, and its film as the options change it, before it is compiled,
 // which will give the film's warnings.
 struct SceneInput {
     // Throws Error, also if the memory cannot hold such a film.

@@ -14,20 +14,20 @@ void PrepareStreams();
 
 // Writes out what was printed to stdout. Throws Error where it, or anything before, could not be.
 void FinishResults();
-// Says whether something that was printed to stdout is lost.
+// Returns whether something that was printed to stdout is lost.
 bool HasLostResults();
 
 // Prints a message as a line of its own on stderr, after the program's name.
 void PrintTalk(const std::string& message);
 
-// Says on stderr what there is to say beside the results: as text or, for programs, as JSON
+// Messages on stderr, beside the results: as text or, for programs, as JSON
 // objects, one a line, of which each has an "event".
 struct Talk {
     bool isJson = false;
 
     void Note(const std::string& message) const;
     void Warn(const std::string& message) const;
-    // Says a message of whoever has put the program's name or a place before it.
+    // Prints a message of whoever has put the program's name or a place before it.
     void Say(const std::string& event, const std::string& message) const;
 };
 
@@ -35,7 +35,7 @@ struct Talk {
 std::string JsonEvent(const std::string& event, const std::string& text,
                       const std::string& key = "message");
 
-// Is WriteFileAtomically(), for those who are to be given a function of this kind.
+// WriteFileAtomically(), for those who are to be given a function of this kind.
 void WriteBytes(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace lull

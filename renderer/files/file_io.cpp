@@ -38,7 +38,7 @@ struct OutputFile {
     }
 };
 
-// Says what is at the end of the links of `path`: the place to write to, and its status.
+// What is at the end of the links of `path`: the place to write to, and its status.
 struct Target {
     fs::path path;
     fs::file_status status;

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Is a file as a user knows it: `role` says what it is, "--report" or "a file of the scene".
+// A file as a user knows it: `role` says what it is, "--report" or "a file of the scene".
 struct NamedFile {
     std::string role, path;
 };

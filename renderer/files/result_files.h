@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Says what becomes of a file that cannot be written: it goes elsewhere, or is done without.
+// What becomes of a file that cannot be written: it goes elsewhere, or is done without.
 enum class Rescue { Elsewhere, None };
 
 class ResultFiles {

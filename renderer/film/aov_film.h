@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Says which layers are wanted, and how.
+// Which layers are wanted, and how.
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
          material = false, noise = false, alpha = false, cryptomatte = false;
@@ -19,11 +19,11 @@ struct AovSet {
     bool throughSpecular = false;
 
     bool Any() const { return FirstHits() || noise; }
-    // Says whether any layer needs first hits; noise does not.
+    // Returns whether any layer needs first hits; noise does not.
     bool FirstHits() const {
         return albedo || normal || depth || position || object || material || Mattes();
     }
-    // Say whether any layer comes from an AovFilm, and from a MatteFilm.
+    // Return whether any layer comes from an AovFilm, and from a MatteFilm.
     bool Sums() const {
         return albedo || normal || depth || position || object || material || noise;
     }
@@ -33,13 +33,13 @@ struct AovSet {
 
 // Names the layers: "albedo,normal,..." in the order above, without throughSpecular.
 std::string NameOf(const AovSet&);
-// Says the same in words, with throughSpecular, for checkpoints and headers.
+// Returns the same in words, with throughSpecular, for checkpoints and headers.
 std::string TextOf(const AovSet&);
 
 // Reads such names, in any order. Throws Error naming the first unknown one.
 AovSet ParseAovs(const std::vector<std::string>& names);
 
-// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+// The sums of a pixel, added to in the order of the samples as FilmPixel is.
 struct AovPixel {
     std::array<double, 3> albedo = {}, normal = {}, position = {};
     double depth = 0;

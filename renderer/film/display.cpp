@@ -44,7 +44,7 @@ DisplayAddress ParseDisplayAddress(const std::string& text) {
     return address;
 }
 
-// Is what the thread needs; it is the thread's as well, so that a look-up of a name that takes long
+// What the thread needs; it is the thread's as well, so that a look-up of a name that takes long
 // holds up nobody.
 struct Display::State {
     State(const DisplayAddress& address, const std::string& name, const PixelRect& region,

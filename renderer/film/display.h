@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Says where a viewer listens.
+// Where a viewer listens.
 struct DisplayAddress {
     std::string host, port;
 };

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+// The sums of a pixel, added to in the order of the samples as FilmPixel is.
 struct FeaturePixel {
     // Albedo R, G, B, normal X, Y, Z, weighted by the pixel filter as the image is, and one over
     // the depth, which is 0 where nothing is met. Of the samples that are in the half (InHalf()),
@@ -29,7 +29,7 @@ struct FeaturePixel {
     bool operator==(const FeaturePixel&) const = default;
 };
 
-// Holds these pixels of the region that a Film beside it has: 60 bytes a pixel.
+// These pixels of the region that a Film beside it has: 60 bytes a pixel.
 using FeatureFilm = PixelPlane<FeaturePixel>;
 
 }  // namespace lull

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Says whether sample `index` belongs to the half on which noise is estimated: the bits at its
+// Returns whether sample `index` belongs to the half on which noise is estimated: the bits at its
 // odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
 // and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
 inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
@@ -16,7 +16,7 @@ inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) &
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);
 
-// Holds the sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
+// The sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
 // added to the running sums one by one, so that the sums are the same bits however the samples are
 // cut into passes.
 struct FilmPixel {
@@ -40,14 +40,14 @@ struct FilmPixel {
     Rgb HalfMean() const;
 };
 
-// Holds the means of a rectangle of pixels as the stopping criteria read them: row-major RGB
+// The means of a rectangle of pixels as the stopping criteria read them: row-major RGB
 // triples. Reused from pass to pass.
 struct FilmView {
     int width = 0, height = 0;
     std::vector<float> mean, halfMean;
 };
 
-// Says how a region is cut, from its upper left corner, into blocks, and these into tiles. The
+// How a region is cut, from its upper left corner, into blocks, and these into tiles. The
 // pixels of a tile have the same number of samples.
 struct TileGrid {
     int blockSize = 1, tileSize = 1;  // pixels a side, > 0

@@ -16,7 +16,7 @@ struct Layers {
     MatteFilm* mattes = nullptr;
 
     explicit operator bool() const { return aovs || features || mattes; }
-    // Says whether they are of this region.
+    // Returns whether they are of this region.
     bool AreOf(const PixelRect& region) const {
         return (!aovs || aovs->Region() == region) && (!features || features->Region() == region) &&
                (!mattes || mattes->alpha.Region() == region);
@@ -27,7 +27,7 @@ struct Layers {
         if (features) features->At(pixel).Add(hit, radiance, InHalf(index));
         if (mattes) mattes->Add(pixel, hit, radiance);
     }
-    // Says whether any of them needs the samples' first hits; noise does not.
+    // Returns whether any of them needs the samples' first hits; noise does not.
     bool NeedFirstHits() const {
         return features || mattes || (aovs && aovs->Wanted().FirstHits());
     }

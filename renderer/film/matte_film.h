@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Holds the sums of a pixel, added to in the order of the samples as FilmPixel is.
+// The sums of a pixel, added to in the order of the samples as FilmPixel is.
 struct AlphaPixel {
     std::array<double, 3> background = {};  // the radiance of samples that met nothing
     double weight = 0, covered = 0;         // filter weights of all samples, of those that did
@@ -28,7 +28,7 @@ struct AlphaPixel {
     bool operator==(const AlphaPixel&) const = default;
 };
 
-// Holds which share of a pixel one object or material has: its number (FirstHit), 0 for none, and
+// Which share of a pixel one object or material has: its number (FirstHit), 0 for none, and
 // the weights of its samples.
 struct MatteShare {
     uint32_t number = 0;
@@ -36,7 +36,7 @@ struct MatteShare {
     bool operator==(const MatteShare&) const = default;
 };
 
-// Holds the shares of the first few objects and materials that a pixel's samples met. Where there
+// The shares of the first few objects and materials that a pixel's samples met. Where there
 // are more, those that came late are left out.
 inline constexpr size_t kMatteShares = 8;
 struct CryptoPixel {
@@ -60,7 +60,7 @@ struct CryptoPixel {
     }
 };
 
-// Holds these of a region.
+// Alpha and mattes of a region.
 struct MatteFilm {
     PixelPlane<AlphaPixel> alpha;
     std::optional<PixelPlane<CryptoPixel>> crypto;  // where it is wanted

@@ -12,7 +12,7 @@ constexpr size_t SizeOf(TexelType type) {
     return type == TexelType::Byte ? 1 : type == TexelType::Half ? 2 : 4;
 }
 
-// Says what Read() returns: 8-bit, half and float texels as they are in the file, everything else
+// What Read() returns: 8-bit, half and float texels as they are in the file, everything else
 // as float (16-bit integers: 0 to 1).
 struct ImageShape {
     int width = 0, height = 0;  // as the file says, however absurd
@@ -20,7 +20,7 @@ struct ImageShape {
     TexelType type = TexelType::Byte;
 };
 
-// Holds an image file of which only the header has been read.
+// An image file of which only the header has been read.
 class ImageFile {
   public:
     virtual ~ImageFile() = default;

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Says what a path did at one vertex, and what came of it.
+// What a path did at one vertex, and what came of it.
 struct GuideVertex {
     Vec3f p, w;                    // where, and the unit direction in which it went on
     uint32_t leaf;                 // Guide::Find(p)
@@ -15,7 +15,7 @@ struct GuideVertex {
     float found;
 };
 
-// Holds sums for a guide with the same trees. They are integers, which come to the same in any
+// Sums for a guide with the same trees. They are integers, which come to the same in any
 // order, so that any number of threads may add at the same time.
 class GuideRecord {
   public:

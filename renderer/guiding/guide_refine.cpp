@@ -8,7 +8,7 @@ constexpr int kMaxQuadDepth = 10;
 
 using Masses = std::array<double, 4>;
 
-// Holds a quadtree and the light in its quadrants.
+// A quadtree and the light in its quadrants.
 struct Quadtree {
     std::vector<QuadNode> nodes;
     std::vector<Masses> light;  // 0 where a quadrant has children

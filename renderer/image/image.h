@@ -1,4 +1,4 @@
-// Holds images as their files store them.
+// Images as their files store them.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace lull {
 
-// Holds a 16-bit IEEE 754 float. Eigen::half is not used, since Eigen 3.4 converts it in software
+// A 16-bit IEEE 754 float. Eigen::half is not used, since Eigen 3.4 converts it in software
 // when compiled by GCC.
 struct Half {
     uint16_t bits = 0;
@@ -30,7 +30,7 @@ struct Half {
     bool operator==(const Half&) const = default;
 };
 
-// Holds an image in its native form: rows from the top, channels interleaved. 8-bit texels stand
+// An image in its native form: rows from the top, channels interleaved. 8-bit texels stand
 // for 0 to 1 in whatever encoding the file has; half and float are as read.
 struct Image {
     int width = 0, height = 0;

@@ -43,7 +43,7 @@ void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape
                 "use a smaller version of it");
 }
 
-// Holds a file that has been found: its contents where the program reads its format itself.
+// A file that has been found: its contents where the program reads its format itself.
 struct FoundFile {
     std::string path;
     size_t size = 0;

@@ -28,7 +28,7 @@ Image ReadImage(const std::string& name, const std::string& type, std::span<cons
 // The largest finite number of 16 bits.
 inline constexpr float kLargestHalf = 65504;
 
-// Holds one channel of an EXR, row-major over the data window.
+// One channel of an EXR, row-major over the data window.
 struct ExrChannel {
     std::string name;
     std::vector<float> values;
@@ -38,7 +38,7 @@ struct ExrChannel {
 // A matrix is in pbrt's convention: applied to column vectors, stored row by row.
 using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
 
-// Holds the contents of an EXR file.
+// The contents of an EXR file.
 struct ExrImage {
     int width = 0, height = 0;     // of the data window
     Vec2i origin = Vec2i::Zero();  // of the data window, within the display window

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Says how a PNG shows linear RGB.
+// How a PNG shows linear RGB.
 struct PngFormat {
     int bits = 8;  // a component, or 16
     ToneMap toneMap = ToneMap::None;

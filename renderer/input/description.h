@@ -36,7 +36,7 @@ enum class ParameterType {
     Texture
 };
 
-// Holds one "type name" [values]. Points, vectors, normals and spectra lie flat in a vector of
+// One "type name" [values]. Points, vectors, normals and spectra lie flat in a vector of
 // float; spectra of every kind (rgb, xyz, blackbody, spectrum) are linear RGB already.
 struct Parameter {
     ParameterType type;
@@ -48,7 +48,7 @@ struct Parameter {
     mutable bool lookedUp = false;
 };
 
-// Holds the parameters of one directive. As in pbrt-v3, a look-up finds a parameter by name *and*
+// The parameters of one directive. As in pbrt-v3, a look-up finds a parameter by name *and*
 // type, and a single-value look-up finds it only if it has exactly one value. Every look-up marks
 // the parameter as used; ReportUnused warns of the rest.
 class Parameters {
@@ -80,7 +80,7 @@ class Parameters {
     std::vector<Parameter> parameters;
 };
 
-// Holds one directive: its kind's name ("perspective", "plymesh"), parameters and place.
+// One directive: its kind's name ("perspective", "plymesh"), parameters and place.
 struct Entity {
     std::string name;
     Parameters parameters;
@@ -121,7 +121,7 @@ struct ShapeEntity : Entity {
     std::string label;  // its name in the file, for people; glTF: the node, else the mesh
 };
 
-// Holds the shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the
+// The shapes between ObjectBegin and ObjectEnd. As in pbrt-v3 their transforms include the
 // one in force at ObjectBegin, and an instance's transform is applied on top.
 struct ObjectEntity {
     std::string name;
@@ -137,7 +137,7 @@ struct InstanceEntity {
     std::string label = {};  // as of shapes; empty: its object's name
 };
 
-// Holds a transform at both of Description::transformTimes, start and end.
+// A transform at both of Description::transformTimes, start and end.
 struct TransformPair {
     std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
 
@@ -145,11 +145,11 @@ struct TransformPair {
     bool IsAnimated() const { return at[0].cast<float>() != at[1].cast<float>(); }
 };
 
-// Holds the transforms of a moving instance, outermost first: a moving shape within a placed object
+// The transforms of a moving instance, outermost first: a moving shape within a placed object
 // has one of the object and one in the object.
 using Motion = std::vector<TransformPair>;
 
-// Holds an image embedded in the scene's file, still encoded in its own format.
+// An image embedded in the scene's file, still encoded in its own format.
 struct EmbeddedImage {
     std::string name;  // for messages, unique in the scene
     std::string type;  // the extension that a file of this format would have, without the dot
@@ -182,7 +182,7 @@ struct Description {
     std::vector<std::string> sources;  // the files that this was read from
 };
 
-// Says whether the integrator of that name shows participating media: pbrt-v3's path does not.
+// Returns whether the integrator of that name shows participating media: pbrt-v3's path does not.
 bool IntegratorSeesMedia(const std::string& name);
 
 // Returns the files that the scene consists of: those that the description was read from, and those

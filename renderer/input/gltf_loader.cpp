@@ -23,7 +23,7 @@ namespace {
 // Blender's: enough for glass behind glass; roulette ends dim paths long before.
 constexpr int kMaxDepth = 12;
 
-// Holds a mesh in one of its poses; those that are equal have the same shapes.
+// A mesh in one of its poses; those that are equal have the same shapes.
 struct PosedMesh {
     int mesh, skin = -1;          // -1: none
     std::vector<double> weights;  // of its morph targets; empty: none
@@ -33,14 +33,14 @@ struct PosedMesh {
     }
 };
 
-// Holds what a mesh becomes: shapes in its own space, or in the world if it has a skin, and, where
+// What a mesh becomes: shapes in its own space, or in the world if it has a skin, and, where
 // that is wanted, points on their outline.
 struct MeshShapes {
     std::vector<ShapeEntity> shapes;
     std::vector<Vec3f> outline;
 };
 
-// Holds one place where a mesh stands.
+// One place where a mesh stands.
 struct Placement {
     int node;
     Mat4d worldFromMesh;

@@ -37,7 +37,7 @@ struct GltfOptions {
 // warnings.
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings);
 
-// Says whether a file is a glTF file, by its extension.
+// Returns whether a file is a glTF file, by its extension.
 bool IsGltf(const std::string& file);
 
 }  // namespace lull

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMostTriangles = 50e6;
 
-// Holds a mesh as half-edges. Half-edge 3f + j of face f runs from its vertex j to vertex j + 1;
+// A mesh as half-edges. Half-edge 3f + j of face f runs from its vertex j to vertex j + 1;
 // its twin runs back along the same edge in the neighbouring face.
 struct HalfEdgeMesh {
     std::vector<Vec3f> p;

@@ -1,4 +1,4 @@
-// Holds a triangle mesh as a file or a subdivision gives it.
+// A triangle mesh as a file or a subdivision gives it.
 #pragma once
 
 #include <array>

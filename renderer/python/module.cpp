@@ -45,7 +45,7 @@ Floats ToFloats(const py::array& array, const std::string& name, int channels, p
     return Floats(wanted);
 }
 
-// Holds the arrays that a lull_halves points to.
+// The arrays that a lull_halves points to.
 class Halves {
   public:
     Halves(const py::array& a, const py::array& b, const char* name, int channels,

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what is said of a block after a pass.
+// What is said of a block after a pass.
 struct BlockCheck {
     BlockAnswer answer;
     Decision decision;                     // of the criterion, which may not have checked the block

@@ -14,7 +14,7 @@ namespace lull {
 void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
                      const Film&, const Layers& = {}, std::span<const std::byte> guide = {});
 
-// Says what of a render may differ from what wrote its checkpoint: nothing, or when blocks stop,
+// What of a render may differ from what wrote its checkpoint: nothing, or when blocks stop,
 // which is the rule, with its model, and the cap.
 enum class MayDiffer { Nothing, Stops };
 

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Says what is different for one of several ranks. All are called from tasks; empty: as for a
+// What is different for one of several ranks. All are called from tasks; empty: as for a
 // process that is alone.
 struct RankHooks {
     std::function<void(int block)> onPassEnd;                      // instead of the decision
@@ -44,7 +44,7 @@ class Executor {
         return peerInterrupted || (options.isCancelled && options.isCancelled());
     }
 
-    // Says whether it is time for a pause, to write a checkpoint or to show a preview.
+    // Returns whether it is time for a pause, to write a checkpoint or to show a preview.
     bool IsPauseDue() const;
     // With no task at work: write the state, show how far it is, if it is time; and return the
     // result.
@@ -71,7 +71,7 @@ class Executor {
     const RankHooks hooks;
 };
 
-// Says whether the state has the blocks that the schedule will make of the region.
+// Returns whether the state has the blocks that the schedule will make of the region.
 bool Fits(const RenderState&, const PixelRect& region, const ScheduleOptions&);
 
 }  // namespace lull

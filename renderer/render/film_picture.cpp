@@ -17,7 +17,7 @@ float VarianceOfMean(double squares, double mean, double count) {
     return float(std::min(variance, double(std::numeric_limits<float>::max())));
 }
 
-// Says how sums over both halves of a pixel's samples become means.
+// How sums over both halves of a pixel's samples become means.
 struct Split {
     bool isSplit;  // otherwise there are too few samples, and both have the mean of all
     double inA, inB;

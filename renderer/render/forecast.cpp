@@ -64,7 +64,7 @@ double UsualSlope(std::span<const StopTrend> trends, double certain) {
 // Returns 1/N, and 0 where there is no picture at N spp that noise is compared with.
 double InverseOf(double reference) { return reference > 0 ? 1.0 / reference : 0; }
 
-// Says at which spp a block stops, without regard to the cap.
+// At which spp a block stops, without regard to the cap.
 struct Stop {
     double spp = 0;
     bool isLeast = true;  // more than that is not to be told

@@ -38,7 +38,7 @@ class StopTrend {
     double HighestLevel() const { return highest; }  // so far
 
     const RuleTrend& Rule() const { return rule; }
-    // Says whether a level is of odds, which fall as fast as a network likes.
+    // Returns whether a level is of odds, which fall as fast as a network likes.
     bool IsOfOdds() const { return rule.kind == RuleTrend::Probability && rule.undecided == 0; }
 
     // Converts spp to that over which levels are straight lines, and back: -log(1/spp - 1/N) for a

@@ -34,7 +34,7 @@ struct EnumNames<GuideMode> {
         {GuideMode::Off, "off"}, {GuideMode::Auto, "auto"}, {GuideMode::On, "on"}};
 };
 
-// Says what was learned and decided, for reports.
+// What was learned and decided, for reports.
 struct GuideFigures {
     bool isUsed = false;
     std::string why;             // it is used, or not
@@ -60,7 +60,7 @@ struct LearningOptions {
     bool isShort = false;
 };
 
-// Holds all that is needed to go on learning, to the same bits.
+// All that is needed to go on learning, to the same bits.
 struct Learning {
     int round = 0;        // 0: nothing was recorded yet
     int decided = 0;      // of auto: the round after which it was known that guides pay; 0: none
@@ -77,10 +77,10 @@ struct Learning {
     bool IsDone() const { return end == noRoundEnd; }
 };
 
-// Says whether paths of the scene can be guided; if not, why.
+// Returns whether paths of the scene can be guided; if not, why.
 std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
 
-// Says what came of learning, in a line.
+// Returns what came of learning, in a line.
 std::string TextOf(const GuideFigures&, GuideMode);
 
 // Learns in the course of a render (RenderOptions::learner), and says how its paths are traced.

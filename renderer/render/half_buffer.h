@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Says whether a rule looks at the half after any of the passes of a block.
+// Returns whether a rule looks at the half after any of the passes of a block.
 bool LooksAtHalf(const Rule&, const ScheduleOptions&);
 
 }  // namespace lull

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Says how a block goes on after a pass.
+// How a block goes on after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = unknownNoise;
@@ -36,9 +36,9 @@ class LiveSchedule {
     void CallTime();
     bool HasClock() const { return hasClock; }
     bool TimeCalled() const { return timeCalled; }
-    // Says whether no tile will be ready any more.
+    // Returns whether no tile will be ready any more.
     bool IsOver();
-    // Says whether the round is over; begins the next, with no task at work.
+    // Returns whether the round is over; begins the next, with no task at work.
     bool IsRoundOver();
     void BeginRound(int end);
 

@@ -23,7 +23,7 @@ struct TimeLeft {
     bool IsBound() const { return end == End::Cap || end == End::Limit; }
 };
 
-// Says how long it takes from here; nothing where nobody knows.
+// Returns how long it takes from here; nothing where nobody knows.
 std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool adaptive) {
     using End = TimeLeft::End;
     std::optional<TimeLeft> left;

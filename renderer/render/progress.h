@@ -41,7 +41,7 @@ class RateMeter {
 // Returns the share of all samples, in [0, 1], that have been taken, so far as it can be predicted.
 double ShareDone(const RenderProgress&);
 
-// Is what reports of progress say. If blocks stop by themselves (`adaptive`) the time left is a
+// What reports of progress say. If blocks stop by themselves (`adaptive`) the time left is a
 // prediction or, while there is none, an upper bound, which the text says.
 struct ProgressState {
     RenderProgress progress;

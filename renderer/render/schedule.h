@@ -39,7 +39,7 @@ struct ScheduleOptions {
 // the end of the round, or the cap. With a clock the first pass is done in steps too, in case that
 // there is no time for all of it.
 int PassEndAfter(int spp, const ScheduleOptions&);
-// Says whether a pass, or the first as a whole, ends at `spp`.
+// Returns whether a pass, or the first as a whole, ends at `spp`.
 bool IsPassEnd(int spp, const ScheduleOptions&);
 
 // Returns how a film is cut by the schedule.
@@ -59,11 +59,11 @@ struct Block {
     bool stoppedByVote = false;   // stopped by its own vote or its leader's, not by the cap
     double noise = unknownNoise;  // visible at the end of the last pass, as Decide() was told
 
-    // Says whether it ended at the cap, with no rule that had stopped it before.
+    // Returns whether it ended at the cap, with no rule that had stopped it before.
     bool IsAtCap() const { return stopped && !stoppedByVote; }
 };
 
-// Says which tiles of each block are one's own, where several machines share the work: `deal` names
+// Which tiles of each block are one's own, where several machines share the work: `deal` names
 // the ranks that get one after the other, over and over, beginning at another place in each block.
 struct TileShare {
     int rank = 0;
@@ -79,7 +79,7 @@ struct TileShare {
 std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
                                const TileShare& = {});
 
-// Says where a block is when a schedule begins.
+// Where a block is when a schedule begins.
 struct BlockStart {
     int spp = 0;  // samples per pixel of all finished passes
     bool stopped = false;
@@ -90,7 +90,7 @@ struct BlockStart {
     int passEnd = 0;
 };
 
-// Holds a piece of a block's pass: `count` samples from `first` on for each of the pixels.
+// A piece of a block's pass: `count` samples from `first` on for each of the pixels.
 struct Tile {
     int block;
     PixelRect pixels;
@@ -124,9 +124,9 @@ class Schedule {
     int DecidedSpp(int block) const { return progress[block].decidedSpp; }
     // Returns the samples per pixel at the end of the pass under way.
     int PassEnd(int block) const { return progress[block].target; }
-    // Says whether the block's pass has to be finished though time is called.
+    // Returns whether the block's pass has to be finished though time is called.
     bool MustEnd(int block) const { return progress[block].mustEnd; }
-    // Says whether a pass is left that has to be finished though time is called.
+    // Returns whether a pass is left that has to be finished though time is called.
     bool MustGoOn() const;
 
     // Returns how many tiles Next() would give out before the next Decide().
@@ -136,7 +136,7 @@ class Schedule {
     // Notes that a tile has been rendered. Returns true if that was the last of its block's pass:
     // the block then has its new spp, and waits for Decide().
     bool Finish(const Tile&);
-    // Says whether `block`, whose pass has just been finished, stops here, which is ignored for
+    // Tells whether `block`, whose pass has just been finished, stops here, which is ignored for
     // blocks that do not vote, and how much noise it shows. Makes the tiles of the next pass ready
     // (its own and those of followers).
     void Decide(int block, bool stop, double noise = unknownNoise);
@@ -145,7 +145,7 @@ class Schedule {
     // schedule was.
     void CallTime();
 
-    // Says whether all blocks that have not stopped have come to the end of the round.
+    // Returns whether all blocks that have not stopped have come to the end of the round.
     bool IsRoundOver() const;
     // Begins a round: makes the passes of these blocks ready.
     void BeginRound(int end);

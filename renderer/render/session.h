@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Says where a render keeps what it takes to go on after an interruption.
+// Where a render keeps what it takes to go on after an interruption.
 struct CheckpointOptions {
     std::string file;        // empty: none
     double interval = 60;    // seconds
@@ -61,7 +61,7 @@ class Session {
     // Renders, once. Of several ranks, the first has the image. Throws as Render() does.
     RenderResult Run(const RenderFunction& render = Render);
 
-    // Says whether this is the first or only rank, which has to do with files.
+    // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& TheFilm() { return film; }
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none

@@ -28,11 +28,11 @@ class TaskSet {
     void Enqueue(tbb::task_arena*, std::function<void()> work);
     // Waits until there is no task any more.
     void Wait();
-    // Says whether there is none now.
+    // Returns whether there is none now.
     bool IsIdle() const { return open == 0; }
 
   private:
-    // Is what all tasks of tiles do.
+    // The work of all tasks of tiles.
     struct TileTask {
         TaskSet* set;
         TaskOrder order = {};

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds the pixels of blocks whose pass is under way. A pass is undone as a whole, so that all
+// The pixels of blocks whose pass is under way. A pass is undone as a whole, so that all
 // pixels of a block have the same samples.
 class PassUndo {
   public:

@@ -10,20 +10,20 @@
 
 namespace lull {
 
-// Says where a rule stopped a block, and at what cost, in seconds of processors.
+// Where a rule stopped a block, and at what cost, in seconds of processors.
 struct RuleStop {
     int spp = 0;             // 0: it has not
     double seconds = 0;      // that the samples took until then; 0 if it has not stopped
     double ruleSeconds = 0;  // spent on the rule so far, and on what it was shown
 };
 
-// Holds the pixels of a block, row by row.
+// The pixels of a block, row by row.
 struct Snapshot {
     std::vector<float> mean;   // linear, R, G, B a pixel
     std::vector<float> noise;  // of the lightness (LightnessNoise::noise); empty unless asked for
 };
 
-// Holds numbers by spp, about ten to each doubling: the mean SVD-entropy of 100 sub-blocks, and the
+// Numbers by spp, about ten to each doubling: the mean SVD-entropy of 100 sub-blocks, and the
 // noise in lightness that is visible (VisibleNoise()).
 struct BlockCurves {
     std::vector<int> spp;

@@ -17,7 +17,7 @@ std::string Utf8(const std::string& text) {
     return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-// Holds the ids of the names of all numbers that occur.
+// The ids of the names of all numbers that occur.
 using Ids = std::map<uint32_t, uint32_t>;
 
 // Returns the shares of a pixel by ids, the largest first.

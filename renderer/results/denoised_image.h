@@ -20,7 +20,7 @@ struct DenoisedImage {
 // have had.
 DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&);
 
-// Says how large the visible errors of blocks probably are at most.
+// Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);
 
 // What the header of an EXR says of R, G, B.

@@ -7,13 +7,13 @@
 
 namespace lull {
 
-// Holds what an EXR is given beside its image.
+// What an EXR is given beside its image.
 struct ExtraLayers {
     std::vector<ExrChannel> channels;
     std::map<std::string, ExrAttribute> attributes;
 };
 
-// Holds what a render has collected besides its image; null: nothing.
+// What a render has collected besides its image; null: nothing.
 struct CollectedLayers {
     const AovSet& wanted;
     const AovFilm* aovs;

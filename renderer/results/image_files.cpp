@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFilmic = "filmic (Hable 2010)";
 
-// Says whether a channel is a colour or a direction, to which 11 bits do no harm.
+// Returns whether a channel is a colour or a direction, to which 11 bits do no harm.
 bool MayBeHalf(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
            name.starts_with("N.") || name.starts_with("noisy.");

@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Says how pictures are stored.
+// How pictures are stored.
 struct PictureFormat {
     ToneMap toneMap = ToneMap::None;  // of the PNG
     int pngBits = 8;
@@ -25,7 +25,7 @@ struct PictureFiles {
     std::string exr, png;
 };
 
-// Says where a picture comes from.
+// Where a picture comes from.
 struct PictureOrigin {
     const Scene& scene;
     const Provenance& provenance;

@@ -15,7 +15,7 @@ const char* EndOf(const Block& block, bool timeUp) {
     return block.stoppedByVote ? "stopped" : "cap";
 }
 
-// Says between which spp people would have stopped to see noise; null: more than is known.
+// Returns between which spp people would have stopped to see noise; null: more than is known.
 Json RangeJson(const Block& block, const std::vector<double>& logRatios) {
     const HumanRange range = RangeOfPeople(block.spp, block.stoppedByVote, logRatios);
     return {{"from", range.low}, {"to", range.high ? Json(*range.high) : Json(nullptr)}};

@@ -5,7 +5,7 @@
 namespace lull {
 namespace {
 
-// Says where an entity is, for those without a name.
+// Returns where an entity is, for those without a name.
 std::string Place(const FileLoc& loc) {
     std::string prefix = loc.Prefix();
     if (prefix.ends_with(": ")) prefix.resize(prefix.size() - 2);

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds a block that has not stopped.
+// A block that has not stopped.
 struct NoisyBlock {
     int block;             // its index in the list of all
     double noise;          // visible, in lightness of 0 to 100
@@ -20,7 +20,7 @@ struct NoisyBlock {
 // `lnoise` if there are none. For results of a render with a clock.
 std::vector<NoisyBlock> FindShortfall(const Provenance&, const RenderResult&);
 
-// Holds a block that its rule has not stopped before the cap.
+// A block that its rule has not stopped before the cap.
 struct CappedBlock {
     int block;                // its index in the list of all
     double value, threshold;  // what the rule compared last, and with what

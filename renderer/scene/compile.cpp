@@ -43,7 +43,7 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
 }
 
-// Says whether a material is none, so that shadow rays of volpath pass through its surfaces.
+// Returns whether a material is none, so that shadow rays of volpath pass through its surfaces.
 bool HasInterfaces(const Description& description) {
     return std::any_of(description.materials.begin(), description.materials.end(),
                        [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
@@ -93,7 +93,7 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
 
     scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
 
-    // Say what would otherwise be found out by a black picture.
+    // A black picture would be the first sign of it.
     if (scene->lights.Count() == 0)
         warnings.Add(description.integrator.loc,
                      "the scene has no lights: the image will be black");

@@ -11,14 +11,14 @@ namespace lull {
 
 enum class Wrap : uint8_t { Repeat, Black, Clamp, Mirror };
 
-// Holds the four texels around a point and their weights. The indices are always inside the
+// The four texels around a point and their weights. The indices are always inside the
 // image, whatever the point; a texel outside a black-wrapped image has weight 0.
 struct Footprint {
     int x0, x1, y0, y1;
     float w00, w10, w01, w11;  // of (x0, y0), (x1, y0), (x0, y1), (x1, y1)
 };
 
-// Holds the two texels around a coordinate, and their weights.
+// The two texels around a coordinate, and their weights.
 struct Footprint1D {
     int i0, i1;
     float w0, w1;

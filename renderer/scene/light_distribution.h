@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// Holds the probabilities of choosing each light: as running sums, the last of which is 1, or as
+// The probabilities of choosing each light: as running sums, the last of which is 1, or as
 // those of a hierarchy for a receiver.
 class LightChoice {
   public:

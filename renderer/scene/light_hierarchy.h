@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds what decides which lights reach a point, of a surface or a medium.
+// What decides which lights reach a point, of a surface or a medium.
 struct Receiver {
     Vec3f p = Vec3f::Zero();
     // Geometric, unit, on the visible side; zero if light from anywhere counts.
@@ -17,7 +17,7 @@ struct Receiver {
     bool isTwoSided = true;  // light from behind counts as well: the surface transmits
 };
 
-// Is a binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At
+// A binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At
 // each node one of the children is chosen by the most that it could contribute, given its box, the
 // cone of its normals and its power. A light that the bounds exclude has probability 0: it
 // contributes nothing.
@@ -41,7 +41,7 @@ class LightHierarchy {
     }
 
   private:
-    // Holds cosines and the axis as multiples of 1 / kUnit, rounded so that the bounds hold.
+    // Cosines and the axis as multiples of 1 / kUnit, rounded so that the bounds hold.
     static constexpr float kUnit = 32767;
     static constexpr uint32_t kNone = ~0u, kUnbounded = ~1u;  // instead of a leaf
 

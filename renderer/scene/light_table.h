@@ -27,10 +27,10 @@ class LightTable {
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
-    // Says whether lights are chosen by a hierarchy.
+    // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
-    // Says whether a ray can hit any light at all.
+    // Returns whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
 
     // Samples light i as seen from `from`. Returns nothing if it gives no light there.

@@ -40,7 +40,7 @@ struct MediumTable {
         return onNormalSide ? sides.outside : sides.inside;
     }
 
-    // Says in which channels nothing gets through the medium if it is infinite.
+    // Returns in which channels nothing gets through the medium if it is infinite.
     Eigen::Array<bool, 3, 1> Swallows(int medium) const {
         const auto* m =
             medium == kVacuum ? nullptr : std::get_if<HomogeneousMedium>(&media[medium]);

@@ -1,4 +1,4 @@
-// Holds everything that a ray can hit, ready to be rendered; immutable once compiled.
+// Everything that a ray can hit, ready to be rendered; immutable once compiled.
 #pragma once
 
 #include <memory>

@@ -10,11 +10,11 @@
 
 namespace lull {
 
-// Says how images are filtered: bilinearly on the finest level, which is all that thousands of
+// How images are filtered: bilinearly on the finest level, which is all that thousands of
 // samples need, or as in pbrt-v3, from smaller copies where camera rays hit.
 enum class TextureFiltering { Bilinear, PbrtV3 };
 
-// Holds what a texture may depend on. As in pbrt-v3, noise leaves out octaves finer than the
+// What a texture may depend on. As in pbrt-v3, noise leaves out octaves finer than the
 // distance between samples, which is 0, for full detail, if it is not known.
 struct TextureContext {
     Vec3f p;  // world
@@ -64,7 +64,7 @@ class TextureTable {
         return t.IsConstant() ? t.constant : EvaluateSpectrum(t.index, c);
     }
 
-    // Say what a texture reads beyond p, in terms of kNeedsUv and kNeedsFootprint.
+    // Return what a texture reads beyond p, in terms of kNeedsUv and kNeedsFootprint.
     SurfaceNeeds Needs(const FloatTexture&) const;
     SurfaceNeeds Needs(const SpectrumTexture&) const;
 

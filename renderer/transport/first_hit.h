@@ -1,4 +1,4 @@
-// Says what a path has met first, for layers beside the image.
+// The first hit of a path, for layers beside the image.
 #pragma once
 
 #include "renderer/base/math.h"

@@ -15,7 +15,7 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
 
 // Stands where nobody asks, and in a recorder for what it does not need.
 struct NoRecorder {
-    // Says whether a path at its greatest depth has to go on for the recorder.
+    // Whether a path at its greatest depth has to go on for the recorder.
     static constexpr bool Wanted() { return false; }
     // The path's ray, of unit direction, ends: it leaves the scene, is at a surface of which the
     // BSDF is not known yet, or is scattered by a medium at p, so far away. The path has found what

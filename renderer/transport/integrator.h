@@ -15,7 +15,7 @@ class GuideRecord;
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
 
-// Says how paths are traced. What it points to must outlive it.
+// How paths are traced. What it points to must outlive it.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
     // Lets a guide choose directions too, by Estimator::Combined. The mean is the same. In media,

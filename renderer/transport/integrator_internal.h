@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds the camera's ray, and what came of the dimensions before those of its path.
+// The camera's ray, and what came of the dimensions before those of its path.
 struct SampleStart {
     FilterSample filter;
     CameraSample camera;

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what happens where a path's ray ends.
+// What happens where a path's ray ends.
 struct PathStep {
     enum class Kind { Surface, Medium, Sky };
 

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds what a ray finds that looks for a light.
+// What a ray finds that looks for a light.
 struct Sighting {
     Hit found;                // the light's surface, if it has one
     SurfaceInteraction at;    // there
@@ -36,12 +36,12 @@ struct NoMedia {
         return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
     }
 
-    // Says whether a ray in direction wi leaves the scene.
+    // Returns whether a ray in direction wi leaves the scene.
     static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
                             Sighting*) {
         return !context.scene.accelerator.Occluded(v.hit.SpawnRay(wi), context.camera.time);
     }
-    // Says whether it meets area light `index`.
+    // Returns whether it meets area light `index`.
     static bool MeetsLight(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
                            int index, Sighting* sighting) {
         const Ray ray = v.hit.SpawnRay(wi);
@@ -53,7 +53,7 @@ struct NoMedia {
         return true;
     }
 
-    // Says whether paths at their last ray, too, look for light behind such a surface.
+    // Whether paths at their last ray, too, look for light behind such a surface.
     static constexpr bool LooksBehind(SurfaceNeeds) { return false; }
     // Carries the ray on behind an interface; returns false where the path ends. Lights behind it
     // are seen only by rays for which emission counts in full.
@@ -85,7 +85,7 @@ class Media {
     }
     float PhaseParameter() const { return table->PhaseParameter(medium); }
 
-    // Says how a vertex sees a sample of a light.
+    // How a vertex sees a sample of a light.
     struct Sight {
         Rgb share = Rgb::Zero();  // of the light that gets there, an estimate
         // The channels in which rays that look for the light end in a medium without an end.

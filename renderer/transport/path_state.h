@@ -1,4 +1,4 @@
-// Holds a path between two vertices, and takes it from one to the next.
+// A path between two vertices, and its way from one to the next.
 #pragma once
 
 #include "renderer/base/sampling.h"
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what stays the same all along a path, and, in `media`, what lies about its next ray: a
+// What stays the same all along a path, and, in `media`, what lies about its next ray: a
 // policy (path_media.h).
 template <typename Media>
 struct PathContext {

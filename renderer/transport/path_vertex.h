@@ -38,7 +38,7 @@ struct SurfaceVertex {
         const float eta2 = Sqr(bsdf.Eta());
         return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
     }
-    // Says whether both leave the surface on the same side.
+    // Returns whether both leave the surface on the same side.
     bool IsSameSide(const Vec3f& a, const Vec3f& b) const {
         return (a.dot(hit.n) < 0) == (b.dot(hit.n) < 0);
     }

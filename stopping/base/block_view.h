@@ -21,7 +21,7 @@ struct BlockView {
     double seconds = 0, viewSeconds = 0;
 };
 
-// Says which spans of a BlockView are read; the others may be left empty. Measured: both, and what
+// Which spans of a BlockView are read; the others may be left empty. Measured: both, and what
 // the program itself measures (RuleContext::measures in rules/criterion.h), which has to have all
 // that it keeps of the block's samples. Each needs what those before it do.
 enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };

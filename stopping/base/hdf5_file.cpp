@@ -73,7 +73,7 @@ size_t Count(hid_t space) {
     return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
 }
 
-// Says how the library names what C++ calls T. (Its names are variables, set when it starts.)
+// How the library names what C++ calls T. (Its names are variables, set when it starts.)
 template <typename T>
 struct ElementType;
 template <>

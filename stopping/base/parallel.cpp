@@ -11,7 +11,7 @@ namespace lull {
 
 namespace {
 
-// Holds the order, so that the first thing that a task reads is this.
+// The order, so that the first thing that a task reads is this.
 struct OrderedBody {
     const std::function<void(int)>& body;
     TaskOrder order = {};

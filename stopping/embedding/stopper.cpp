@@ -75,7 +75,7 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
     return uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// Says what a saved state belongs to.
+// Returns what a saved state belongs to.
 std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;

@@ -13,7 +13,7 @@ namespace lull {
 // The number of sub-blocks for statistics other than entropies, as in recordings.
 inline constexpr int kMeasuredSubBlocks = 100;
 
-// Holds the measures of a block at one spp: for each feature the values of its sub-blocks,
+// The measures of a block at one spp: for each feature the values of its sub-blocks,
 // row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
 // empty if it is not asked for, and always for LogSpp.
 struct BlockMeasures {
@@ -26,14 +26,14 @@ struct BlockMeasures {
     const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
 };
 
-// Says what MeasureBlock() reads.
+// Returns what MeasureBlock() reads.
 ViewNeed NeedOf(const ModelSettings& settings);
 
 // Measures what the settings ask for; for drops, which BlockMemory completes, the entropies and the
 // lightness that they are made of. Throws as CheckView() and SubBlockEntropies() do.
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
 
-// Says which places in the input of a network belong to a feature.
+// Which places in the input of a network belong to a feature.
 struct InputRange {
     Feature feature;
     int begin = 0, count = 0;
@@ -51,7 +51,7 @@ int InputCount(const ModelSettings& settings);
 // length.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
-// Says whether noise, pooled to one number, is the only input of a network.
+// Returns whether noise, pooled to one number, is the only input of a network.
 bool LooksAtNoiseOnly(const ModelSettings& settings);
 
 // Convert that noise, >= 0, times the caution, to the network's input, and back.

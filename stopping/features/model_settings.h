@@ -1,4 +1,4 @@
-// Says what a learned rule looks at and how its answers count.
+// The inputs of a learned rule, and how its answers count.
 #pragma once
 
 #include <span>
@@ -37,17 +37,18 @@ inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 inline bool IsDrop(Feature feature) {
     return feature >= Feature::EntropyDrop && feature <= Feature::VisibleDrop;
 }
-// Says whether a feature is the standard deviation of noise in lightness, which `caution` scales.
+// Returns whether a feature is the standard deviation of noise in lightness, which `caution`
+// scales.
 inline bool IsNoise(Feature feature) {
     return (feature >= Feature::Noise && feature <= Feature::DetailMaskedNoise) ||
            feature == Feature::VisibleDrop;
 }
-// Says whether this feature is normalised over a window, as the paper does with both of its
+// Returns whether this feature is normalised over a window, as the paper does with both of its
 // features.
 inline bool IsNormalized(Feature feature) {
     return IsEntropy(feature) || feature == Feature::Attributes26;
 }
-// Says whether there is a value for each sub-block.
+// Returns whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
 
 // Summarises the values of all sub-blocks in one number, a power mean. What is seen anywhere in a
@@ -64,13 +65,13 @@ struct Pool {
 std::string PoolNames(std::span<const Pool> pools);
 std::vector<Pool> ParsePools(const std::string& names);
 
-// Says how far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
+// How far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
 // previous one, or the nearest that is kept (see history.h).
 enum class Spacing { Fixed, Geometric };
 std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
 Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument
 
-// Holds what a model was trained on and how its answers count; the defaults are the paper's.
+// What a model was trained on and how its answers count; the defaults are the paper's.
 struct ModelSettings {
     int k = 8;    // steps in a window
     int n = 40;   // spp between them; with geometric spacing between those that are looked at

@@ -15,7 +15,7 @@ inline constexpr int kJudgedCap = 10000;
 // quantiles of log(T / S) at 0, 10, ..., 100 %.
 inline constexpr int kLogRatios = 11;
 
-// Holds the middle 80 % of the thresholds that people would have had.
+// The middle 80 % of the thresholds that people would have had.
 struct HumanRange {
     int low = 0;                   // spp
     std::optional<int> high = {};  // nothing: more than people were shown, or not known

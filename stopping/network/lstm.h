@@ -10,7 +10,7 @@ namespace lull {
 // HardSigmoid is that of Keras 2: clip(0.2 x + 0.5, 0, 1).
 enum class Activation { Linear, Sigmoid, HardSigmoid, Tanh };
 
-// Holds one long short-term memory layer (Hochreiter, Schmidhuber 1997). The weights are Keras'
+// One long short-term memory layer (Hochreiter, Schmidhuber 1997). The weights are Keras'
 // arrays transposed, with the gates one below the other in Keras' order: input i, forget f, cell
 // candidate c, output o; u units each.
 struct LstmLayer {
@@ -32,7 +32,7 @@ struct DenseLayer {
     Activation activation = Activation::Sigmoid;
 };
 
-// Holds LSTM layers, each of which hands its output at every time step to the next one, followed by
+// LSTM layers, each of which hands its output at every time step to the next one, followed by
 // dense layers on the output of the last time step. Without LSTM layers the dense layers receive
 // the values of all time steps, the first step first (Keras' Flatten): a single one is then a
 // logistic regression.
@@ -45,7 +45,7 @@ struct Network {
 // Throws std::invalid_argument naming the layer.
 void CheckNetwork(const Network& network);
 
-// Says whether the network, which has passed CheckNetwork(), can be run on sequences of `inputs`
+// Returns whether the network, which has passed CheckNetwork(), can be run on sequences of `inputs`
 // values at each of `steps` time steps.
 bool Takes(const Network& network, Eigen::Index inputs, Eigen::Index steps);
 

@@ -32,7 +32,7 @@ void Check(lull_status status) {
     throw py::error_already_set();
 }
 
-// Holds how it stands with all blocks, for each number an array of rows x columns.
+// How it stands with all blocks, for each number an array of rows x columns.
 struct Answer {
     int columns;
     std::vector<lull_answer> blocks;

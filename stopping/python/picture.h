@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds pixels of height x width x 3, float32 or uint8, with any strides but 0. Other floats are
+// Pixels of height x width x 3, float32 or uint8, with any strides but 0. Other floats are
 // converted. Further channels, such as alpha, are left out, with a warning; others tell of
 // values that are not finite, negative, or mostly above white.
 class Picture {

@@ -14,7 +14,7 @@ struct BlockRect {
     bool operator==(const BlockRect&) const = default;
 };
 
-// Holds the blocks of a picture, row by row.
+// The blocks of a picture, row by row.
 struct BlockGrid {
     int columns = 0;
     std::vector<BlockRect> blocks = {};

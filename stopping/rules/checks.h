@@ -1,4 +1,4 @@
-// Says at which samples per pixel a rule checks a block.
+// The samples per pixel at which a rule checks a block.
 #pragma once
 
 namespace lull {
@@ -11,7 +11,7 @@ struct Checks {
     double growth = 1;  // of the spp from one to the next, at the least
     bool any = false;   // pictures come at any spp
 
-    // Says whether a check is due at `spp` > 0, after one at `last` spp; 0: there was none.
+    // Returns whether a check is due at `spp` > 0, after one at `last` spp; 0: there was none.
     bool AreDue(int spp, int last = 0) const {
         if (spp < first || spp < growth * last) return false;
         return any ? last == 0 || spp - last >= every : (spp - first) % every == 0;

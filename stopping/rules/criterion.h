@@ -47,7 +47,7 @@ class Criterion {
     virtual void Restore(std::span<const std::byte> state);
 };
 
-// Says which block a criterion is for.
+// Which block a criterion is for.
 struct BlockInfo {
     int index = 0;            // row-major place in the grid of blocks
     double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]

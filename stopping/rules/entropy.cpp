@@ -37,7 +37,7 @@ class EntropyStatistic final : public Statistic {
     History<float> history;
 };
 
-// Says what is measured: entropies, and the lightness that makes their falls visible.
+// Returns what is measured: entropies, and the lightness that makes their falls visible.
 ModelSettings MeasuredSettings() {
     return {.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}};
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kLearnedTag = 0x324e524c;  // "LRN2"
 
-// Says when a model votes.
+// Returns when a model votes.
 Checks VotesOf(const ModelSettings& settings, int passSpp) {
     if (passSpp == 0 && settings.spacing == Spacing::Geometric)
         return {.every = settings.n, .any = true};
@@ -27,7 +27,7 @@ Checks VotesOf(const ModelSettings& settings, int passSpp) {
     return {.first = first, .every = settings.voteSpacing > 0 ? settings.voteSpacing : first};
 }
 
-// Says when it checks a block, also for the steps of windows between which there is no vote.
+// Returns when it checks a block, also for the steps of windows between which there is no vote.
 Checks ChecksOf(const ModelSettings& settings, int passSpp) {
     Checks checks = VotesOf(settings, passSpp);
     checks.every = std::gcd(checks.every, settings.n);

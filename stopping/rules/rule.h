@@ -107,7 +107,7 @@ std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {})
 // Returns what makes those of all blocks of an image, from any thread.
 std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule);
 
-// Says what a rule can depend on beside its own text.
+// What a rule can depend on beside its own text.
 struct RuleContext {
     int passSpp = 20;            // spp of a pass, also of the first; 0: any (see Checks)
     int blockCount = 0;          // blocks in the image; 0: not known

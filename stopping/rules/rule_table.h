@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Says what a recording knows of a rule.
+// What a recording knows of a rule.
 enum class Replay {
     Decides,   // what it measures, so that it decides again (Rule::recall)
     Counts,    // nothing is needed: it stops where it says
@@ -18,7 +18,7 @@ enum class Replay {
     Unknown    // nothing
 };
 
-// Says with which settings a rule is compared with others.
+// With which settings a rule is compared with others.
 struct RuleSweep {
     // For benchmarks, from where it stops at once to where it hardly ever does; empty: none.
     std::span<const double> bench = {};

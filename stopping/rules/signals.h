@@ -1,4 +1,4 @@
-// Says what rules are told of a block after a pass, whether it was measured in a render or
+// What rules are told of a block after a pass, whether it was measured in a render or
 // recorded.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds a number for each pixel, row by row.
+// A number for each pixel, row by row.
 struct PixelErrors {
     int width = 0;
     std::vector<double> errors = {};

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds the spp at which each block of a viewpoint needs no more samples, blocks row-major. The
+// The spp at which each block of a viewpoint needs no more samples, blocks row-major. The
 // published files have 4 x 4 blocks and 10,000 where a block never stopped; any count is allowed.
 struct ThresholdsRow {
     std::string name;      // of the viewpoint; not empty, without ';' and line breaks

@@ -1,4 +1,4 @@
-// Says how the number that a rule compares goes with the samples, for those who predict where
+// How the number that a rule compares goes with the samples, for those who predict where
 // blocks will stop.
 #pragma once
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kReach = 2;  // pixels that a filter of 5x5 sees beyond its own
 
-// Holds an image with kReach pixels more at each side.
+// An image with kReach pixels more at each side.
 struct PaddedImage {
     int width, height;
     std::vector<double> values;
@@ -43,7 +43,7 @@ PaddedImage Reflected(std::span<const double> image, int width, int height) {
     return padded;
 }
 
-// Holds the weights of a pixel, of those beside it and of the next.
+// The weights of a pixel, of those beside it and of the next.
 struct Taps {
     double w0, w1, w2;
 

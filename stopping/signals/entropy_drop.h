@@ -17,7 +17,7 @@
 
 namespace lull {
 
-// Says how an observer sees noise.
+// How an observer sees noise.
 struct NoiseVisibility {
     // Detail of deviation d in L hides noise: it counts 1 / (1 + d / mask).
     double mask = 40;
@@ -55,7 +55,7 @@ double RateOfFall(const EntropyState& oldest, const EntropyState& before, const 
 // entropy up or down, and rare events raise it when they occur: both count as noise.)
 std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
 
-// Holds mean and standard deviation of the displayed lightness of sub-blocks, row-major, in
+// Mean and standard deviation of the displayed lightness of sub-blocks, row-major, in
 // [0, 100].
 struct SubBlockLightness {
     std::vector<float> mean, deviation;

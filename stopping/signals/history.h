@@ -13,14 +13,14 @@
 
 namespace lull {
 
-// Holds numbers of a block at some spp.
+// Numbers of a block at some spp.
 template <typename Real>
 struct BlockState {
     int spp = 0;
     std::vector<Real> values = {};
 };
 
-// Holds states by increasing spp, all with as many values. Those who add states say what is kept.
+// States by increasing spp, all with as many values. Those who add states say what is kept.
 template <typename Real>
 class History {
   public:
@@ -96,7 +96,7 @@ class History {
         }
     }
 
-    // Says whether both lie far enough apart to be kept.
+    // Returns whether both lie far enough apart to be kept.
     static bool IsStep(int from, int to) { return 11 * double(to) >= 12 * double(from); }
 
   private:

@@ -40,7 +40,7 @@ struct EncodeTable {
     }
 };
 
-// Holds the share of each 8-bit component in the luminance Y.
+// The share of each 8-bit component in the luminance Y.
 struct LuminanceTable {
     std::array<std::array<double, 256>, 3> share;
 

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds estimates for every pixel of a block, row-major.
+// Estimates for every pixel of a block, row-major.
 //
 // With A the mean of one half of the samples, B that of the other and M of all, (A - B) / 2 has the
 // standard deviation of the error of M. Lightness L is that of the displayed colour: components
@@ -36,7 +36,7 @@ LightnessNoise ComputeLightnessNoise(const BlockView& view);
 // Returns noise / (1 + t / 4): what remains visible of noise on texture.
 inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
 
-// Holds statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
+// Statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
 // maskedNoise and halfNoise are root mean squares. Throws std::invalid_argument if the estimates
 // have another size or there are too few pixels for the sub-blocks.
 struct LightnessNoiseStatistics {

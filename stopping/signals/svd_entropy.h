@@ -14,7 +14,7 @@
 
 namespace lull {
 
-// Holds the entropies of one matrix. With the singular values s_1 >= ... >= s_n and
+// The entropies of one matrix. With the singular values s_1 >= ... >= s_n and
 // p_i = s_i^2 / sum s^2, H = -1/log(n) sum p_i log p_i (paper, Eq. 3); H1 takes the terms of the
 // first floor(n / 4) values and H2 the others (Eqs. 4, 5), both with the p_i and the n of the
 // whole, so that H = H1 + H2. All in [0, 1].

@@ -13,7 +13,7 @@ constexpr int kWidth = 120, kHeight = 100, kBorder = 12;
 
 using Truth = std::function<double(int x, int y)>;
 
-// Holds a picture in grey whose features see none of it.
+// A picture in grey whose features see none of it.
 struct HiddenPicture {
     Planes truth;
     NoisyPicture noisy;

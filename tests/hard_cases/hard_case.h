@@ -15,7 +15,7 @@ struct HardCaseOptions {
     uint64_t seed = 1;    // of everything random, so that a failure can be repeated
 };
 
-// Holds what came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
+// What came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
 struct HardCaseResult {
     double answer = 0, ours = 0, tolerance = 0;
     std::string note = "";  // what the figures count, and of several trials which one is shown

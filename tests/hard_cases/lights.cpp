@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 64, kHeight = 32;
 constexpr double kAlbedo = 0.5;
 
-// Holds a grey map of latitudes and longitudes, the row around +z first.
+// A grey map of latitudes and longitudes, the row around +z first.
 using Map = std::vector<float>;
 
 // Writes the map in PFM, which has its last row first.

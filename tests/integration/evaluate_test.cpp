@@ -10,7 +10,7 @@
 namespace lull {
 namespace {
 
-// Holds thresholds of people for two viewpoints of four blocks, and recordings of some of these,
+// Thresholds of people for two viewpoints of four blocks, and recordings of some of these,
 // in which visible noise is 0.5 where people stop to see it.
 struct EvaluationDirectory : TemporaryDirectory {
     EvaluationDirectory() {

@@ -28,7 +28,7 @@ std::string Results(const TemporaryDirectory& directory, const std::string& name
            ReadBytes(directory.File(name + ".spp.png"));
 }
 
-// Says whether both linear images have the same bits.
+// Returns whether both linear images have the same bits.
 bool SameImages(const TemporaryDirectory& directory, const std::string& a, const std::string& b) {
     return ReadImage(directory.File(a + ".exr")).texels ==
            ReadImage(directory.File(b + ".exr")).texels;

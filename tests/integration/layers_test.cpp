@@ -20,7 +20,7 @@ constexpr const char* kAll = "--aov albedo,normal,depth,position,object,material
 constexpr const char* kAllAndMattes =
     "--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ";
 
-// Holds a file as OpenEXR reads it.
+// A file as OpenEXR reads it.
 struct OpenExr {
     Imf::InputFile file;
     int width, height;

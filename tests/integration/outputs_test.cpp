@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOptions = "scene.pbrt --spp 20 --block 8 --quiet";
 
-// Holds a scene with a mesh and a texture, an image, thresholds and answers of people.
+// A scene with a mesh and a texture, an image, thresholds and answers of people.
 struct Inputs : TemporaryDirectory {
     Inputs() {
         Write("mesh.ply",

@@ -12,7 +12,7 @@
 namespace lull {
 namespace {
 
-// Holds recordings of three viewpoints, and thresholds of people for two of them.
+// Recordings of three viewpoints, and thresholds of people for two of them.
 struct TrainingDirectory : TemporaryDirectory {
     TrainingDirectory() {
         std::vector<ViewpointRecording> viewpoints;

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Holds a mesh as glTF wants it: unit normals or none, v growing downwards, triangles
+// A mesh as glTF wants it: unit normals or none, v growing downwards, triangles
 // counterclockwise as seen from the side of the normal.
 struct GltfMesh {
     std::vector<Vec3f> positions, normals;

@@ -28,7 +28,7 @@ void AddNode(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, json
     file->root["scenes"][0]["nodes"].push_back(file->Add("nodes", std::move(node)));
 }
 
-// Holds one infinite light: an image, or a constant, by directions of its own space.
+// One infinite light: an image, or a constant, by directions of its own space.
 struct Sky {
     Image image;
     Rgb L;

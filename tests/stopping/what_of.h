@@ -1,4 +1,4 @@
-// Says what calls refuse.
+// Catches what calls refuse.
 #pragma once
 
 #include <stdexcept>

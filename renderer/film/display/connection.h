@@ -25,7 +25,7 @@ class Connection {
     // closed.
     bool Send(std::span<const std::byte> bytes, const std::function<bool()>& giveUp,
               std::string* why);
-    // Says whether the server is still there.
+    // Returns whether the server is still there.
     bool IsAlive();
     void Close();
 

@@ -11,7 +11,7 @@ namespace lull {
 // Z, A, then all others.
 void SortChannels(std::vector<std::string>* names);
 
-// Says whether "layer.name" is alpha.
+// Returns whether "layer.name" is alpha.
 bool IsAlpha(const std::string& name);
 
 }  // namespace lull

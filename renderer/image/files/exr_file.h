@@ -11,10 +11,10 @@
 
 namespace lull {
 
-// Says whether bytes begin like an EXR.
+// Returns whether bytes begin like an EXR.
 bool IsExr(std::span<const std::byte> bytes);
 
-// Holds an EXR of which only the header has been read.
+// An EXR of which only the header has been read.
 class ExrFile {
   public:
     // The bytes must outlive it. Throws std::runtime_error, or what OpenEXR throws, with the

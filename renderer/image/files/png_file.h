@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Says whether bytes begin like a PNG.
+// Returns whether bytes begin like a PNG.
 bool IsPng(std::span<const std::byte> bytes);
 
 // Opens a PNG: less than 8 bits become 8, palettes RGB, and transparent colours an alpha channel. A

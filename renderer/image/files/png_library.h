@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds what libpng says when it gives up.
+// What libpng says when it gives up.
 struct PngError {
     char message[128] = "";
 };

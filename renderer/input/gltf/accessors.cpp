@@ -13,7 +13,7 @@ namespace {
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125;  // 5126 is float
 
-// Holds where the elements of an array lie; `bytes` is null where they are all zero.
+// Where the elements of an array lie; `bytes` is null where they are all zero.
 struct Elements {
     const unsigned char* bytes = nullptr;
     size_t stride = 0;

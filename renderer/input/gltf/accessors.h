@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds values of an accessor, `components` numbers each.
+// Values of an accessor, `components` numbers each.
 struct GltfArray {
     int components = 0;
     std::vector<float> values;

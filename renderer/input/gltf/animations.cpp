@@ -12,7 +12,7 @@
 namespace lull {
 namespace {
 
-// Holds the keys of a sampler: `width` values for each time, or, of a cubic spline, the tangent
+// The keys of a sampler: `width` values for each time, or, of a cubic spline, the tangent
 // before each key, its value, and the tangent after it.
 struct Keys {
     std::vector<float> times, values;

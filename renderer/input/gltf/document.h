@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds a glTF file whose JSON has been checked: all indices between its top-level arrays are in
+// A glTF file whose JSON has been checked: all indices between its top-level arrays are in
 // range, all its numbers fit into a float. The contents of its buffers are not checked yet.
 struct GltfDocument {
     std::string file;

@@ -14,7 +14,7 @@ namespace lull {
 // Beyond this no file of ours or anybody's goes, and all sums of two are still exact.
 inline constexpr uint64_t kLargestJsonSize = uint64_t(1) << 48;
 
-// Holds a value and where it stands.
+// A value and where it stands.
 struct JsonAt {
     const nlohmann::json& root;
     const std::string& file;

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds what a material means for a shape.
+// What a material means for a shape.
 struct GltfMaterial {
     int index = -1;                  // into Description::materials
     std::optional<Entity> emission;  // an area light

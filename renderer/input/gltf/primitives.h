@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds a primitive as triangles; all arrays but the indices are flat, with the given numbers per
+// A primitive as triangles; all arrays but the indices are flat, with the given numbers per
 // vertex.
 struct GltfTriangles {
     std::vector<float> positions;  // 3

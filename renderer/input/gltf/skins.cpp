@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-// Holds a set of four joints and weights for each vertex.
+// A set of four joints and weights for each vertex.
 struct Influences {
     std::vector<float> joints, weights;
 };

@@ -207,7 +207,7 @@ void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.rever
 
 namespace {
 
-// Says whether a curve makes one shape with that before it.
+// Returns whether a curve makes one shape with that before it.
 bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
     const auto same = [&](const auto& read) {
         return read(last.parameters) == read(next.parameters);
@@ -359,8 +359,8 @@ int PbrtBuilder::MediumNamed(const std::string& name) {
     return -1;
 }
 
-// Says whether media count, or warns that they do not: pbrt-v3 leaves them out with all but three
-// integrators. Which one it is, is known from WorldBegin on; until then they count.
+// Returns whether media count, or warns that they do not: pbrt-v3 leaves them out with all but
+// three integrators. Which one it is, is known from WorldBegin on; until then they count.
 bool PbrtBuilder::SeesMedium(const std::string& directive) {
     if (stage == Stage::Options) {
         if (!earlyMedium) earlyMedium = {directive, loc};

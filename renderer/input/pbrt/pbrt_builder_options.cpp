@@ -1,4 +1,4 @@
-// Holds PbrtBuilder's readers, and the directives that set transforms and rendering options.
+// PbrtBuilder's readers, and the directives that set transforms and rendering options.
 
 #include <Eigen/LU>
 #include <utility>

@@ -13,7 +13,7 @@ namespace lull {
 
 enum class TokenKind { End, Word, String, Open, Close };
 
-// Holds a token and its place; the text of a String is unquoted and unescaped.
+// A token and its place; the text of a String is unquoted and unescaped.
 struct Token {
     TokenKind kind = TokenKind::End;
     std::string text;

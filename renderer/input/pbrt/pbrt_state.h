@@ -35,10 +35,10 @@ class ScopedNames {
     std::vector<std::pair<std::string, int>> undo;
 };
 
-// Says which transforms of a pair the directives change.
+// Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// Holds what AttributeBegin saves and AttributeEnd restores.
+// What AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
     TransformPair ctm;
     int active = kAllTimes;

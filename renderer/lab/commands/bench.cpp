@@ -177,7 +177,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, Job* ranks) {
     return bench;
 }
 
-// Says how far the comparisons are, at most once a second.
+// Prints how far the comparisons are, at most once in ten seconds.
 class PointCounter {
   public:
     PointCounter(size_t count, const RenderSettings& settings)
@@ -262,7 +262,7 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     return true;
 }
 
-// Says what has to be known of the points.
+// Returns what has to be known of the points.
 std::vector<std::string> Notes(const Options& options) {
     std::vector<std::string> notes;
     if (options.reference.empty())

@@ -1,4 +1,4 @@
-// Holds the options of `lull compare`.
+// The options of `lull compare`.
 #pragma once
 
 #include "renderer/commands/render_settings.h"

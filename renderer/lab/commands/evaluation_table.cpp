@@ -13,7 +13,7 @@ namespace lull {
 
 namespace {
 
-// Holds the row of a table.
+// The row of a table.
 struct Row {
     std::string rule, viewpoint, setting;
     Scores scores;

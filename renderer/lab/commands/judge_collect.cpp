@@ -36,7 +36,7 @@ std::string AgreementOf(const CollectedViewpoint& viewpoint) {
         word == "poor" ? ": these thresholds say more of the observers than of the picture" : "");
 }
 
-// Says how far the thresholds of a viewpoint can be relied on.
+// Prints how far the thresholds of a viewpoint can be relied on.
 void SayCertainty(const CollectedViewpoint& viewpoint) {
     Say("lull: {}: {} observer{}, agreement {}\n", viewpoint.name, viewpoint.observers,
         viewpoint.observers == 1 ? "" : "s", AgreementOf(viewpoint));

@@ -1,4 +1,4 @@
-// Says what `lull judge` can be asked for.
+// The options of `lull judge`.
 #pragma once
 
 #include "renderer/commands/render_settings.h"

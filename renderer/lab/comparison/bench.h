@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds one point of a curve.
+// One point of a curve.
 struct BenchPoint {
     std::string rule, setting;  // "dammertz", "0.02"; "fixed", "64"; the name of another renderer
     std::string sampler;        // empty for other renderers

@@ -11,7 +11,8 @@ struct ComparedFile {
     std::vector<float> spp;  // of each pixel; empty: not known
 };
 
-// Says whether a name is that of an image: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in any case.
+// Returns whether a name is that of an image: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in any
+// case.
 bool IsImageFile(const std::string& path);
 
 // Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds; or a picture
@@ -38,7 +39,7 @@ Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& refe
 // Error if they do not fit together.
 PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);
 
-// Says what is not measured of pictures for displays; empty if there are none among the images.
+// Returns what is not measured of pictures for displays; empty if there are none among the images.
 std::string DisplayNote(const Comparison&);
 
 // Sets the cost of each block whose pixels all took the same number of samples.

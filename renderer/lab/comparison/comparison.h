@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// Says what a block took; seconds are of processors.
+// What a block took; seconds are of processors.
 struct BlockCost {
     int spp = 0;
     double seconds = 0;
@@ -20,7 +20,7 @@ struct BlockCost {
     bool isEstimated = false;  // from the block's seconds per sample, as not all of it was rendered
 };
 
-// Holds an image and all that is measured of it.
+// An image and all that is measured of it.
 struct ComparedImage {
     std::string name;  // automatic, human, reference, or as the user calls it
     std::string rule;  // empty: not known
@@ -83,7 +83,7 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
     const std::vector<ObservedRule>& rules, const PixelRect& region, const ScheduleOptions&,
     const ObserverOptions&, std::vector<BlockHistory>* histories);
 
-// Holds an observed render that is complete.
+// An observed render that is complete.
 struct ObservedRender {
     const RenderContext& context;
     const RenderOptions& options;

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Holds one render of a rule's image by itself, as a measure of what the rule costs and saves on a
+// One render of a rule's image by itself, as a measure of what the rule costs and saves on a
 // number of threads.
 struct Verification {
     int threads = 0;

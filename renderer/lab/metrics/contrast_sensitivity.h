@@ -6,7 +6,7 @@ namespace lull {
 enum class OpponentChannel { Achromatic, RedGreen, YellowViolet };
 inline constexpr int kOpponentChannels = 3;
 
-// Holds a still Gabor patch on a background of daylight (D65), looked at directly.
+// A still Gabor patch on a background of daylight (D65), looked at directly.
 struct GaborPatch {
     double frequency = 1;    // cycles per degree, > 0
     double area = 1;         // square degrees, pi times the square of the envelope's deviation, > 0

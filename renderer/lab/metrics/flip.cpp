@@ -18,7 +18,7 @@ using Triple = std::array<double, 3>;
 // The names of the constants are the paper's.
 constexpr double qc = 0.7, pc = 0.4, pt = 0.95, w = 0.082, qf = 0.5;
 
-// Holds one colour at each pixel, a plane a component.
+// One colour at each pixel, a plane a component.
 using ColourPlanes = std::array<std::vector<float>, 3>;
 
 constexpr double kXyzFromRgb[3][3] = {{0.4123866, 0.3575915, 0.1804505},
@@ -132,7 +132,7 @@ std::vector<Triple> SeenColours(const ColourPlanes& planes, int width, int heigh
     return colours;
 }
 
-// Holds how strong edges and points are at each pixel.
+// How strong edges and points are at each pixel.
 struct Features {
     std::vector<float> edges, points;
 };

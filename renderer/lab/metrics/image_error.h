@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds what can be averaged over any part of an image: a value per pixel, row-major.
+// What can be averaged over any part of an image: a value per pixel, row-major.
 struct ErrorMaps {
     int width = 0, height = 0;
     std::vector<float> squared;    // of linear values, the mean over R, G, B
@@ -26,7 +26,7 @@ struct ErrorMaps {
 ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference,
                         const DisplayModel& display = {});
 
-// Holds figures of an image or a part of it; NaN if one is not known. An infinite PSNR means that
+// Figures of an image or a part of it; NaN if one is not known. An infinite PSNR means that
 // the display images are the same; ssim is NaN if no window lies inside the image.
 struct ErrorFigures {
     double rmse = 0;    // of linear radiance

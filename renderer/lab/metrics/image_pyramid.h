@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Holds a value at each pixel, row by row.
+// A value at each pixel, row by row.
 struct Plane {
     int width = 0, height = 0;
     std::vector<float> values;

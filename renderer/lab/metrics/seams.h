@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds mean jumps of the noise level: the difference of the root mean squares of the noise in the
+// Mean jumps of the noise level: the difference of the root mean squares of the noise in the
 // 10 pixels to either side of a line, over 20 pixels of its length. Where the noise is even, only
 // the spread of the estimate remains; `inside` says how much that and the picture itself
 // contribute.

@@ -112,7 +112,7 @@ class SensitivityCurve {
     std::array<float, size_t((kTo - kFrom) * kStepsPerOctave + 2)> values = {};
 };
 
-// Holds contrasts relative to the luminance around, and that luminance.
+// Contrasts relative to the luminance around, and that luminance.
 struct ContrastBand {
     Planes contrast;
     std::vector<float> luminance;

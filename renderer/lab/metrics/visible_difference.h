@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// Holds how visible the difference is in one band of spatial frequencies: for each opponent channel
+// How visible the difference is in one band of spatial frequencies: for each opponent channel
 // a value at each place, 0 where there is none and about 1 where a pattern is just seen. The
 // planes are Reduce()d `level` times.
 struct VisibleBand {

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds what a report of a comparison contains.
+// What a report of a comparison contains.
 struct ComparisonReport {
     Comparison comparison;
     std::optional<Provenance> provenance;    // of what was rendered; none for images from files

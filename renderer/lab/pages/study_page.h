@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Says how people are asked.
+// How people are asked.
 enum class StudyProcedure {
     Adjust,    // the whole image beside the reference: click where they differ, until they match
     Staircase  // a block beside its reference: which of both has the noise? (QUEST)

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds the pixels of a block as a display shows them: 8-bit sRGB, R, G, B, row by row.
+// The pixels of a block as a display shows them: 8-bit sRGB, R, G, B, row by row.
 using DisplayPixels = std::vector<uint8_t>;
 
 // Returns the spp of a ladder whose steps are as near to `ratio` (> 1) as whole passes allow:

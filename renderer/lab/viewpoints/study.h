@@ -1,4 +1,4 @@
-// Holds what people are shown when they say where they still see noise.
+// What people are shown when they say where they still see noise.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ struct StudyBlock {
     std::vector<DisplayPixels> pictures;  // one for each level
 };
 
-// Holds one viewpoint: its blocks, row by row, at every level of a ladder, the last of which is the
+// One viewpoint: its blocks, row by row, at every level of a ladder, the last of which is the
 // reference.
 struct Study {
     std::string viewpoint;  // its name in thresholds files

@@ -53,7 +53,7 @@ class RankChannel {
   private:
     using Clock = std::chrono::steady_clock;
 
-    // Is what is known of another rank.
+    // What is known of another rank.
     struct Life {
         Clock::time_point heard = Clock::now();
         std::optional<Clock::time_point> asked;  // since it was heard

@@ -1,4 +1,4 @@
-// Says which tiles each of several ranks renders, by how fast they are. Pure, without pixels.
+// Decides which tiles each of several ranks renders, by how fast they are. Pure, without pixels.
 #pragma once
 
 #include <cstddef>

@@ -134,7 +134,7 @@ class Leader {
         Deal(blocks);
     }
 
-    // Says whether pixels lack samples of passes that were decided on.
+    // Returns whether pixels lack samples of passes that were decided on.
     bool IsBehind(const Block& block) const {
         for (int y = block.pixels.min.y(); y < block.pixels.max.y(); ++y)
             for (int x = block.pixels.min.x(); x < block.pixels.max.x(); ++x)
@@ -222,7 +222,7 @@ class Leader {
         }
     }
 
-    // Says whether there are new samples, so that the shortest interval leads to an end.
+    // Returns whether there are new samples, so that the shortest interval leads to an end.
     bool HasGoneOn() { return executor.ledger.Samples() > samplesGathered; }
 
     // Brings everything to rest, and all pixels here.

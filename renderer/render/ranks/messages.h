@@ -30,14 +30,14 @@ enum class RankWord : uint8_t {
     Alive
 };
 
-// Says where all blocks are when a rank begins.
+// Where all blocks are when a rank begins.
 struct StartMessage {
     std::vector<int> deal;  // of the tiles, see TileShare
     std::vector<BlockStart> blocks;
     std::vector<ViewNeed> needs;  // what criterion and clock will see after each block's next pass
 };
 
-// Says how a block goes on.
+// How a block goes on.
 struct AnswerMessage {
     int block;
     bool stop;
@@ -45,7 +45,7 @@ struct AnswerMessage {
     ViewNeed need;  // after its next pass
 };
 
-// Holds what a rank has of a block after a pass.
+// What a rank has of a block after a pass.
 struct PartMessage {
     int block;
     int64_t samples;     // taken since the last part

@@ -40,7 +40,7 @@ class Rank {
     tbb::task_arena* arena;
 };
 
-// Says whether a guide is being learned: rank 0 then has all tiles.
+// Returns whether a guide is being learned: rank 0 then has all tiles.
 bool IsLearning(const RenderContext&);
 
 // Returns how tiles are dealt out as long as nobody knows how fast ranks are.

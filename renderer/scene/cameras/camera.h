@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Says where and when a path starts.
+// Where and when a path starts.
 struct CameraSample {
     Vec2f film;                      // pixels
     Vec2f lens = Vec2f(0.5f, 0.5f);  // in [0, 1)^2, chooses the point on the lens

@@ -10,7 +10,7 @@ namespace {
 using Values = LensBundle::Values;
 using Passes = std::array<int64_t, LensBundle::kMost>;  // 0: stopped
 
-// Say which rays pass an interface at height z of the axis, and carry them through it. They do for
+// Tell which rays pass an interface at height z of the axis, and carry them through it. They do for
 // each ray what LensSystem does, in loops without branches, which compilers turn into vectors.
 void PassStop(const LensInterface& stop, double z, LensBundle* rays, Passes* passes) {
     const double aperture2 = stop.apertureRadius * stop.apertureRadius;

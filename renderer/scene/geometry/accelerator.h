@@ -21,7 +21,7 @@ class Accelerator {
     // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
     bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;
 
-    // Says whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
+    // Returns whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
     bool Occluded(const Ray& ray, float time = 0) const;
 
     // For programs that measure Embree itself, see accelerator_internal.h.

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds when the shutter opens and closes, in the scene's units of time; open <= close.
+// When the shutter opens and closes, in the scene's units of time; open <= close.
 struct Shutter {
     double open = 0, close = 1;
 };
@@ -30,10 +30,10 @@ class AnimatedTransform {
     // Returns the transform at `time` in [0, 1].
     Mat4d At(double time) const;
 
-    // Says whether it is the same while the shutter is open.
+    // Returns whether it is the same while the shutter is open.
     bool IsConstant() const { return isConstant; }
 
-    // Says whether every point moves along a straight line at constant speed.
+    // Returns whether every point moves along a straight line at constant speed.
     bool IsLinear() const { return cosHalfAngle >= 1 && startTime <= 0 && endTime >= 1; }
 
     // Bounds the distance of a point of the box from the straight line between its positions at two

@@ -1,4 +1,4 @@
-// Says how far from the origin a scene may go. Embree takes no ray with a coordinate of more than
+// Limits how far from the origin a scene may go. Embree takes no ray with a coordinate of more than
 // 1.84e18, and finds no triangle where products of three lengths are beyond floats. That is made
 // sure of where rays come from, and costs those between surfaces nothing.
 #pragma once
@@ -24,8 +24,8 @@ double Farthest(const Bounds3f& box);
 // transform, an affine one; kFarthest at most. It may be negative.
 double ReachThrough(const Mat4d& transform);
 
-// Says whether an affine transform can be inverted by Cramer's rule in floats, as Embree does: the
-// products of two and of three lengths are floats.
+// Returns whether an affine transform can be inverted by Cramer's rule in floats, as Embree does:
+// the products of two and of three lengths are floats.
 bool IsInvertibleInFloats(const Mat4d& transform);
 
 }  // namespace lull

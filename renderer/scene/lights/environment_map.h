@@ -1,4 +1,4 @@
-// Holds radiance from all directions as an image, and samples it by its brightness.
+// Radiance from all directions as an image, sampled by its brightness.
 #pragma once
 
 #include <array>

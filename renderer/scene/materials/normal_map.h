@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Holds normals in the frame of the surface's tangents, each coordinate from -1 to 1 stored as 0 to
+// Normals in the frame of the surface's tangents, each coordinate from -1 to 1 stored as 0 to
 // 1: x along u, y along v, which grows upwards in the image (glTF 2.0, 3.9.3).
 struct NormalMap {
     SpectrumTexture texture;

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Holds the roughness along one tangent; a constant is turned into alpha once.
+// The roughness along one tangent; a constant is turned into alpha once.
 class RoughnessAxis {
   public:
     RoughnessAxis(const FloatTexture& texture, bool remap) : texture(texture), remap(remap) {
@@ -33,7 +33,7 @@ class RoughnessAxis {
     bool remap, constantIsZero = false;
 };
 
-// Holds the roughness of a surface along both tangents. "remaproughness" (true) says whether the
+// The roughness of a surface along both tangents. "remaproughness" (true) says whether the
 // parameters are pbrt's perceptual roughness or alpha itself.
 class Roughness {
   public:
@@ -56,7 +56,7 @@ class Roughness {
         return {alphaU, alphaV};
     }
 
-    // Says whether both tangents always have the same roughness, so that any frame will do.
+    // Returns whether both tangents always have the same roughness, so that any frame will do.
     bool IsIsotropic() const { return isIsotropic; }
 
     template <typename F>

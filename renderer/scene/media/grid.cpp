@@ -3,7 +3,7 @@
 namespace lull {
 namespace {
 
-// Holds the part of a ray that is in the unit cube, in grid space; t is that of the world.
+// The part of a ray that is in the unit cube, in grid space; t is that of the world.
 struct Crossing {
     Vec3f o, d;
     float tMin = 0, tMax = -1;  // nothing where tMin >= tMax

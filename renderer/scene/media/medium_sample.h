@@ -1,4 +1,4 @@
-// Holds what happens to a ray in a medium.
+// What happens to a ray in a medium.
 #pragma once
 
 #include <optional>

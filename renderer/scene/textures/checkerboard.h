@@ -13,7 +13,7 @@ struct Checkerboard {
     TextureHandle<T> tex1, tex2;
 };
 
-// Says whether floor(x) is odd; in float, since x may exceed every integer type.
+// Returns whether floor(x) is odd; in float, since x may exceed every integer type.
 inline bool IsOdd(float x) {
     const float lower = std::floor(x);
     return lower - 2 * std::floor(lower * 0.5f) != 0;

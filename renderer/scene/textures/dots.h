@@ -12,7 +12,7 @@ struct Dots {
     TextureHandle<T> inDot, aroundDots;
 };
 
-// Says whether the point lies in a disc of radius 0.35, placed by noise within its square.
+// Returns whether the point lies in a disc of radius 0.35, placed by noise within its square.
 inline bool IsInDot(const Vec2f& st) {
     constexpr float kRadius = 0.35f, kMaxShift = 0.5f - kRadius;
     const float s = std::floor(st.x() + 0.5f), t = std::floor(st.y() + 0.5f);

@@ -11,8 +11,8 @@ namespace lull {
 
 namespace {
 
-// Says whether a file of that name holds sRGB unless told otherwise. pbrt-v3 knows .png and .tga;
-// the others it cannot read, and they are of the same nature.
+// Returns whether a file of that name holds sRGB unless told otherwise. pbrt-v3 knows .png and
+// .tga; the others it cannot read, and they are of the same nature.
 bool IsEncodedByDefault(const std::string& filename) {
     std::string extension = std::filesystem::path(filename).extension().string();
     for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));

@@ -60,7 +60,7 @@ inline Vec2f Map(const Mapping2D& mapping, const TextureContext& c) {
     return MapByPosition(mapping, c.p);
 }
 
-// Holds a point of texture space, and how far it moves from one sample to the next across and down
+// A point of texture space, and how far it moves from one sample to the next across and down
 // the image: pbrt-v3's approximations of it, 0 where that is not known.
 struct MappedFootprint {
     Vec2f st, dx, dy;

@@ -46,7 +46,7 @@ float Lanczos(float x) {
     return std::sin(x * kTau) / (x * kTau) * (std::sin(x) / x);
 }
 
-// Holds how a texel of the enlarged axis is made of four of the original.
+// How a texel of the enlarged axis is made of four of the original.
 struct ResampleWeight {
     int first;
     std::array<float, 4> weights;

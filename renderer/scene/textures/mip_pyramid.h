@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds an image and its copies of half the size each, down to a single texel.
+// An image and its copies of half the size each, down to a single texel.
 class MipPyramid {
   public:
     // Takes an image of 1 or 3 interleaved channels, its rows from the bottom, neither side 0. If a

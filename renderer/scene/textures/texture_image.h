@@ -1,4 +1,4 @@
-// Holds the images of imagemap textures, shared by all textures that read the same file.
+// The images of imagemap textures, shared by all textures that read the same file.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@ struct Texels {
     std::vector<T> values;  // rows from the bottom, channels interleaved
 };
 
-// Holds an image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at
+// An image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at
 // the lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and
 // the type of their texels: 8-bit ones are decoded by a table, halves by the processor. Only half
 // and float texels that have to be linearised are converted beforehand.
@@ -37,7 +37,7 @@ struct TextureImage {
     bool IsGrey() const;
 };
 
-// Says what to keep of an image. Luminance asks for one channel: grey images as they are, others by
+// What to keep of an image. Luminance asks for one channel: grey images as they are, others by
 // their luminance; as in pbrt-v3 that is the luminance of the *encoded* colours, linearised
 // afterwards. A single channel of a grey image is its grey; Alpha is 1 if there is none, and is
 // never linearised.

@@ -29,7 +29,7 @@ double Abscissa(double number, bool isProbability) {
     return std::log(p / (1 - p));
 }
 
-// Holds what a rule says of a block at some spp, which increase.
+// What a rule says of a block at some spp, which increase.
 struct Curve {
     std::vector<double> logSpp = {}, values = {};
 
@@ -58,7 +58,7 @@ Curve CurveOf(const RuleOutcome& outcome, int end, bool isProbability) {
     return curve;
 }
 
-// Holds a rule's runs over all blocks.
+// A rule's runs over all blocks.
 struct RuleRun {
     std::string rule;
     bool isKnown = false;  // whether its stops need no recording

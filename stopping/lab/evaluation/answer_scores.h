@@ -17,7 +17,7 @@
 
 namespace lull {
 
-// Says which answers count.
+// Which answers count.
 struct AnswersUsed {
     int answers = 0, blocks = 0;              // that count
     int all = 0, allBlocks = 0;               // of the file
@@ -26,7 +26,7 @@ struct AnswersUsed {
     std::vector<int> blocksNotRecorded = {};  // that were answered
 };
 
-// Holds the answers to a block, and where noise is seen in it with a probability of 1/2.
+// The answers to a block, and where noise is seen in it with a probability of 1/2.
 struct AnsweredBlock {
     int block = 0, answers = 0, seen = 0;
     std::optional<double> threshold = {};  // spp; nothing where all answers are the same

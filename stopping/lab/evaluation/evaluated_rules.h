@@ -22,7 +22,7 @@ EvaluatedRule EvaluateThresholds(const std::string& path, const std::string& hum
                                  const std::vector<ThresholdsRow>& people, int grid,
                                  const WarningSink& warn);
 
-// Says which rules are judged on recorded blocks.
+// Which rules are judged on recorded blocks.
 struct RulesToEvaluate {
     bool rivals = false;  // the rules that have one setting, see EvaluateRivals()
     ChooseBy chooseBy = ChooseBy::AbsoluteError;

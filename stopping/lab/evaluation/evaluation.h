@@ -10,14 +10,14 @@
 
 namespace lull {
 
-// Holds what a rule said of a block at some spp.
+// What a rule said of a block at some spp.
 struct Verdict {
     int spp = 0;
     double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
     bool noisy = false;
 };
 
-// Holds what a rule did to a block.
+// What a rule did to a block.
 struct RuleOutcome {
     int stop = 0;  // spp; kJudgedCap where it never stopped
     // Whether the recording ends below the cap and the rule had not stopped the block there: it
@@ -40,14 +40,14 @@ struct ViewpointOutcome {
     std::vector<BlockOutcome> blocks = {};
 };
 
-// Says where blocks stop that a rule had not stopped where their recordings end.
+// Where blocks stop that a rule had not stopped where their recordings end.
 enum class OpenStops {
     None,     // there are no such blocks
     Ends,     // at these ends, although the rule goes on for longer
     Extended  // where the rule stops if recordings go on by their own laws (extension.h)
 };
 
-// Holds the outcomes of a rule, or of the thresholds in a file.
+// The outcomes of a rule, or of the thresholds in a file.
 struct EvaluatedRule {
     std::string name;
     std::string setting = {};  // the one for all viewpoints, if there is one
@@ -70,7 +70,7 @@ struct ScoreOptions {
     std::vector<double> margins = {2, 6, 10};  // % of the cap
 };
 
-// Holds the measures of some viewpoints. Shares are in [0, 1].
+// The measures of some viewpoints. Shares are in [0, 1].
 struct Scores {
     int viewpoints = 0, blocks = 0, open = 0;
     // Means over the viewpoints of the means over their blocks:

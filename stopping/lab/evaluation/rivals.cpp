@@ -45,7 +45,7 @@ std::span<const double> MasksOf(const RivalRule& rule) {
     return std::span(kMasks).first(rule.choosesMask ? std::size(kMasks) : 1);
 }
 
-// Says with what a rule is run.
+// With what a rule is run.
 struct Setting {
     double threshold = 0;
     size_t mask = 0;  // its place in kMasks

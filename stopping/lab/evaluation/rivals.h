@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Says what the best setting of a rule is: the one with the least mean error of the thresholds, or
+// What the best setting of a rule is: the one with the least mean error of the thresholds, or
 // with the least critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 

@@ -1,4 +1,4 @@
-// Says how well numbers tell two classes apart.
+// Measures how well numbers tell two classes apart.
 #pragma once
 
 #include <span>

@@ -17,7 +17,7 @@
 
 namespace lull {
 
-// Holds the numbers that a rule compares with its threshold, for sweeps of that.
+// The numbers that a rule compares with its threshold, for sweeps of that.
 struct ErrorSeries {
     std::vector<double> errors = {};  // of each record; infinite where there is none
     int needed = 1;                   // errors below the threshold in a row that stop the block
@@ -39,7 +39,7 @@ RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 
-// Says what a rule does to a block; can be called from several threads.
+// What a rule does to a block; can be called from several threads.
 using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 
 // Reads a rule as ParseRule() does, with the files it names and for the passes of the

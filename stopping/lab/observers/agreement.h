@@ -17,7 +17,7 @@ double StudentInterval(double share, int degrees);
 // each observer in it. Nothing if there are not two of both, or no variance.
 std::optional<double> IntraclassCorrelation(std::span<const std::vector<double>> ratings);
 
-// Says in a word how good such an agreement is, by the bounds of Koo and Li (Journal of
+// Returns in a word how good such an agreement is, by the bounds of Koo and Li (Journal of
 // Chiropractic Medicine 15(2), 2016): poor below 0.5, moderate below 0.75, good below 0.9, else
 // excellent.
 const char* AgreementInAWord(double correlation);

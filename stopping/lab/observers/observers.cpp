@@ -129,7 +129,7 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
     });
 }
 
-// Says of answers that count what is odd about them.
+// Returns what is odd about the answers that count.
 std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
     const auto add = [&](const std::string& doubt) {

@@ -18,7 +18,7 @@ struct RefusedAnswers {
     std::string file, reason;
 };
 
-// Says what is known of an observer's care. Octaves are of spp: 1 is a factor of two.
+// What is known of an observer's care. Octaves are of spp: 1 is a factor of two.
 struct CheckedObserver {
     ObserverAnswers answers;
     std::string leftOut;  // why; empty: the answers count

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds blocks to train on and others to judge by, which the training never sees.
+// Blocks to train on and others to judge by, which the training never sees.
 struct BlockSplit {
     std::string name = {};  // says what is left out
     std::vector<LabelledBlock> training = {}, test = {};

@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Holds the recordings of one viewpoint.
+// The recordings of one viewpoint.
 struct ViewpointRecording {
     std::string name;
     int blockCount = 0;  // in the whole image

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDoublings = 2;  // that laws are fitted to
 
-// Says how a number goes with the samples: power(value) = A + b n^exponent, where A can be 0.
+// How a number goes with the samples: power(value) = A + b n^exponent, where A can be 0.
 struct Law {
     double exponent = 0;  // 0: it stays what it is
     bool hasLevel = true;
@@ -40,7 +40,7 @@ Law LawOf(std::string_view channel) {
     return channel == "attributes26" ? kFilteredLaw : kConstant;
 }
 
-// Holds the law of one number of a record.
+// The law of one number of a record.
 struct Fit {
     Law law;
     double level = 0, slope = 0;

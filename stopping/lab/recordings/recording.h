@@ -22,7 +22,7 @@ struct Channel {
     bool optional = false;  // blocks that were recorded before it came do not have it
 };
 
-// Holds all of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
+// All of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
 // deviation are mean and standard deviation of L; texture is the mean of t, and noise,
 // masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
@@ -54,7 +54,7 @@ inline constexpr int kRecordLength = [] {
     return length;
 }();
 
-// Holds the history of one block.
+// The history of one block.
 struct BlockRecording {
     std::vector<int> spp;       // of the records, increasing
     std::vector<float> values;  // kRecordLength for each of them, 0 in channels that are absent
@@ -68,8 +68,8 @@ struct BlockRecording {
     std::span<const float> Values(int i, std::string_view channel) const;
 };
 
-// Says which passes are recorded: all up to 400 spp, then every second one (counted from the
-// first), and the last.
+// Returns whether a pass is recorded: all are up to 400 spp, then every second one (counted from
+// the first), and the last.
 bool IsRecorded(int spp, int passSpp, int cap);
 
 // Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks

@@ -40,7 +40,7 @@ std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoi
 std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
                                         const ModelSettings& settings);
 
-// Holds windows, one after the other.
+// Windows, one after the other.
 struct TrainingSamples {
     ModelSettings settings;
     int windowSize = 0;               // inputs * k

@@ -30,7 +30,7 @@ auto Sigmoid(const Array& x) {
     return (Scalar(1) + (-x).exp()).inverse();
 }
 
-// Holds what a layer has computed, as long as the way back needs it; a column a sample and step.
+// What a layer has computed, as long as the way back needs it; a column a sample and step.
 template <typename Scalar>
 struct LstmTrace {
     MatrixOf<Scalar> inputs;    // after dropout

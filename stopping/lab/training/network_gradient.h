@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds samples that go through the network together. Only float and double are instantiated.
+// Samples that go through the network together. Only float and double are instantiated.
 template <typename Scalar>
 struct SampleBatch {
     int count = 0, steps = 0;

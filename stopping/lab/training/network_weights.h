@@ -1,4 +1,4 @@
-// Holds the weights of a network that is being trained.
+// The weights of a network that is being trained.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ using MatrixOf = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using VectorOf = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// Holds the same as LstmLayer, with the paper's activations: sigmoid, and hard sigmoid for the
+// The same as LstmLayer, with the paper's activations: sigmoid, and hard sigmoid for the
 // gates.
 template <typename Scalar>
 struct LstmWeights {
@@ -24,14 +24,14 @@ struct LstmWeights {
     VectorOf<Scalar> bias;
 };
 
-// Holds the same as DenseLayer, with the sigmoid.
+// The same as DenseLayer, with the sigmoid.
 template <typename Scalar>
 struct DenseWeights {
     MatrixOf<Scalar> kernel;
     VectorOf<Scalar> bias;
 };
 
-// Holds the weights of a network, or a gradient with respect to them.
+// The weights of a network, or a gradient with respect to them.
 template <typename Scalar>
 struct NetworkWeights {
     std::vector<LstmWeights<Scalar>> lstm;
@@ -52,7 +52,7 @@ struct NetworkWeights {
     }
 };
 
-// Says how large a network is.
+// How large a network is.
 struct NetworkShape {
     int inputs = 0, steps = 0;               // of its sequences
     std::vector<int> lstm = {512, 128, 32};  // units; the paper's

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds Keras' RMSprop (Tieleman, Hinton 2012): with the running mean square a of the gradients g,
+// Keras' RMSprop (Tieleman, Hinton 2012): with the running mean square a of the gradients g,
 // a <- rho a + (1 - rho) g^2, w <- w - rate g / (sqrt(a) + epsilon).
 struct RmsProp {
     float rate = 1e-3f, rho = 0.9f, epsilon = 1e-7f;

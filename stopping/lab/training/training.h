@@ -66,7 +66,7 @@ class Trainer {
     void Restore(std::span<const std::byte> state);
 
   private:
-    // Holds a part of a batch. Its size is fixed, as sums depend on it; threads share the parts.
+    // A part of a batch. Its size is fixed, as sums depend on it; threads share the parts.
     struct Chunk {
         SampleBatch<float> batch;
         BatchResult<float> result;

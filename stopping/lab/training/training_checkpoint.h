@@ -15,7 +15,7 @@ namespace lull {
 // Puts bytes into a file, whole or not at all; throws what went wrong.
 using FileWriter = std::function<void(const std::string& path, std::span<const std::byte> bytes)>;
 
-// Holds the states of several trainings, by number, finished ones first.
+// The states of several trainings, by number, finished ones first.
 class TrainingCheckpoint {
   public:
     // An empty path stands for no file; `interval` seconds are between two writings of it.

@@ -1,4 +1,4 @@
-// Says what networks are trained on and judged by, and how.
+// The data and the options of a training, and of its evaluation.
 #pragma once
 
 #include <map>
@@ -34,7 +34,7 @@ std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan, std::span<const Lab
 // Throws std::runtime_error if n or the spacing of votes is no multiple of the recordings' pass.
 void CheckSpacing(const ModelSettings& settings, int passSpp);
 
-// Says what a network is trained on, and with which options; without the date, so that the same
+// Returns what a network is trained on, and with which options; without the date, so that the same
 // training gives the same text. Throws std::runtime_error if a file can no longer be read.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split);
 

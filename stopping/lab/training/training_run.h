@@ -22,7 +22,7 @@ struct TrainingEvents {
     std::function<bool()> isCancelled;  // is asked before each step; true ends the training
 };
 
-// Holds what came of a plan.
+// What came of a plan.
 struct TrainingResult {
     Network network;  // the last one
     // What networks did: "each viewpoint left out" and, of the last one, "blocks left out" or, if
@@ -40,10 +40,10 @@ std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
     const std::function<TrainingEvents(const BlockSplit&)>& eventsOf);
 
-// Says how far from the stops people's thresholds lie; empty where that is not known.
+// Returns how far from the stops people's thresholds lie; empty where that is not known.
 std::string CertaintyText(const TrainingResult& result);
 
-// Says what the last network was trained on, with which options, and how it was judged.
+// Returns what the last network was trained on, with which options, and how it was judged.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
                                               const ScoreOptions& judge);

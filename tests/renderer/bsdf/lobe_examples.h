@@ -110,7 +110,7 @@ inline Vec2f AlphasOf(const Lobe& lobe) {
     });
 }
 
-// Says whether wi is reached from wo over a microfacet whose outside wo sees. Elsewhere
+// Returns whether wi is reached from wo over a microfacet whose outside wo sees. Elsewhere
 // MicrofacetTransmission has pbrt-v3's values, but is never sampled.
 inline bool IsFrontFacing(const Lobe& lobe, const Vec3f& wo, const Vec3f& wi) {
     const auto* t = std::get_if<MicrofacetTransmission>(&lobe);

@@ -12,7 +12,7 @@ namespace {
 
 const PixelRect kPixel = {{3, 4}, {4, 5}};
 
-// Holds one pixel with its layers.
+// One pixel with its layers.
 struct OnePixel {
     Film film{kPixel};
     AovFilm aovs;

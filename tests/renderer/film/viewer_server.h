@@ -94,7 +94,7 @@ class ViewerServer {
     std::thread thread;
 };
 
-// Holds an image as the messages make it.
+// An image as the messages make it.
 struct ViewedImage {
     std::string name;
     int width = 0, height = 0, updates = 0;

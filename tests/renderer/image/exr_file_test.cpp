@@ -36,7 +36,7 @@ TEST(ExrChannels, AreSortedAsColoursAndAsVectors) {
     EXPECT_FALSE(IsAlpha("spp"));
 }
 
-// Holds what all files below hold: 7x5 texels of one channel.
+// What all files below hold: 7x5 texels of one channel.
 struct OneChannel {
     TemporaryDirectory directory;
     std::string path = directory.File("a.exr");

@@ -13,7 +13,7 @@ namespace {
 
 using Counts = std::map<std::string, int>;
 
-// Holds what the inventory says of a scene. Materials are those defined; lights and area lights
+// What the inventory says of a scene. Materials are those defined; lights and area lights
 // those in force.
 struct Inventory {
     std::string file;

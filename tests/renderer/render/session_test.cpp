@@ -49,7 +49,7 @@ SessionOptions OptionsFor(const std::string& checkpoint) {
     return options;
 }
 
-// Holds what a session has said.
+// What a session has said.
 struct Said {
     std::vector<std::string> resume, learning, warnings;
 

@@ -34,7 +34,7 @@ inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t
 // Context and options of a render, where a test changes either.
 struct RenderSetup : RenderContext, RenderOptions {};
 
-// Says whether all sums of both films are the same bits.
+// Returns whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {
     if (!(a.Region() == b.Region())) return false;
     for (int y = a.Region().min.y(); y < a.Region().max.y(); ++y)

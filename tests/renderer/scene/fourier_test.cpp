@@ -11,7 +11,7 @@
 namespace lull::test {
 namespace {
 
-// Holds what a .bsdf file does, to be spoilt.
+// What a .bsdf file does, to be spoilt.
 struct BsdfFile {
     std::string magic = "SCATFUN\x01";
     int flags = 1, order = 2, channels = 3, bases = 1;

@@ -7,7 +7,7 @@
 namespace lull::test {
 namespace {
 
-// Holds one material, of these factors.
+// One material, of these factors.
 struct SceneWith : MaterialScene {
     SceneWith(const std::map<std::string, float>& factors, bool solid = false) {
         MaterialEntity& m = AddMaterial("metallicroughness");

@@ -205,7 +205,7 @@ TEST(MipPyramid, RefusesWhatMemoryCannotHold) {
                  "leave out --filtering pbrt-v3"));
 }
 
-// Holds a picture of 4x4 texels, black and white alternately, as a texture filtered as asked for.
+// A picture of 4x4 texels, black and white alternately, as a texture filtered as asked for.
 struct Checks {
     TemporaryDirectory directory;
     TextureBuilder builder;

@@ -16,7 +16,7 @@ void ExpectRgb(const Rgb& a, const Rgb& b, float tolerance = 1e-6f) {
     EXPECT_LE((a - b).abs().maxCoeff(), tolerance) << a.transpose() << " | " << b.transpose();
 }
 
-// Holds what the bytes of kTexels mean, and files that say the same in several formats.
+// What the bytes of kTexels mean, and files that say the same in several formats.
 struct ImageFiles {
     TemporaryDirectory directory;
     std::string tga, exrHalf, exrFloat, png, grey;

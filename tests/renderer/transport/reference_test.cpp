@@ -144,7 +144,7 @@ std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estima
     return SceneIn(file.string(), options);
 }
 
-// Says whether pbrt-v3's texture filtering shows at 128x128, so that the test has to ask for it:
+// Returns whether pbrt-v3's texture filtering shows at 128x128, so that the test has to ask for it:
 // pbrt-v3 looks up small images of bump maps and textures from the camera, which smooths them.
 // Without its filtering pbrt-v3 differs from itself in the same tiles:
 //   staircase               nine imagemaps, a bump map

@@ -51,7 +51,7 @@ double ThreadSeconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-// Holds the shortest of the times a thing took, and how many rays it found to hit.
+// The shortest of the times a thing took, and how many rays it found to hit.
 struct Timing {
     double seconds = kInfinity;
     size_t hits = 0;

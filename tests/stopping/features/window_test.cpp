@@ -16,7 +16,7 @@ ModelSettings Plain(int k, int n) {
     return {.k = k, .n = n, .m = 4, .snorm = false, .bnorm = false};
 }
 
-// Holds the inputs of a block, and the settings that say what is kept of them.
+// The inputs of a block, and the settings that say what is kept of them.
 struct Inputs {
     ModelSettings settings;
     History<double> history = {};

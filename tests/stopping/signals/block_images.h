@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds what a BlockView shows.
+// What a BlockView shows.
 struct BlockImage {
     int width, height;
     std::vector<float> mean, halfMean;

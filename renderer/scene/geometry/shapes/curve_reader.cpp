@@ -35,7 +35,7 @@ std::array<Vec3f, 4> Elevated(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     return {a, Between(2.f / 3, a, b), Between(1.f / 3, b, c), c};
 }
 
-// Holds how control points make pieces.
+// How control points make pieces.
 struct Basis {
     bool isSpline;
     int degree;

@@ -90,7 +90,7 @@ class Search {
     std::optional<ShapeHit> nearest;
 
   private:
-    // Says whether the box around the part is where the ray goes. The y range, which is the
+    // Returns whether the box around the part is where the ray goes. The y range, which is the
     // smallest, comes first.
     bool CanHit(const ControlPoints& p, float u0, float u1) const {
         const float half = 0.5f * std::max(Lerp(u0, piece.width[0], piece.width[1]),

@@ -29,7 +29,7 @@ int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     return n;
 }
 
-// Holds one direction of a B-spline: order, knots and the range that is shown.
+// One direction of a B-spline: order, knots and the range that is shown.
 struct Spline {
     int count, order;
     std::vector<double> knots;

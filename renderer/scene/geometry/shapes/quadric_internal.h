@@ -19,7 +19,7 @@ PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& e
 void FinishQuadricHit(const QuadricPlacement&, const Vec3f& pShape, const Vec3f& errorShape,
                       SurfaceNeeds, SurfaceInteraction* hit);
 
-// Holds a ray in shape space, in double; the direction keeps its length so that t is the same.
+// A ray in shape space, in double; the direction keeps its length so that t is the same.
 struct ShapeRay {
     Eigen::Vector3d o, d;
 

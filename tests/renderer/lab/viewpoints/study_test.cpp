@@ -25,7 +25,7 @@ void WriteGrey(const std::string& path, int width, int height, float linear) {
     WriteExr(path, image);
 }
 
-// Says what reading a folder throws.
+// Returns what reading a folder throws.
 std::string ProblemOf(const TemporaryDirectory& folder) try {
     ReadStudy(folder.path.string(), "x", 200, 0, 1.25);
     return "";

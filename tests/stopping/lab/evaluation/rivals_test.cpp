@@ -11,7 +11,7 @@
 namespace lull::rivals_test {
 namespace {
 
-// Holds blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
+// Blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
 // by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
 struct Blocks {
     std::vector<BlockRecording> recordings;

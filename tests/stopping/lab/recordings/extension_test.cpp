@@ -85,7 +85,7 @@ TEST(Extension, LeavesWholeRecordingsAsTheyAre) {
     EXPECT_EQ(extended.blocks[1].recording, &whole);
 }
 
-// Holds how stops predicted from the first part of recordings compare with those that are.
+// How stops predicted from the first part of recordings compare with those that are.
 struct Prediction {
     double mean = 0, deviation = 0;  // of the ratio
     int count = 0;

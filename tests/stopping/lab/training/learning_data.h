@@ -19,7 +19,7 @@ inline std::string Line(const ThresholdsRow& row) {
     return line + "\n";
 }
 
-// Holds recordings of three viewpoints and thresholds of people for two of them, attic and barn.
+// Recordings of three viewpoints and thresholds of people for two of them, attic and barn.
 struct LearningData {
     std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("attic", 4, 1200),
                                                   MakeViewpoint("barn", 3, 1200),

@@ -13,7 +13,7 @@
 namespace lull {
 namespace {
 
-// Holds samples of a made-up viewpoint together with it.
+// Samples of a made-up viewpoint together with it.
 struct Data {
     std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 4, 1500)};
     TrainingSamples samples;
