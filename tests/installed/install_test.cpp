@@ -15,8 +15,7 @@ std::string Do(const TemporaryDirectory& directory, std::string command) {
     const std::string prefix = directory.File("moved tree");
     for (size_t at = 0; (at = command.find("TREE", at)) != std::string::npos;)
         command.replace(at, 4, "'" + prefix + "'");
-    const Outcome outcome = RunShell(directory, command);
-    EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.out << outcome.err;
+    const Outcome outcome = ExpectSuccess(RunShell(directory, command));
     return outcome.out;
 }
 

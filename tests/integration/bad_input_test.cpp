@@ -42,8 +42,7 @@ TEST(BadInput, WithSubstitutesIsRendered) {
         "Material \"metal\" \"spectrum k\" \"lost.spd\"\n";
     directory.Write("scene.pbrt", SceneText(world + "Include \"lost.pbrt\"\n" + kSphere));
     const std::string command = "render scene.pbrt --spp 2 -o a.exr";
-    const Outcome with = RunLull(directory, command + " --substitute");
-    EXPECT_EQ(with.exitCode, 0) << with.err;
+    const Outcome with = ExpectSuccess(directory, command + " --substitute");
     for (const char* lost :
          {"NamedMaterial \"none\"", "\"velvet\"", "there is no texture \"lost\"", "lost.png",
           "lost.ply", "ObjectInstance of \"lost\"", "coordinate system \"lost\"", "\"blob\"",
@@ -320,8 +319,7 @@ TEST(BadInput, BrokenTrianglesAreLeftOut) {
                     SceneText("AreaLightSource \"diffuse\"\nShape \"trianglemesh\" \"integer "
                               "indices\" [0 1 2] \"point P\" [0 0 0 1 1 1 2 2 2]\n" +
                               std::string(kSphere)));
-    const Outcome outcome = RunLull(directory, kRender);
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, kRender);
     EXPECT_TRUE(Contains(outcome.err, "warning")) << outcome.err;
 }
 

@@ -84,8 +84,7 @@ TEST(CommandLine, NamesImagesAfterTheScene) {
 TEST(CommandLine, HelpsAndTellsItsVersion) {
     const TemporaryDirectory directory;
     for (const char* arguments : {"--help", "render --help", "info --help", "--version"}) {
-        const Outcome outcome = RunLull(directory, arguments);
-        EXPECT_EQ(outcome.exitCode, 0) << arguments;
+        const Outcome outcome = ExpectSuccess(directory, arguments);
         EXPECT_TRUE(Contains(outcome.out, "lull")) << arguments;
         EXPECT_EQ(outcome.err, "") << arguments;
     }
@@ -109,9 +108,8 @@ TEST(CommandLine, HelpNamesChoices) {
 TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
     const SceneDirectory directory;
     for (const char* output : {"image.exr", "image.png"}) {
-        const Outcome outcome = RunLull(
+        const Outcome outcome = ExpectSuccess(
             directory, std::string("render scene.pbrt --spp 4 --report r.json -o ") + output);
-        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(outcome.out,
                   "image.exr\nimage.png\nimage.spp.png\nimage.thresholds.csv\nr.json\n");
     }
@@ -124,9 +122,8 @@ TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
 
 TEST(CommandLine, StopsAsPeopleWouldIfNothingElseIsAskedFor) {
     const SceneDirectory directory;
-    const Outcome outcome = RunLull(
-        directory, "render scene.pbrt --resolution 48x48 --cap 100 --report r.json -o image.exr");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  "render scene.pbrt --resolution 48x48 --cap 100 --report r.json -o image.exr");
     const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
     EXPECT_EQ(report["provenance"]["criterion"], "learned");
     EXPECT_NE(report["provenance"]["modelChecksum"], "");
@@ -142,9 +139,7 @@ TEST(CommandLine, TakesTheFileNameOfTheScene) {
 
 TEST(CommandLine, CropsByPixels) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory, "render scene.pbrt --spp 1 --quiet --crop 6,18,1,900px -o image.exr");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory, "render scene.pbrt --spp 1 --quiet --crop 6,18,1,900px -o image.exr");
     const ExrImage exr = ReadExr(directory.File("image.exr"));
     EXPECT_EQ(exr.origin, Vec2i(6, 1));
     EXPECT_EQ(exr.width, 12);
@@ -155,8 +150,7 @@ TEST(CommandLine, CropsByPixels) {
 TEST(CommandLine, PrintsThePathOfASample) {
     const SceneDirectory directory;
     const std::string command = "render scene.pbrt --pixel 12,8 --sample 3 --seed 5";
-    const Outcome outcome = RunLull(directory, command);
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, command);
     for (const char* part : {"Sample 3 of pixel 12,8", "camera at 0 0 -3", "on \"sphere, ",
                              "\nRadiance ", "leaves the scene"})
         EXPECT_TRUE(Contains(outcome.out, part)) << part << " is not in\n" << outcome.out;
@@ -167,11 +161,9 @@ TEST(CommandLine, PrintsThePathOfASample) {
 
 TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory,
-                "render scene.pbrt --spp 6 --seed 18446744073709551615 --crop 0.25,0.75,0,0.5 "
-                "--estimator pbrt-v3 -o image.exr");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  "render scene.pbrt --spp 6 --seed 18446744073709551615 --crop 0.25,0.75,0,0.5 "
+                  "--estimator pbrt-v3 -o image.exr");
     const ExrImage exr = ReadExr(directory.File("image.exr"));
     EXPECT_EQ(exr.width, 12);
     EXPECT_EQ(exr.height, 8);
@@ -202,9 +194,7 @@ TEST(CommandLine, FiltersImagesWhereAskedFor) {
                               "Material \"matte\" \"texture Kd\" \"t\"\n"
                               "Shape \"sphere\" \"float radius\" .9"));
     const auto render = [&](const std::string& options) {
-        const Outcome outcome =
-            RunLull(directory, "render striped.pbrt --spp 4 -o image.exr " + options);
-        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        ExpectSuccess(directory, "render striped.pbrt --spp 4 -o image.exr " + options);
         return ReadExr(directory.File("image.exr"));
     };
     const ExrImage plain = render(""), same = render("--filtering bilinear");
@@ -229,10 +219,9 @@ TEST(CommandLine, StopsBlocksAsARuleSays) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
     directory.Write("rows.csv", "scene;20;60;\n");
-    const Outcome outcome = RunLull(directory,
-                                    "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
-                                    "--stop thresholds:rows.csv:scene");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
+                  "--stop thresholds:rows.csv:scene");
     EXPECT_TRUE(ReadBytes(directory.File("image.thresholds.csv")).ends_with(";20;60;\n"));
     const ExrImage exr = ReadExr(directory.File("image.exr"));
     EXPECT_EQ(exr.Find("spp")->values.front(), 20);
@@ -249,8 +238,7 @@ TEST(CommandLine, WarnsOfFirstSamplesThatTakeLongerThanTheClock) {
                                                  "--time 1ms");
     EXPECT_TRUE(Contains(late.err, part)) << late.err;
     EXPECT_EQ(late.err.find(part), late.err.rfind(part)) << late.err;
-    const Outcome inTime = RunShell(directory, render + "--spp 20 --time 100s");
-    EXPECT_EQ(inTime.exitCode, 0);
+    const Outcome inTime = ExpectSuccess(RunShell(directory, render + "--spp 20 --time 100s"));
     EXPECT_FALSE(Contains(inTime.err, part)) << inTime.err;
 }
 
@@ -282,11 +270,10 @@ int Count(const std::vector<nlohmann::json>& events, const std::string& event) {
 
 TEST(CommandLine, PrintsNothingButJson) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory,
-                "render scene.pbrt --resolution 100x100 --block 50 --stop lnoise:0.5 --cap 100 "
-                "-o i.exr --json-progress --max-depth 3 --denoise-layers");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(
+        directory,
+        "render scene.pbrt --resolution 100x100 --block 50 --stop lnoise:0.5 --cap 100 "
+        "-o i.exr --json-progress --max-depth 3 --denoise-layers");
     const std::vector<nlohmann::json> events = EventsOf(outcome);
     EXPECT_EQ(Count(events, "stop"), 4) << outcome.err;
     EXPECT_EQ(Count(events, "file"), 4) << outcome.err;
@@ -323,8 +310,8 @@ TEST(CommandLine, PrintsNothingButJson) {
 TEST(CommandLine, TellsStoppedFromCapped) {
     const SceneDirectory directory;
     const std::string render = "render scene.pbrt --resolution 100x100 --block 50 --report r.json ";
-    const Outcome capped = RunLull(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
-    EXPECT_EQ(capped.exitCode, 0);
+    const Outcome capped =
+        ExpectSuccess(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
     for (const char* part : {"0 of 4 blocks stopped, 4 at the cap and not stopped",
                              "to stop below 0.01;", "would probably be enough for all"})
         EXPECT_TRUE(Contains(capped.err, part)) << part << "\n" << capped.err;
@@ -360,7 +347,7 @@ TEST(CommandLine, HelpsWithWrongUsage) {
     refuses("render scene.pbrt --stop lnoize", "--stop: ");
     refuses("render scene.pbrt --stop lnoise:x", "'x'");
     refuses("render scene.pbrt --report a.txt", "a.txt ends neither in .html nor in .json");
-    EXPECT_EQ(RunLull(directory, "--help").exitCode, 0);
+    ExpectSuccess(directory, "--help");
     EXPECT_EQ(RunLull(directory, "").exitCode, 2);
     EXPECT_EQ(directory.CountFiles(), 1);
 }
@@ -372,8 +359,7 @@ TEST(CommandLine, IsQuietWhenAsked) {
 
 TEST(CommandLine, TellsWhatIsInAScene) {
     const SceneDirectory directory;
-    const Outcome outcome = RunLull(directory, "info scene.pbrt");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, "info scene.pbrt");
     for (const char* part : {"sphere", "matte", "infinite", "24 x 16", "random", "perspective"})
         EXPECT_TRUE(Contains(outcome.out, part)) << part << "\n" << outcome.out;
     EXPECT_EQ(directory.CountFiles(), 1);

@@ -27,11 +27,10 @@ std::vector<float> Green(const TemporaryDirectory& directory, const std::string&
 
 TEST(Compare, OneRenderGivesTheImagesOfThree) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory, std::string("compare scene.pbrt") + kSize +
-                               "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
-                               "room --report room.html --verify 2");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(
+        directory, std::string("compare scene.pbrt") + kSize +
+                       "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
+                       "room --report room.html --verify 2");
     EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
     for (const char* file : {"room.automatic.exr", "room.human.png", "room.reference.exr",
                              "room.thresholds.csv", "room.compare.json", "room.html"}) {
@@ -52,9 +51,8 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
     EXPECT_EQ(ReadBytes(directory.File("room.automatic.png")), ReadBytes(directory.File("a.png")));
 
     // The same images, from their files, have the same errors.
-    const Outcome files = RunLull(
+    const Outcome files = ExpectSuccess(
         directory, "compare --automatic a.exr --human h.exr --reference r.exr --block 40 -o files");
-    ASSERT_EQ(files.exitCode, 0) << files.err;
     const Json one = directory.Read("room.compare.json"),
                other = directory.Read("files.compare.json");
     for (int i = 0; i < 2; ++i) {
@@ -72,8 +70,7 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
         RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
                                spp + ".exr");
     const std::string files = "compare --automatic at20.exr --reference at160.exr --block 40 ";
-    const Outcome near = RunLull(directory, files + "--viewing 200cd,20ppd -o near");
-    ASSERT_EQ(near.exitCode, 0) << near.err;
+    const Outcome near = ExpectSuccess(directory, files + "--viewing 200cd,20ppd -o near");
     EXPECT_TRUE(Contains(near.out, " blocks differ visibly at 20 pixels a degree\n")) << near.out;
     RunLull(directory, files + "--viewing 200cd,90ppd -o far");
     const Json json = directory.Read("near.compare.json"), image = json["images"][0];
@@ -93,11 +90,9 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
 
 TEST(Compare, MakesTheDenoisedImageOfARender) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory, std::string("compare scene.pbrt") + kSize +
-                               "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
-                               "room.html");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
+                                 "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
+                                 "room.html");
     RunLull(directory,
             std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
     EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
@@ -123,15 +118,13 @@ TEST(Compare, TakesPicturesForDisplays) {
                                " -o at" + spp + ".exr");
     const std::string files = "compare --block 40 ";
     const Outcome exr =
-        RunLull(directory, files + "--automatic at20.exr --reference at160.exr -o exr");
-    ASSERT_EQ(exr.exitCode, 0) << exr.err;
+        ExpectSuccess(directory, files + "--automatic at20.exr --reference at160.exr -o exr");
     EXPECT_FALSE(Contains(exr.err, "displays"));
     const Json expected = directory.Read("exr.compare.json")["images"][0];
     for (const char* names :
          {"--human at20.png --reference at160.exr", "--human at20.exr --reference at160.png",
           "--human at20.png --reference at160.png --report r.html"}) {
-        const Outcome outcome = RunLull(directory, files + names + " -o png");
-        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const Outcome outcome = ExpectSuccess(directory, files + names + " -o png");
         EXPECT_TRUE(Contains(outcome.err, "Pictures for displays: ")) << outcome.err;
         const Json json = directory.Read("png.compare.json"), image = json["images"][0];
         EXPECT_TRUE(Contains(json["notes"][0].get<std::string>(), "no radiance"));
@@ -146,9 +139,8 @@ TEST(Compare, TakesPicturesForDisplays) {
     }
     // Beside a render, too.
     const Outcome beside =
-        RunLull(directory, std::string("compare scene.pbrt") + kSize + part +
-                               "--stop fixed:20 --reference at160.png --cap 160 -o beside");
-    ASSERT_EQ(beside.exitCode, 0) << beside.err;
+        ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize + part +
+                                     "--stop fixed:20 --reference at160.png --cap 160 -o beside");
     const Json image = directory.Read("beside.compare.json")["images"][0];
     EXPECT_EQ(image["figures"]["flip"], expected["figures"]["flip"]);
     EXPECT_TRUE(image["figures"]["rmse"].is_null());
@@ -191,16 +183,13 @@ TEST(Compare, ReadsJpegAndGreyPictures) {
                                 std::string(32, '0') + "ffc400141001" + std::string(32, '0') +
                                 "ffda000c03010002000300003f00") +
                         std::string(48, '\0') + FromHex("ffd9"));
-    const Outcome outcome =
-        RunLull(directory, "compare --automatic grey.png --reference colour.JPG -o both");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory, "compare --automatic grey.png --reference colour.JPG -o both");
     const Json figures = directory.Read("both.compare.json")["images"][0]["figures"];
     EXPECT_LT(figures["rmseLightness"], 0.5);  // a step of 8 bits, if the JPEG has rounded
     directory.Write("grey.tif", GreyTiff(1));
     directory.Write("large.tif", GreyTiff(2));
-    const Outcome tiff = RunLull(
+    const Outcome tiff = ExpectSuccess(
         directory, "compare --automatic grey.tif --reference grey.png -o made/here/ --block 40");
-    ASSERT_EQ(tiff.exitCode, 0) << tiff.err;
     EXPECT_TRUE(Contains(tiff.out, "made/here/lull.compare.json\n"));
     EXPECT_EQ(
         directory.Read("made/here/lull.compare.json")["images"][0]["figures"]["rmseLightness"], 0);
@@ -214,10 +203,9 @@ TEST(Compare, ReadsJpegAndGreyPictures) {
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
     const SceneDirectory directory;
     RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
-    const Outcome outcome = RunLull(
-        directory, std::string("compare scene.pbrt") + kSize +
-                       "--stop fixed:60 --human human.csv:b --reference r.exr --cap 160 -o room");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  std::string("compare scene.pbrt") + kSize +
+                      "--stop fixed:60 --human human.csv:b --reference r.exr --cap 160 -o room");
     const Json json = directory.Read("room.compare.json");
     EXPECT_EQ(json["images"][0]["cost"]["samples"], 100 * 90 * 60);
     EXPECT_EQ(json["images"][0]["saved"]["estimated"], true);
@@ -229,7 +217,7 @@ TEST(Compare, GoesOnAfterAnInterruption) {
     const SceneDirectory directory;
     const std::string command = std::string("compare scene.pbrt") + kSize +
                                 "--snapshots --stop dammertz:0.005 --human human.csv:a --cap 600 ";
-    ASSERT_EQ(RunLull(directory, command + "-o whole").exitCode, 0);
+    ExpectSuccess(directory, command + "-o whole");
     int kills = 0;
     for (; kills < 100; ++kills) {
         const std::string limit =
@@ -284,11 +272,10 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
     const std::string size = " --resolution 48x44 --block 44 --quiet ";
     RunLull(directory, "render scene.pbrt" + size + "--spp 7 -o other.exr");
     directory.Write("others.csv", "someone,3.5,other.exr\n");
-    const Outcome outcome = RunLull(
+    const Outcome outcome = ExpectSuccess(
         directory,
         "bench scene.pbrt" + size +
             "--cap 100 --rule dammertz:0.03 --external others.csv -o room --report room.html");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "room.csv\nroom.html\n");
     const std::string csv = ReadBytes(directory.File("room.csv"));
     for (const char* part : {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,",
@@ -303,10 +290,9 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
 
 TEST(Bench, GuidesPathsToo) {
     const SceneDirectory directory;
-    const Outcome outcome = RunLull(directory,
-                                    "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                    "--samplers sobol --guide on -o room --report room.html");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory,
+                                          "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
+                                          "--samplers sobol --guide on -o room --report room.html");
     EXPECT_TRUE(Contains(outcome.err, "learned from")) << outcome.err;
     const std::string csv = ReadBytes(directory.File("room.csv"));
     // Both have the same points; that of the cap is another image's, not the reference.
@@ -316,19 +302,17 @@ TEST(Bench, GuidesPathsToo) {
     EXPECT_FALSE(Contains(csv, "sobol+guide,60,0,")) << csv;
     EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "sobol+guide"));
     // Where auto does not guide, there are no such points.
-    const Outcome few = RunLull(directory,
-                                "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                "--samplers sobol --guide auto -o few");
-    ASSERT_EQ(few.exitCode, 0) << few.err;
+    const Outcome few = ExpectSuccess(directory,
+                                      "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
+                                      "--samplers sobol --guide auto -o few");
     EXPECT_FALSE(Contains(ReadBytes(directory.File("few.csv")), "guide"));
 }
 
 TEST(Bench, DenoisesToo) {
     const SceneDirectory directory;
-    const Outcome outcome = RunLull(directory,
-                                    "bench scene.pbrt --resolution 48x44 --block 44 --cap 100 "
-                                    "--samplers sobol --denoise --rule denoised:20 -o room");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  "bench scene.pbrt --resolution 48x44 --block 44 --cap 100 "
+                  "--samplers sobol --denoise --rule denoised:20 -o room");
     std::map<std::string, double> errors, ruleSeconds;
     std::istringstream lines(ReadBytes(directory.File("room.csv")));
     for (std::string line; std::getline(lines, line);) {
@@ -354,7 +338,7 @@ TEST(Bench, GoesOnAfterAnInterruption) {
     const std::string command =
         "bench scene.pbrt --resolution 48x44 --block 44 --quiet --cap 400 --checkpoint-interval "
         "0.1 -o ";
-    ASSERT_EQ(RunLull(directory, command + "whole").exitCode, 0);
+    ExpectSuccess(directory, command + "whole");
     for (int kill = 0; kill < 100; ++kill) {
         const std::string limit =
             kill < 6 ? "timeout -s KILL 0." + std::to_string(2 + kill) + " " : "";
@@ -393,10 +377,8 @@ TEST(Bench, SaysWhatIsWrong) {
 
 TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
     const SceneDirectory directory;
-    const Outcome outcome =
-        RunLull(directory, std::string("render scene.pbrt") + kSize +
-                               "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory, std::string("render scene.pbrt") + kSize +
+                                 "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
     EXPECT_TRUE(ReadBytes(directory.File("r.html")).starts_with("<!DOCTYPE html>"));
     RunLull(directory, std::string("render scene.pbrt") + kSize +
                            "--stop lnoise:2 --cap 200 -o j.exr --report r.json");

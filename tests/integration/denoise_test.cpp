@@ -32,8 +32,7 @@ Channels ChannelsOf(const TemporaryDirectory& directory, const std::string& name
 }
 
 bool Succeeds(const TemporaryDirectory& directory, const std::string& command) {
-    const Outcome outcome = RunShell(directory, command);
-    EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.err;
+    const Outcome outcome = ExpectSuccess(RunShell(directory, command));
     return outcome.exitCode == 0;
 }
 
@@ -115,10 +114,10 @@ TEST(DenoiseCommand, TakesTwoRendersOfOthers) {
 TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
     const BoxDirectory directory;
     ExpectFailure(directory, "render scene.pbrt --spp 3 --denoise -o out.exr", {"--spp 3", "4"}, 2);
-    const Outcome small = RunShell(directory,
-                                   "LULL render scene.pbrt --spp 20 --denoise --resolution 8x8 "
-                                   "-o a.exr --report a.json");
-    EXPECT_EQ(small.exitCode, 0) << small.err;
+    const Outcome small =
+        ExpectSuccess(RunShell(directory,
+                               "LULL render scene.pbrt --spp 20 --denoise --resolution 8x8 "
+                               "-o a.exr --report a.json"));
     EXPECT_NE(small.err.find("not known: blocks have less than 10 pixels a side"),
               std::string::npos)
         << small.err;

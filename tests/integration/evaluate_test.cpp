@@ -54,8 +54,7 @@ TEST(Evaluate, PrintsThePublishedErrors) {
                       attributes = ThresholdsFile("26-attributes-rnn.csv");
     const TemporaryDirectory directory;
     const std::string files = " --human '" + human + "' --predicted '";
-    const Outcome first = RunLull(directory, "evaluate" + files + entropy + "' --grid 40");
-    EXPECT_EQ(first.exitCode, 0) << first.err;
+    const Outcome first = ExpectSuccess(directory, "evaluate" + files + entropy + "' --grid 40");
     EXPECT_TRUE(Contains(Line(first.out, "all"), "  15.05   13.51   12.16  ")) << first.out;
     EXPECT_TRUE(Contains(Line(first.out, "all"), "  38     608     0")) << first.out;
     const Outcome second =
@@ -67,8 +66,7 @@ TEST(Evaluate, PrintsThePublishedErrors) {
 TEST(Evaluate, ComparesTwoFiles) {
     const EvaluationDirectory directory;
     const std::string files = "evaluate --human human.csv --predicted predicted.csv";
-    const Outcome outcome = RunLull(directory, files + " --csv out.csv");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, files + " --csv out.csv");
     EXPECT_TRUE(Contains(outcome.err, "1 of 2 viewpoints")) << outcome.err;
     // 100 early and 800 late of 4 blocks; the first is early, the third late.
     EXPECT_TRUE(Contains(Line(outcome.out, "attic"), "  225    2.2   25.0   25.0")) << outcome.out;
@@ -87,10 +85,9 @@ TEST(Evaluate, ComparesTwoFiles) {
 TEST(Evaluate, RunsRulesOnRecordings) {
     const EvaluationDirectory directory;
     const Outcome outcome =
-        RunLull(directory,
-                "evaluate data.h5 --human human.csv --stop lnoise:0.51 --stop fixed:900 "
-                "--stop lnoise:0.3 --stop thresholds:all.csv --brief");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        ExpectSuccess(directory,
+                      "evaluate data.h5 --human human.csv --stop lnoise:0.51 --stop fixed:900 "
+                      "--stop lnoise:0.3 --stop thresholds:all.csv --brief");
     EXPECT_TRUE(Contains(outcome.err, "no thresholds for 'shed'")) << outcome.err;
     // Seven blocks of two viewpoints; at 0.3 all but the one at the cap end before they stop.
     EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.51"), "  2       7     0")) << outcome.out;
@@ -107,11 +104,11 @@ TEST(Evaluate, RunsRulesOnRecordings) {
 TEST(Evaluate, ComparesRivals) {
     const EvaluationDirectory directory;
     for (const char* choice : {"error", "critical"}) {
-        const Outcome outcome = RunLull(directory,
-                                        "evaluate data.h5 --human human.csv --rivals --predicted "
-                                        "all.csv --choose-by " +
-                                            std::string(choice));
-        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        const Outcome outcome =
+            ExpectSuccess(directory,
+                          "evaluate data.h5 --human human.csv --rivals --predicted "
+                          "all.csv --choose-by " +
+                              std::string(choice));
         // The last table has all of them.
         const std::string table = outcome.out.substr(outcome.out.rfind("\nrule ") + 1);
         for (const char* rule : {"dammertz", "cycles", "luxtile", "lnoise"})
@@ -139,8 +136,7 @@ TEST(Evaluate, EvaluatesRulesBySingleAnswers) {
     const std::string command =
         "evaluate data.h5 --without cellar --without shed --answers answers.csv --stop lnoise:0.5 "
         "--stop fixed:1600 --csv out.csv ";
-    const Outcome outcome = RunLull(directory, command);
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, command);
     EXPECT_TRUE(Contains(outcome.out, "attic: 45 of 88 answers, to 4 of 4 blocks, count"))
         << outcome.out;
     EXPECT_TRUE(Contains(outcome.out, "left out: 43 answers at spp where not every rule has"));
@@ -193,7 +189,7 @@ TEST(Evaluate, SaysWhatIsWrong) {
           "evaluate data.h5 --answers answers.csv --rivals --stop fixed:20",
           "evaluate data.h5 --answers answers.csv --human human.csv --stop fixed:20"})
         EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
-    EXPECT_EQ(RunLull(directory, "evaluate --help").exitCode, 0);
+    ExpectSuccess(directory, "evaluate --help");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ auto Texels(const TemporaryDirectory& directory, const std::string& name) {
 TEST(GuideOption, KilledWhileLearningComesToTheSameBits) {
     const SceneDirectory directory;
     const std::string render = "LULL render room.pbrt --spp 128 --guide on --quiet ";
-    ASSERT_EQ(RunShell(directory, render + "-o whole.exr --threads 1").exitCode, 0);
+    ExpectSuccess(RunShell(directory, render + "-o whole.exr --threads 1"));
     const std::string parts =
         render + "-o parts.exr --threads 2 --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
     // After the first checkpoint, and then at several moments.
@@ -53,8 +53,7 @@ TEST(GuideOption, ReportSaysWhatWasDecided) {
     const SceneDirectory directory;
     const auto guideOf = [&](const std::string& options) {
         const Outcome outcome =
-            RunLull(directory, "render room.pbrt -o a.exr --report r.json " + options);
-        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+            ExpectSuccess(directory, "render room.pbrt -o a.exr --report r.json " + options);
         const auto made = nlohmann::json::parse(ReadBytes(directory.File("r.json")))["provenance"];
         const bool isSaid = Contains(outcome.err, "lull: guide: ");
         EXPECT_EQ(isSaid, made.contains("guide")) << outcome.err;
@@ -84,12 +83,8 @@ TEST(GuideOption, RefusesWhatItCannotGuide) {
     EXPECT_EQ(RunLull(directory, "render room.pbrt --guide-memory 8").exitCode, 2);
     EXPECT_EQ(RunLull(directory, "render room.pbrt --guide on --guide-memory 0").exitCode, 2);
     // Where auto finds that nothing can be guided, the image is that without.
-    ASSERT_EQ(RunLull(directory, "render room.pbrt -o a.exr --spp 4 --estimator pbrt-v3").exitCode,
-              0);
-    ASSERT_EQ(
-        RunLull(directory, "render room.pbrt -o b.exr --spp 4 --estimator pbrt-v3 --guide auto")
-            .exitCode,
-        0);
+    ExpectSuccess(directory, "render room.pbrt -o a.exr --spp 4 --estimator pbrt-v3");
+    ExpectSuccess(directory, "render room.pbrt -o b.exr --spp 4 --estimator pbrt-v3 --guide auto");
     EXPECT_TRUE(Texels(directory, "a.exr") == Texels(directory, "b.exr"));
 }
 

@@ -37,7 +37,7 @@ bool SameImages(const TemporaryDirectory& directory, const std::string& a, const
 TEST(Interruption, KilledRendersComeToTheSameBits) {
     const SceneDirectory directory;
     const auto begin = std::chrono::steady_clock::now();
-    ASSERT_EQ(RunShell(directory, RenderCommand("-o whole.exr --threads 2")).exitCode, 0);
+    ExpectSuccess(RunShell(directory, RenderCommand("-o whole.exr --threads 2")));
     const double whole =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
@@ -66,7 +66,7 @@ TEST(Interruption, KilledRendersComeToTheSameBits) {
 
 TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
     const SceneDirectory directory;
-    ASSERT_EQ(RunShell(directory, RenderCommand("-o whole.exr")).exitCode, 0);
+    ExpectSuccess(RunShell(directory, RenderCommand("-o whole.exr")));
     const Outcome interrupted = RunAndSignal(
         directory, RenderCommand("-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1"),
         SIGTERM, "c.h5");
@@ -79,9 +79,7 @@ TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
     EXPECT_EQ(refused.exitCode, 1);
     EXPECT_TRUE(Contains(refused.err, "--resume")) << refused.err;
 
-    const Outcome resumed =
-        RunShell(directory, RenderCommand("-o parts.exr --checkpoint c.h5 --resume"));
-    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSuccess(RunShell(directory, RenderCommand("-o parts.exr --checkpoint c.h5 --resume")));
     EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole"));
 }
 
@@ -136,11 +134,10 @@ TEST(Interruption, GoesOnToMore) {
     const std::string keep = "--checkpoint c.h5 --resume --keep-checkpoint -o parts.exr ";
     const auto expectSame = [&](const std::string& before, const std::string& after) {
         std::filesystem::remove(directory.File("c.h5"));
-        ASSERT_EQ(render(keep + before).exitCode, 0);
+        ExpectSuccess(render(keep + before));
         ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
-        const Outcome more = render(keep + after);
-        ASSERT_EQ(more.exitCode, 0) << more.err;
-        ASSERT_EQ(render("-o whole.exr " + after).exitCode, 0);
+        const Outcome more = ExpectSuccess(render(keep + after));
+        ExpectSuccess(render("-o whole.exr " + after));
         EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole")) << after;
         EXPECT_TRUE(SameImages(directory, "parts", "whole")) << after;
     };
@@ -150,18 +147,18 @@ TEST(Interruption, GoesOnToMore) {
     expectSame("--stop lnoise:0.8 --cap 300", "--stop lnoise:0.8 --cap 300 --caution 3");
 
     // The rule that looks at passes in a row begins anew, with what there is.
-    const Outcome learned = render("--checkpoint c.h5 --resume -o parts.exr --cap 400");
-    ASSERT_EQ(learned.exitCode, 0) << learned.err;
+    const Outcome learned =
+        ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 400"));
     EXPECT_TRUE(Contains(learned.err, "going on from c.h5, with another rule")) << learned.err;
     EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
 
-    ASSERT_EQ(render(keep + "--spp 30").exitCode, 0);
+    ExpectSuccess(render(keep + "--spp 30"));
     const Outcome fewer = render(keep + "--spp 20");
     EXPECT_EQ(fewer.exitCode, 1);
     EXPECT_TRUE(Contains(fewer.err, "blocks of 30 spp, more than the cap of 20")) << fewer.err;
     // With nothing left to do the files are written again.
     std::filesystem::remove(directory.File("parts.exr"));
-    EXPECT_EQ(render(keep + "--spp 30").exitCode, 0);
+    ExpectSuccess(render(keep + "--spp 30"));
     EXPECT_TRUE(std::filesystem::exists(directory.File("parts.exr")));
 }
 
@@ -180,8 +177,7 @@ TEST(Interruption, SaysHowToGoOn) {
     ASSERT_NE(at, std::string::npos);
     const std::string command =
         interrupted.err.substr(at + 10, interrupted.err.find('\n', at) - at - 10);
-    const Outcome resumed = RunShell(directory, command + " --time 1s");
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const Outcome resumed = ExpectSuccess(RunShell(directory, command + " --time 1s"));
     EXPECT_TRUE(Contains(resumed.err, "going on from c.h5")) << resumed.err;
 }
 
@@ -189,14 +185,14 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
     const SceneDirectory directory;
     const std::string record =
         "LULL dataset scene.pbrt --name a --resolution 400x200 --cap 40 --quiet";
-    ASSERT_EQ(RunShell(directory, record + " -o whole.h5").exitCode, 0);
+    ExpectSuccess(RunShell(directory, record + " -o whole.h5"));
     for (int kill = 0; kill < 3; ++kill) {
         const Outcome killed =
             RunAndSignal(directory, record + " -o parts.h5 --checkpoint-interval 0.1", SIGKILL,
                          "parts.h5.a.checkpoint");
         ASSERT_EQ(killed.exitCode, 137) << killed.err;
     }
-    ASSERT_EQ(RunShell(directory, record + " -o parts.h5").exitCode, 0);
+    ExpectSuccess(RunShell(directory, record + " -o parts.h5"));
     // The same but for the notes of what it cost, which are attributes of a few characters.
     const std::string whole = ReadBytes(directory.File("whole.h5")),
                       parts = ReadBytes(directory.File("parts.h5"));
@@ -206,8 +202,7 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
     EXPECT_LT(different, 100u);
 
     // What is there already is not recorded again.
-    const Outcome again = RunShell(directory, record + " -o whole.h5");
-    EXPECT_EQ(again.exitCode, 0);
+    const Outcome again = ExpectSuccess(RunShell(directory, record + " -o whole.h5"));
     EXPECT_TRUE(Contains(again.err, "already")) << again.err;
     EXPECT_EQ(ReadBytes(directory.File("whole.h5")), whole);
 }

@@ -26,11 +26,9 @@ TEST(Judge, RecordsWhatDatasetDoes) {
     const std::string same =
         " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet --estimator pbrt-v3 ";
     const Outcome judge =
-        RunLull(directory, "judge -o s.html --record a.h5 --sampler random" + same);
-    ASSERT_EQ(judge.exitCode, 0) << judge.err;
+        ExpectSuccess(directory, "judge -o s.html --record a.h5 --sampler random" + same);
     EXPECT_TRUE(Contains(judge.out, "s.html\na.h5\n"));
-    const Outcome dataset = RunLull(directory, "dataset -o b.h5" + same);
-    ASSERT_EQ(dataset.exitCode, 0) << dataset.err;
+    ExpectSuccess(directory, "dataset -o b.h5" + same);
     const ViewpointRecording a = ReadDataset(directory.File("a.h5")).at(0);
     const ViewpointRecording b = ReadDataset(directory.File("b.h5")).at(0);
     EXPECT_EQ(a.name, "room");
@@ -53,9 +51,8 @@ TEST(Judge, GoesOnWhereItWasInterrupted) {
     EXPECT_TRUE(Contains(interrupted.err, "interrupted; to go on: ")) << interrupted.err;
     EXPECT_FALSE(Contains(interrupted.err, "--resume")) << interrupted.err;
     EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
-    const Outcome resumed = RunShell(directory, command + "a.html");
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
-    EXPECT_EQ(RunShell(directory, command + "b.html").exitCode, 0);
+    ExpectSuccess(RunShell(directory, command + "a.html"));
+    ExpectSuccess(RunShell(directory, command + "b.html"));
     EXPECT_EQ(StudyIn(ReadBytes(directory.File("a.html"))),
               StudyIn(ReadBytes(directory.File("b.html"))));
     EXPECT_EQ(directory.CountFiles(), 3);  // the scene and two studies
@@ -66,9 +63,7 @@ TEST(Judge, TakesPicturesOfOtherRenderers) {
     WriteScene(directory);
     std::filesystem::create_directory(directory.path / "pictures");
     for (const char* spp : {"20", "40", "80"}) {
-        const Outcome outcome =
-            RunLull(directory, fmt::format("render scene.pbrt --quiet --spp {0} -o r.exr", spp));
-        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        ExpectSuccess(directory, fmt::format("render scene.pbrt --quiet --spp {0} -o r.exr", spp));
         std::filesystem::rename(directory.File("r.png"),
                                 directory.File(fmt::format("pictures/r-{}spp.png", spp)));
     }
@@ -94,9 +89,8 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     directory.Write("b.json", with({.observer = "b", .session = "2", .levels = {3, 2, 3, 4}}));
     directory.Write("c.json", with({.observer = "c", .session = "3", .failed = 3}));
     directory.Write("d.json", "{\"format\":");
-    const Outcome outcome = RunLull(
+    const Outcome outcome = ExpectSuccess(
         directory, "judge --collect a.json b.json c.json d.json -o human.csv --report r.html");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(outcome.out,
               "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
     EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));

@@ -63,8 +63,7 @@ struct LayersTest : testing::Test {
                                   "[.2 .4 .6]\nNamedMaterial \"clay\"\nShape \"sphere\""));
     }
     void Render(const std::string& options) {
-        const Outcome outcome = RunLull(directory, "render scene.pbrt --quiet " + options);
-        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        ExpectSuccess(directory, "render scene.pbrt --quiet " + options);
     }
     bool SameChannels(const std::string& a, const std::string& b) {
         const ExrImage x = ReadExr(directory.File(a)), y = ReadExr(directory.File(b));
@@ -133,8 +132,7 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
                                    "--checkpoint c.h5 --resume");
     EXPECT_EQ(other.exitCode, 1);
     EXPECT_TRUE(Contains(other.err, "another aov")) << other.err;
-    const Outcome resumed = RunShell(directory, render + "--resume");
-    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSuccess(RunShell(directory, render + "--resume"));
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
 }
 
@@ -246,9 +244,8 @@ TEST_F(LayersTest, RendersWithoutAViewerAllTheSame) {
         ViewerServer server;
         address = server.Address();
     }
-    const Outcome outcome =
-        RunLull(directory, "render scene.pbrt --quiet --spp 200 -o a.exr --display " + address);
-    EXPECT_EQ(outcome.exitCode, 0);
+    const Outcome outcome = ExpectSuccess(
+        directory, "render scene.pbrt --quiet --spp 200 -o a.exr --display " + address);
     const std::string mark = "lull: warning: no viewer at " + address;
     const size_t found = outcome.err.find(mark);
     EXPECT_NE(found, std::string::npos) << outcome.err;

@@ -112,7 +112,7 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     const Inputs directory;
     const std::string render =
         "LULL render scene.pbrt --resolution 100x90 --block 40 --quiet -o out.exr ";
-    ASSERT_EQ(RunShell(directory, render + "--cap 40").exitCode, 0);
+    ExpectSuccess(RunShell(directory, render + "--cap 40"));
     const std::vector<std::string> others = {directory.File("out.thresholds.csv"),
                                              directory.File("out.ranges.csv")};
     for (const std::string& file : others) ASSERT_TRUE(fs::exists(file)) << file;
@@ -152,9 +152,9 @@ TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
 // Rules that know nothing of people have no ranges of theirs.
 TEST(Outputs, RendersLeaveNoOlderRanges) {
     const Inputs directory;
-    ASSERT_EQ(RunLull(directory, "render scene.pbrt --quiet -o out.exr --cap 40").exitCode, 0);
+    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --cap 40");
     ASSERT_TRUE(fs::exists(directory.File("out.ranges.csv")));
-    ASSERT_EQ(RunLull(directory, "render scene.pbrt --quiet -o out.exr --spp 40").exitCode, 0);
+    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --spp 40");
     EXPECT_FALSE(fs::exists(directory.File("out.ranges.csv")));
     EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
 }
@@ -162,7 +162,7 @@ TEST(Outputs, RendersLeaveNoOlderRanges) {
 // /dev/full is a disk that is always full.
 TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
-    ASSERT_EQ(RunLull(directory, fmt::format("render {} -o whole.exr", kOptions)).exitCode, 0);
+    ExpectSuccess(directory, fmt::format("render {} -o whole.exr", kOptions));
     fs::create_symlink("/dev/full", directory.File("out.exr"));
     fs::create_directory(directory.File("other"));
     const Outcome outcome =
@@ -183,9 +183,7 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
 
 TEST(Outputs, DenoisedPicturesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
-    ASSERT_EQ(
-        RunLull(directory, fmt::format("render {} --denoise-layers -o in.exr", kOptions)).exitCode,
-        0);
+    ExpectSuccess(directory, fmt::format("render {} --denoise-layers -o in.exr", kOptions));
     fs::create_symlink("/dev/full", directory.File("out.exr"));
     const Outcome outcome = RunShell(directory, "TMPDIR=. LULL denoise in.exr -o out.exr");
     EXPECT_EQ(outcome.exitCode, 1);

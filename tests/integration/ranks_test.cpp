@@ -74,10 +74,9 @@ TEST_F(RanksTest, RefuseViewers) {
 }
 
 TEST_F(RanksTest, ComeToTheSameBits) {
-    ASSERT_EQ(Run(std::string(kRender) + kShort + "-o one.exr").exitCode, 0);
+    ExpectSuccess(Run(std::string(kRender) + kShort + "-o one.exr"));
     for (const int ranks : {1, 2, 3, 4}) {
-        const Outcome outcome = Run(Ranks(ranks) + kRender + kShort + "-o some.exr");
-        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const Outcome outcome = ExpectSuccess(Run(Ranks(ranks) + kRender + kShort + "-o some.exr"));
         EXPECT_EQ(outcome.out, "some.exr\nsome.png\nsome.spp.png\nsome.thresholds.csv\n");
         ExpectSame("one", "some");
     }
@@ -85,9 +84,8 @@ TEST_F(RanksTest, ComeToTheSameBits) {
 
 TEST_F(RanksTest, ShowPreviews) {
     const std::string render = std::string(kRender) + "--spp 400 ";
-    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
-    const Outcome outcome = Run(Ranks(2) + render + "-o some.exr --preview 0.1");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(Run(render + "-o one.exr"));
+    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr --preview 0.1"));
     ExpectSame("one", "some");
     EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
 }
@@ -95,9 +93,8 @@ TEST_F(RanksTest, ShowPreviews) {
 // Each learns by itself.
 TEST_F(RanksTest, LearnTheSame) {
     const std::string render = std::string(kRender) + "--spp 32 --guide on ";
-    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
-    const Outcome outcome = Run(Ranks(2) + render + "-o some.exr");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(Run(render + "-o one.exr"));
+    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr"));
     ExpectSame("one", "some");
 }
 
@@ -105,18 +102,17 @@ TEST_F(RanksTest, ShareLayers) {
     const std::string render =
         std::string(kRender) + "--aov albedo,normal,depth,position,object,material,noise ";
     const std::string guided = render + "--guide on --spp 32 ";
-    ASSERT_EQ(Run(guided + "-o one.exr").exitCode, 0);
-    ASSERT_EQ(Run(Ranks(3) + guided + "-o some.exr").exitCode, 0);
+    ExpectSuccess(Run(guided + "-o one.exr"));
+    ExpectSuccess(Run(Ranks(3) + guided + "-o some.exr"));
     ExpectSameLayers("one", "some");
 
     const std::string whole = render + "--stop lnoise:0.3 --cap 500 ";
-    ASSERT_EQ(Run(whole + "-o one.exr").exitCode, 0);
+    ExpectSuccess(Run(whole + "-o one.exr"));
     const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
     const Outcome interrupted =
         RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
     EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
-    const Outcome resumed = Run(Ranks(3) + parts);
-    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSuccess(Run(Ranks(3) + parts));
     ExpectSameLayers("one", "parts");
 }
 
@@ -124,9 +120,8 @@ TEST_F(RanksTest, ShareLayers) {
 TEST_F(RanksTest, DenoiseTheSame) {
     const std::string render =
         std::string(kRender) + "--denoise --stop denoised:0.1 --cap 300 --report ";
-    ASSERT_EQ(Run(render + "one.html -o one.exr").exitCode, 0);
-    const Outcome outcome = Run(Ranks(3) + render + "some.html -o some.exr");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(Run(render + "one.html -o one.exr"));
+    ExpectSuccess(Run(Ranks(3) + render + "some.html -o some.exr"));
     ExpectSame("one", "some");
     const ExrImage one = ReadExr(directory.File("one.exr")),
                    some = ReadExr(directory.File("some.exr"));
@@ -139,13 +134,13 @@ TEST_F(RanksTest, DenoiseTheSame) {
     const Outcome interrupted =
         RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
     EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
-    ASSERT_EQ(Run(Ranks(3) + parts).exitCode, 0);
+    ExpectSuccess(Run(Ranks(3) + parts));
     ExpectSame("one", "parts");
 }
 
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     const std::string render = std::string(kRender) + "--cap 800 --stop lnoise:0.2 ";
-    ASSERT_EQ(Run(render + "-o one.exr").exitCode, 0);
+    ExpectSuccess(Run(render + "-o one.exr"));
     const std::string parts =
         render + "-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1 --resume";
 
@@ -167,49 +162,42 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
     std::filesystem::copy(directory.File("c.h5"), directory.File("before.h5"));
 
-    const Outcome resumed = Run(Ranks(2) + parts);
-    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    ExpectSuccess(Run(Ranks(2) + parts));
     ExpectSame("one", "parts");
 
     std::filesystem::rename(directory.File("before.h5"), directory.File("c.h5"));
-    ASSERT_EQ(Run(parts).exitCode, 0);
+    ExpectSuccess(Run(parts));
     ExpectSame("one", "parts");
 }
 
 // For ever: the clock still ends the render, and the others make up for it.
 TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
-    const Outcome stopped =
+    const Outcome stopped = ExpectSuccess(
         Run("timeout -s KILL 120 " + Ranks(3) + kRender +
             "--stop fixed:100000 -o parts.exr --time 9s --checkpoint c.h5 --checkpoint-interval 0.5"
             " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
             "mpi=$(echo $(cat /proc/$p/task/$p/children)); "
             "for child in $(cat /proc/$mpi/task/$mpi/children); do last=$child; done; "
-            "kill -STOP $last; wait $p");
-    ASSERT_EQ(stopped.exitCode, 0) << stopped.err;
+            "kill -STOP $last; wait $p"));
     const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
-    ASSERT_EQ(Run(std::string(kRender) +
-                  "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr")
-                  .exitCode,
-              0);
+    ExpectSuccess(Run(std::string(kRender) +
+                      "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));
     EXPECT_EQ(Texels("parts"), Texels("again"));
 }
 
 // Nobody waits for it, for longer than the clock allows.
 TEST_F(RanksTest, GoOnWithoutOneThatIsStoppedWhileItLoadsTheScene) {
     const std::string render = std::string(kRender) + "--stop fixed:100000 --time 9s -o parts.exr ";
-    const Outcome stopped =
+    const Outcome stopped = ExpectSuccess(
         Run(fmt::format("timeout -s KILL 120 {}{}: -n 1 env LD_PRELOAD='{}' OPENED_FILE=scene.pbrt "
                         "OPENED_SIGNAL={} {}",
-                        Ranks(2), render, SIGNAL_AT_OPEN, SIGSTOP, render));
-    ASSERT_EQ(stopped.exitCode, 0) << stopped.err;
+                        Ranks(2), render, SIGNAL_AT_OPEN, SIGSTOP, render)));
     const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
-    ASSERT_EQ(Run(std::string(kRender) +
-                  "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr")
-                  .exitCode,
-              0);
+    ExpectSuccess(Run(std::string(kRender) +
+                      "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));
     EXPECT_EQ(Texels("parts"), Texels("again"));
 }
 
@@ -217,8 +205,7 @@ TEST_F(RanksTest, CompareBenchAndRecord) {
     const std::string size = " scene.pbrt --resolution 60x45 --quiet --cap 60 --threads 1 ";
     const auto runBoth = [&](const std::string& command) {
         for (const auto& [launch, name] : {std::pair(std::string(), "one"), {Ranks(3), "some"}}) {
-            const Outcome outcome = Run(launch + "LULL " + command + " -o " + name);
-            ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+            ExpectSuccess(Run(launch + "LULL " + command + " -o " + name));
         }
     };
     runBoth("compare" + size + "--block 25 --stop lnoise:0.5 --snapshots --denoise");
@@ -236,7 +223,7 @@ TEST_F(RanksTest, CompareBenchAndRecord) {
     ASSERT_EQ(some.at(0).blocks.size(), 1u);
     EXPECT_EQ(some[0].blocks.at(0).spp, one.at(0).blocks.at(0).spp);
     EXPECT_EQ(some[0].blocks.at(0).values, one[0].blocks.at(0).values);
-    EXPECT_EQ(Run(Ranks(2) + "LULL dataset --name a" + size + "--blocks 0 -o some").exitCode, 0);
+    ExpectSuccess(Run(Ranks(2) + "LULL dataset --name a" + size + "--blocks 0 -o some"));
 }
 
 TEST_F(RanksTest, SaySharedErrorsOnce) {
@@ -267,12 +254,10 @@ TEST_F(RanksTest, RefuseToRenderDifferentScenes) {
 }
 
 TEST_F(RanksTest, EndByTheClock) {
-    const Outcome timed = Run(Ranks(3) + kRender + "--stop fixed:100000 -o timed.exr --time 4s");
-    ASSERT_EQ(timed.exitCode, 0) << timed.err;
-    ASSERT_EQ(Run(std::string(kRender) +
-                  "--stop thresholds:timed.thresholds.csv --cap 100000 -o again.exr")
-                  .exitCode,
-              0);
+    const Outcome timed =
+        ExpectSuccess(Run(Ranks(3) + kRender + "--stop fixed:100000 -o timed.exr --time 4s"));
+    ExpectSuccess(Run(std::string(kRender) +
+                      "--stop thresholds:timed.thresholds.csv --cap 100000 -o again.exr"));
     EXPECT_EQ(Texels("timed"), Texels("again"));
 }
 

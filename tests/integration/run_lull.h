@@ -30,6 +30,15 @@ inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& a
     return RunShell(directory, "LULL " + arguments);
 }
 
+// Expects that the program, run, reported no failure; returns its outcome.
+inline Outcome ExpectSuccess(Outcome outcome) {
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return outcome;
+}
+inline Outcome ExpectSuccess(const TemporaryDirectory& directory, const std::string& arguments) {
+    return ExpectSuccess(RunLull(directory, arguments));
+}
+
 // A small scene that renders at once; `world` is what is in it.
 inline std::string SceneText(const std::string& world, const std::string& film = "") {
     return "LookAt 0 0 -3  0 0 0  0 1 0\n"

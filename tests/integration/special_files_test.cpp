@@ -16,11 +16,10 @@ constexpr const char* kLimit = "timeout 20 LULL ";
 TEST(Writers, OfOneDatasetLoseNothing) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
-    const Outcome outcome = RunShell(
+    ExpectSuccess(RunShell(
         directory,
         "for v in v1 v2 v3; do LULL dataset scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
-        "--threads 1 --name $v -o d.h5 --quiet & done; wait");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        "--threads 1 --name $v -o d.h5 --quiet & done; wait"));
     EXPECT_EQ(ReadDataset(directory.File("d.h5")).size(), 3u);
     EXPECT_EQ(directory.CountFiles(), 2);
 }
@@ -60,8 +59,7 @@ TEST(Substitutes, OfManyMaterialsAreToldTenTimes) {
     directory.Write("scene.pbrt", SceneText(world + kSphere));
     const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
     const Outcome with =
-        RunLull(directory, "render scene.pbrt --substitute --spp 1 -o a.exr --quiet");
-    EXPECT_EQ(with.exitCode, 0) << with.err;
+        ExpectSuccess(directory, "render scene.pbrt --substitute --spp 1 -o a.exr --quiet");
     EXPECT_EQ(lines(with.err), 11) << with.err;
     EXPECT_TRUE(Contains(with.err, "and 19990 more: material \"...\" is not modelled; "))
         << with.err;
@@ -92,8 +90,8 @@ TEST(HalfExr, IsClampedWithOneWarning) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText("AreaLightSource \"area\" \"rgb L\" [1e5 1e5 1e5] " +
                                             std::string(kSphere)));
-    const Outcome outcome = RunLull(directory, "render scene.pbrt --spp 2 --exr-half -o a.exr");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome =
+        ExpectSuccess(directory, "render scene.pbrt --spp 2 --exr-half -o a.exr");
     const std::string warning = "values clamped to 65504: ";
     const size_t first = outcome.err.find(warning);
     EXPECT_NE(first, std::string::npos) << outcome.err;
@@ -103,10 +101,8 @@ TEST(HalfExr, IsClampedWithOneWarning) {
 TEST(Transparent, IsNeverNegativeWhereDenoised) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
-    const Outcome outcome =
-        RunLull(directory,
-                "render scene.pbrt --resolution 48x48 --spp 20 --denoise --transparent -o a.exr");
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(directory,
+                  "render scene.pbrt --resolution 48x48 --spp 20 --denoise --transparent -o a.exr");
     const ExrImage image = ReadExr(directory.File("a.exr"));
     const std::vector<float>& alpha = image.Find("A")->values;
     EXPECT_TRUE(std::ranges::any_of(alpha, [](float a) { return a > 0 && a < 1; }));

@@ -14,7 +14,7 @@ struct SceneDirectory : TemporaryDirectory {
 
 // Runs the command, and expects the image to be what it is anyhow.
 void ExpectImage(const SceneDirectory& directory, const std::string& command, int exitCode) {
-    ASSERT_EQ(RunShell(directory, kRender + std::string(" -o whole.exr --quiet")).exitCode, 0);
+    ExpectSuccess(RunShell(directory, kRender + std::string(" -o whole.exr --quiet")));
     const Outcome outcome = RunShell(directory, command);
     EXPECT_EQ(outcome.exitCode, exitCode) << command << outcome.err;
     ASSERT_TRUE(std::filesystem::exists(directory.File("out.exr"))) << command;

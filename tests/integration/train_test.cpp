@@ -34,12 +34,11 @@ bool SameWeights(const Network& a, const Network& b) {
 
 TEST(Train, WritesTheSameModelOnAnyNumberOfThreads) {
     const TrainingDirectory directory;
-    const Outcome first = RunLull(directory, kSmall + "-o one.h5 --threads 1");
-    EXPECT_EQ(first.exitCode, 0) << first.err;
+    const Outcome first = ExpectSuccess(directory, kSmall + "-o one.h5 --threads 1");
     EXPECT_TRUE(Contains(first.err, "cellar-c")) << first.err;  // has no thresholds
     EXPECT_TRUE(Contains(first.err, "epoch 6/6  loss 0.")) << first.err;
     EXPECT_TRUE(Contains(first.out, "blocks trained on"));
-    EXPECT_EQ(RunLull(directory, kSmall + "-o two.h5 --threads 3 --quiet").exitCode, 0);
+    ExpectSuccess(directory, kSmall + "-o two.h5 --threads 3 --quiet");
     const Model one = ReadModel(directory.File("one.h5")),
                 two = ReadModel(directory.File("two.h5"));
     EXPECT_TRUE(SameWeights(one.network, two.network));
@@ -52,7 +51,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
     const TrainingDirectory directory;
     const std::string larger =
         "train data.h5 --human human.csv --preset paper --units 64,32 --epochs 40 --quiet ";
-    EXPECT_EQ(RunLull(directory, larger + "-o whole.h5").exitCode, 0);
+    ExpectSuccess(directory, larger + "-o whole.h5");
     const Outcome part =
         RunAndSignal(directory, "LULL " + larger + "-o part.h5 --checkpoint-interval 0.1", SIGINT,
                      "part.h5.checkpoint");
@@ -63,7 +62,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
     EXPECT_EQ(other.exitCode, 1);
     EXPECT_TRUE(Contains(other.err, "part.h5.checkpoint: the saved training had other"))
         << other.err;
-    EXPECT_EQ(RunLull(directory, larger + "-o part.h5 --resume").exitCode, 0);
+    ExpectSuccess(directory, larger + "-o part.h5 --resume");
     EXPECT_TRUE(SameWeights(ReadModel(directory.File("whole.h5")).network,
                             ReadModel(directory.File("part.h5")).network));
 }
@@ -74,25 +73,21 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
         "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,p4 --quiet "
         "--channels masked_noise,logspp --learning-rate 0.02 --epochs 60 ";
     const Outcome outcome =
-        RunLull(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
     EXPECT_TRUE(Contains(outcome.out, "each viewpoint left out")) << outcome.out;
     EXPECT_TRUE(Contains(ReadBytes(directory.File("judged.csv")), "barn-b"));
     const Model model = ReadModel(directory.File("model.h5"));
     EXPECT_TRUE(model.network.lstm.empty());
     EXPECT_EQ(FeatureNames(model.settings.features), "masked_noise,logspp");
-    EXPECT_EQ(
-        RunLull(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5").exitCode,
-        0);
+    ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
     // How far people are from its stops is known then, and renders say so.
     EXPECT_TRUE(Contains(outcome.out, "80 % of the thresholds of people lie between "));
     EXPECT_EQ(model.logRatios.size(), 11u);
     directory.Write("scene.pbrt", SceneText(kSphere));
     const Outcome render =
-        RunLull(directory,
-                "render scene.pbrt --resolution 88x44 --block 44 --cap 200 --quiet "
-                "--stop learned:model.h5 -o i.exr --report i.json");
-    ASSERT_EQ(render.exitCode, 0) << render.err;
+        ExpectSuccess(directory,
+                      "render scene.pbrt --resolution 88x44 --block 44 --cap 200 --quiet "
+                      "--stop learned:model.h5 -o i.exr --report i.json");
     EXPECT_TRUE(Contains(render.out, "i.ranges.csv\n")) << render.out;
     const std::string ranges = ReadBytes(directory.File("i.ranges.csv"));
     EXPECT_TRUE(
@@ -105,8 +100,7 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     EXPECT_NEAR(from, spp * std::exp(model.logRatios[1]), 1);
 
     // Left out, it is judged by the same network as when each is left out in turn.
-    const Outcome single = RunLull(directory, options + "-o one.h5 --leave-out barn-b");
-    EXPECT_EQ(single.exitCode, 0) << single.err;
+    const Outcome single = ExpectSuccess(directory, options + "-o one.h5 --leave-out barn-b");
     const size_t at = single.out.find("barn-b"), end = single.out.find('\n', at);
     EXPECT_TRUE(Contains(outcome.out, single.out.substr(at + 30, end - at - 30)))
         << outcome.out << single.out;
@@ -115,10 +109,9 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
 TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
     const TrainingDirectory directory;
     const std::string train = "train data.h5 --human human.csv --quiet --epochs 1 ";
-    EXPECT_EQ(RunLull(directory, train + "-o entropy.h5").exitCode, 0);
+    ExpectSuccess(directory, train + "-o entropy.h5");
     // What is given by itself counts, before or after the preset.
-    EXPECT_EQ(RunLull(directory, train + "-o paper.h5 --units 8,4 --preset paper --k 4").exitCode,
-              0);
+    ExpectSuccess(directory, train + "-o paper.h5 --units 8,4 --preset paper --k 4");
     const Model entropy = ReadModel(directory.File("entropy.h5")),
                 paper = ReadModel(directory.File("paper.h5"));
     EXPECT_EQ(FeatureNames(entropy.settings.features), "visible_drop");
@@ -134,14 +127,13 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
 
     // The same by either way, cross-validated.
     const std::string judge = train + "--cross-validate ";
-    const Outcome brief = RunLull(directory, judge),
+    const Outcome brief = ExpectSuccess(directory, judge),
                   full = RunLull(directory, judge +
                                                 "--features visible_drop --pool mean --spacing "
                                                 "geometric --ratio 1.4142 --k 2 --units 8,4 "
                                                 "--dropout 0 --learning-rate 0.003 --flare 0 "
                                                 "--balance-viewpoints --no-class-weights "
                                                 "--noisy-weight 1 --mask 1e9 --preset paper");
-    EXPECT_EQ(brief.exitCode, 0) << brief.err;
     EXPECT_EQ(brief.out, full.out);
     EXPECT_NE(brief.out, RunLull(directory, judge + "--preset paper --units 8,4").out);
     EXPECT_EQ(RunLull(directory, judge + "--preset rendering").exitCode, 2);
@@ -150,8 +142,7 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
 TEST(Train, SplitsBlocks) {
     const TrainingDirectory directory;
     directory.Write("split.csv", "attic-a;0;3;\nbarn-b;1;2;3;\n");
-    const Outcome outcome = RunLull(directory, kSmall + "-o m.h5 --split paper:split.csv");
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(directory, kSmall + "-o m.h5 --split paper:split.csv");
     EXPECT_TRUE(Contains(outcome.err, "windows of 5 blocks")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
 }
@@ -177,8 +168,7 @@ TEST(Search, TrainsAllCombinationsAndRanksThem) {
     if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
     const TrainingDirectory directory;
     directory.Write("grid.txt", "k 2 4  # steps\nfeatures H noise\n\nsnorm 0 1\n");
-    const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 2"));
-    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    ExpectSuccess(RunShell(directory, SearchOf("--units 4 --epochs 2")));
     const std::vector<std::string> lines = SearchResults(directory);
     ASSERT_EQ(lines.size(), 9u);
     EXPECT_EQ(lines[0],
@@ -196,11 +186,10 @@ TEST(Search, TrainsAllCombinationsAndRanksThem) {
     EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 10) << outcome.out;
 
     // A combination has the figures that it has by itself.
-    const Outcome single = RunLull(directory,
-                                   "train data.h5 --human human.csv --preset paper --units 4 "
-                                   "--epochs 2 --k 2 --features noise --no-snorm "
-                                   "--cross-validate --csv one.csv");
-    EXPECT_EQ(single.exitCode, 0) << single.err;
+    ExpectSuccess(directory,
+                  "train data.h5 --human human.csv --preset paper --units 4 "
+                  "--epochs 2 --k 2 --features noise --no-snorm "
+                  "--cross-validate --csv one.csv");
     const std::string one = ReadBytes(directory.File("one.csv"));
     size_t field = one.find("left out, at least\",all,");
     for (int i = 0; i < 7; ++i) field = one.find(',', field) + 1;
@@ -219,7 +208,7 @@ TEST(Search, GoesOnAfterAnInterruption) {
     const TrainingDirectory directory;
     directory.Write("grid.txt", "k 2 4\nepochs 1 40\n");
     const std::string search = SearchOf("--units 16,8 --checkpoint-interval 0.1");
-    EXPECT_EQ(RunShell(directory, search).exitCode, 0);
+    ExpectSuccess(RunShell(directory, search));
     const std::vector<std::string> whole = SearchResults(directory);
     std::filesystem::remove(directory.File("s.csv"));
     const std::string checkpoint = "s.csv.k=4_epochs=40.h5.checkpoint";
@@ -231,8 +220,7 @@ TEST(Search, GoesOnAfterAnInterruption) {
     const Outcome other = RunShell(directory, search + " --learning-rate 0.01");
     EXPECT_EQ(other.exitCode, 1);
     EXPECT_TRUE(Contains(other.err, "s.csv: is not of this search")) << other.err;
-    const Outcome rest = RunShell(directory, search);
-    EXPECT_EQ(rest.exitCode, 0) << rest.err;
+    ExpectSuccess(RunShell(directory, search));
     EXPECT_EQ(SearchResults(directory), whole);
     EXPECT_FALSE(std::filesystem::exists(directory.File(checkpoint)));
 }
@@ -255,8 +243,7 @@ TEST(Search, SaysWhatCannotBeTrained) {
     expect("# k 2\n", "no option to vary");
     // What can be trained is.
     directory.Write("grid.txt", "n 30 40\n");
-    const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 1"));
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Outcome outcome = ExpectSuccess(RunShell(directory, SearchOf("--units 4 --epochs 1")));
     EXPECT_TRUE(Contains(outcome.err, "--n=30: not trained")) << outcome.err;
     EXPECT_EQ(SearchResults(directory).size(), 2u);
 }
