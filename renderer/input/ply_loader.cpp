@@ -58,33 +58,12 @@ Column ColumnOf(MeshData* mesh, int slot) {
     return {mesh->uvs.data()->data() + (slot - kU), 2};
 }
 
-template <typename T>
-void CopyColumn(const char* bytes, size_t rowBytes, size_t rows, bool swap, float* values,
-                size_t stride) {
-    for (size_t i = 0; i < rows; ++i)
-        values[i * stride] = float(LoadPlyValue<T>(bytes + i * rowBytes, swap));
-}
-
 void CopyColumn(PlyType type, const char* bytes, size_t rowBytes, size_t rows, bool swap,
                 float* values, size_t stride) {
-    switch (type) {
-        case PlyType::Int8:
-            return CopyColumn<int8_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Uint8:
-            return CopyColumn<uint8_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Int16:
-            return CopyColumn<int16_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Uint16:
-            return CopyColumn<uint16_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Int32:
-            return CopyColumn<int32_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Uint32:
-            return CopyColumn<uint32_t>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Float32:
-            return CopyColumn<float>(bytes, rowBytes, rows, swap, values, stride);
-        case PlyType::Float64:
-            return CopyColumn<double>(bytes, rowBytes, rows, swap, values, stride);
-    }
+    WithTypeOf(type, [&](auto t) {
+        for (size_t i = 0; i < rows; ++i)
+            values[i * stride] = float(LoadPlyValue<decltype(t)>(bytes + i * rowBytes, swap));
+    });
 }
 
 // Returns the least bytes that a row of the element can take; a list may be empty.

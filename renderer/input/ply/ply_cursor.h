@@ -68,25 +68,8 @@ struct PlyCursor {
         }
         const bool swap = format == PlyFormat::BigEndian;
         const char* const bytes = Skip(PlyTypeSize(type));
-        switch (type) {
-            case PlyType::Int8:
-                return LoadPlyValue<int8_t>(bytes, swap);
-            case PlyType::Uint8:
-                return LoadPlyValue<uint8_t>(bytes, swap);
-            case PlyType::Int16:
-                return LoadPlyValue<int16_t>(bytes, swap);
-            case PlyType::Uint16:
-                return LoadPlyValue<uint16_t>(bytes, swap);
-            case PlyType::Int32:
-                return LoadPlyValue<int32_t>(bytes, swap);
-            case PlyType::Uint32:
-                return LoadPlyValue<uint32_t>(bytes, swap);
-            case PlyType::Float32:
-                return LoadPlyValue<float>(bytes, swap);
-            case PlyType::Float64:
-                return LoadPlyValue<double>(bytes, swap);
-        }
-        return 0;
+        return WithTypeOf(type,
+                          [&](auto t) { return double(LoadPlyValue<decltype(t)>(bytes, swap)); });
     }
 
     // Reads the count of a list: at least 0 and no more than the values that can follow.

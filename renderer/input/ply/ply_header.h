@@ -14,10 +14,32 @@ enum class PlyFormat { Ascii, LittleEndian, BigEndian };
 
 enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 
+// Returns use(T()), of C++'s type for that of values in binary files.
+template <typename Use>
+auto WithTypeOf(PlyType type, const Use& use) {
+    switch (type) {
+        case PlyType::Int8:
+            return use(int8_t());
+        case PlyType::Uint8:
+            return use(uint8_t());
+        case PlyType::Int16:
+            return use(int16_t());
+        case PlyType::Uint16:
+            return use(uint16_t());
+        case PlyType::Int32:
+            return use(int32_t());
+        case PlyType::Uint32:
+            return use(uint32_t());
+        case PlyType::Float32:
+            return use(float());
+        default:
+            return use(double());
+    }
+}
+
 // Returns the bytes of a value in binary files.
 inline int PlyTypeSize(PlyType type) {
-    constexpr int kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[int(type)];
+    return WithTypeOf(type, [](auto value) { return int(sizeof(value)); });
 }
 
 struct PlyProperty {
