@@ -8,7 +8,7 @@ namespace {
 TEST(BumpMap, TiltsTheNormalByTheSlope) {
     MaterialScene b;
     b.AddChecks(false, 3, 1e-3f);  // 1e-3 high where the cells' numbers sum to even, else 0
-    AddTexture(&b.AddMaterial("matte"), "bumpmap", 0, false);
+    b.AddMaterial("matte", {Textured("bumpmap", 0, false)});
     const MaterialTable table = b.Make();
     // A step of 0.0005 in u moves p by 0.001 in y: across an edge only close to it.
     SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.9995f, 0.5f));
@@ -33,7 +33,7 @@ TEST(BumpMap, TiltsTheNormalByTheSlope) {
 TEST(BumpMap, StepsByTheDistanceOfSamplesWhereItIsKnown) {
     MaterialScene b;
     b.AddChecks(false, 3, 1e-3f);
-    AddTexture(&b.AddMaterial("matte"), "bumpmap", 0, false);
+    b.AddMaterial("matte", {Textured("bumpmap", 0, false)});
     const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.985f, 0.5f));
     hit.duvdx = {0.01f, 0};
@@ -44,7 +44,7 @@ TEST(BumpMap, StepsByTheDistanceOfSamplesWhereItIsKnown) {
 
 TEST(BumpMap, OfAConstantUsesTheCurvature) {
     MaterialScene b;
-    AddFloat(&b.AddMaterial("matte"), "bumpmap", 0.5f);
+    b.AddMaterial("matte", {Float("bumpmap", 0.5f)});
     const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0);
     hit.dndu = Vec3f(0, 0, 2);
@@ -54,7 +54,7 @@ TEST(BumpMap, OfAConstantUsesTheCurvature) {
 
 TEST(BumpMap, WithoutTangentsChangesNothing) {
     MaterialScene b;
-    AddFloat(&b.AddMaterial("matte"), "bumpmap", 0.5f);
+    b.AddMaterial("matte", {Float("bumpmap", 0.5f)});
     const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0);
     hit.dpdu = hit.dpdv = Vec3f::Zero();

@@ -8,10 +8,10 @@
 namespace lull::test {
 namespace {
 
-// Makes the Bsdf of a material without parameters, which has so many lobes, and no warning.
-Bsdf DefaultsOf(const std::string& kind, int lobes) {
+// Makes the Bsdf of a material, which has so many lobes, and no warning.
+Bsdf BsdfOf(const std::string& kind, int lobes, const std::vector<Parameter>& parameters = {}) {
     MaterialScene b;
-    b.AddMaterial(kind);
+    b.AddMaterial(kind, parameters);
     Bsdf bsdf = b.MakeBsdf(0);
     EXPECT_EQ(bsdf.LobeCount(LobeSet::All), lobes) << kind;
     EXPECT_EQ(b.messages, std::vector<std::string>()) << kind;
@@ -19,29 +19,23 @@ Bsdf DefaultsOf(const std::string& kind, int lobes) {
 }
 
 TEST(Matte, Defaults) {
-    const Bsdf bsdf = DefaultsOf("matte", 1);
+    const Bsdf bsdf = BsdfOf("matte", 1);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 0).r, 0.5f);
     EXPECT_EQ(bsdf.Eta(), 1);
 }
 
 TEST(Matte, SigmaMakesItRough) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("matte");
-    AddFloat(&m, "sigma", 200);
+    const auto rough = LobeAt<OrenNayar>(BsdfOf("matte", 1, {Float("sigma", 200)}), 0);
     const OrenNayar clamped(Rgb::Constant(0.5f), 90);
-    EXPECT_FLOAT_EQ(LobeAt<OrenNayar>(b.MakeBsdf(0), 0).a, clamped.a);
-    EXPECT_FLOAT_EQ(LobeAt<OrenNayar>(b.MakeBsdf(0), 0).b, clamped.b);
+    EXPECT_FLOAT_EQ(rough.a, clamped.a);
+    EXPECT_FLOAT_EQ(rough.b, clamped.b);
 }
 
-TEST(Matte, BlackHasNoLobe) {
-    MaterialScene b;
-    AddRgb(&b.AddMaterial("matte"), "Kd", Rgb(0, -1, 0));
-    EXPECT_EQ(b.MakeBsdf(0).LobeCount(LobeSet::All), 0);
-}
+TEST(Matte, BlackHasNoLobe) { BsdfOf("matte", 0, {Color("Kd", Rgb(0, -1, 0))}); }
 
 TEST(Subsurface, Defaults) {
     for (const char* kind : {"subsurface", "kdsubsurface"}) {
-        const Bsdf bsdf = DefaultsOf(kind, 1);
+        const Bsdf bsdf = BsdfOf(kind, 1);
         EXPECT_EQ(LobeAt<FresnelSpecular>(bsdf, 0).eta, 1.33f);
         EXPECT_EQ(bsdf.Eta(), 1.33f);
     }
@@ -50,18 +44,12 @@ TEST(Subsurface, Defaults) {
 // The profile that parameters make is that of the coefficients which they stand for.
 TEST(Subsurface, Parameters) {
     MaterialScene b;
-    MaterialEntity& named = b.AddMaterial("subsurface");
-    named.parameters.Add(
-        {ParameterType::String, "name", At(3), std::vector<std::string>{"Marble"}});
-    AddFloat(&named, "scale", 2);
-    AddFloat(&named, "g", 0.5f);  // measured coefficients are reduced ones
-    MaterialEntity& given = b.AddMaterial("subsurface");
-    AddRgb(&given, "sigma_a", Rgb(0.0021f, 0.0041f, 0.0071f));
-    AddRgb(&given, "sigma_s", Rgb(2.19f, 2.62f, 3.00f));
-    AddFloat(&given, "scale", 2);
-    MaterialEntity& kd = b.AddMaterial("kdsubsurface");
-    AddRgb(&kd, "Kd", Rgb(0.2f, 0.4f, 0.6f));
-    AddRgb(&kd, "mfp", Rgb(1, 2, 0.5f));
+    // Measured coefficients are reduced ones: g does not count.
+    b.AddMaterial("subsurface", {String("name", "Marble"), Float("scale", 2), Float("g", 0.5f)});
+    b.AddMaterial("subsurface", {Color("sigma_a", Rgb(0.0021f, 0.0041f, 0.0071f)),
+                                 Color("sigma_s", Rgb(2.19f, 2.62f, 3.00f)), Float("scale", 2)});
+    b.AddMaterial("kdsubsurface",
+                  {Color("Kd", Rgb(0.2f, 0.4f, 0.6f)), Color("mfp", Rgb(1, 2, 0.5f))});
     const MaterialTable table = b.Make();
     EXPECT_TRUE(b.messages.empty());
     const auto profile = [&](int i) { return *table.Profile(b.textures, MaterialScene::Hit(i)); };
@@ -77,7 +65,7 @@ TEST(Subsurface, Parameters) {
 }
 
 TEST(Plastic, Defaults) {
-    const Bsdf bsdf = DefaultsOf("plastic", 2);
+    const Bsdf bsdf = BsdfOf("plastic", 2);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 0).r, 0.25f);
     const auto& coat = LobeAt<DielectricReflection>(bsdf, 1);
     ExpectGrey(coat.r, 0.25f);
@@ -88,15 +76,13 @@ TEST(Plastic, Defaults) {
 }
 
 TEST(Plastic, RemapsRoughnessUnlessTold) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("plastic");
-    AddFloat(&m, "roughness", 0.3f);
-    AddBool(&m, "remaproughness", false);
-    EXPECT_FLOAT_EQ(LobeAt<DielectricReflection>(b.MakeBsdf(0), 1).distribution.AlphaX(), 0.3f);
+    const Bsdf bsdf =
+        BsdfOf("plastic", 2, {Float("roughness", 0.3f), Bool("remaproughness", false)});
+    EXPECT_FLOAT_EQ(LobeAt<DielectricReflection>(bsdf, 1).distribution.AlphaX(), 0.3f);
 }
 
 TEST(Metal, Defaults) {
-    const Bsdf bsdf = DefaultsOf("metal", 1);
+    const Bsdf bsdf = BsdfOf("metal", 1);
     const auto& metal = LobeAt<ConductorReflection>(bsdf, 0);
     ExpectGrey(metal.r, 1);
     EXPECT_NEAR(metal.distribution.AlphaX(), RoughnessToAlpha(0.01f), 1e-5f);
@@ -107,18 +93,16 @@ TEST(Metal, Defaults) {
 }
 
 TEST(Metal, RoughnessOfEachTangent) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("metal");
-    AddFloat(&m, "roughness", 0.2f);
-    AddFloat(&m, "vroughness", 0.4f);
-    AddBool(&m, "remaproughness", false);
-    const auto& d = LobeAt<ConductorReflection>(b.MakeBsdf(0), 0).distribution;
+    const Bsdf bsdf = BsdfOf(
+        "metal", 1,
+        {Float("roughness", 0.2f), Float("vroughness", 0.4f), Bool("remaproughness", false)});
+    const auto& d = LobeAt<ConductorReflection>(bsdf, 0).distribution;
     EXPECT_FLOAT_EQ(d.AlphaX(), 0.2f);
     EXPECT_FLOAT_EQ(d.AlphaY(), 0.4f);
 }
 
 TEST(Glass, Defaults) {
-    const Bsdf bsdf = DefaultsOf("glass", 1);
+    const Bsdf bsdf = BsdfOf("glass", 1);
     EXPECT_EQ(bsdf.LobeCount(LobeSet::NonSpecular), 0);
     const auto& glass = LobeAt<FresnelSpecular>(bsdf, 0);
     ExpectGrey(glass.r, 1);
@@ -128,20 +112,17 @@ TEST(Glass, Defaults) {
 }
 
 TEST(Glass, EtaComesBeforeIndex) {
-    MaterialScene b;
-    AddFloat(&b.AddMaterial("glass"), "index", 1.3f);
-    MaterialEntity& m = b.AddMaterial("glass");
-    AddFloat(&m, "index", 1.3f);
-    AddFloat(&m, "eta", 1.7f);
-    EXPECT_EQ(b.MakeBsdf(0).Eta(), 1.3f);
-    EXPECT_EQ(b.MakeBsdf(1).Eta(), 1.7f);
+    EXPECT_EQ(BsdfOf("glass", 1, {Float("index", 1.3f)}).Eta(), 1.3f);
+    MaterialScene b;  // warns of the index, which has no effect
+    b.AddMaterial("glass", {Float("index", 1.3f), Float("eta", 1.7f)});
+    EXPECT_EQ(b.MakeBsdf(0).Eta(), 1.7f);
 }
 
 TEST(IndexOfRefraction, IsRefusedWhereItCannotBeOne) {
     for (const char* kind : {"glass", "uber", "disney", "hair"})
         for (const float eta : {-1.f, 0.f, 1e30f, std::nanf("")}) {
             MaterialScene b;
-            AddFloat(&b.AddMaterial(kind), "eta", eta);
+            b.AddMaterial(kind, {Float("eta", eta)});
             const std::string error = ErrorOf(&b);
             EXPECT_TRUE(error.starts_with("scene.pbrt:10: \"eta\" of material \"" +
                                           std::string(kind) + "\" has to lie between"))
@@ -153,14 +134,12 @@ TEST(IndexOfRefraction, IsRefusedWhereItCannotBeOne) {
 TEST(IndexOfRefraction, IsOneWhereATextureHasNone) {
     MaterialScene b;
     b.AddChecks(false, 2, -1);
-    AddTexture(&b.AddMaterial("uber"), "eta", 0, false);
+    b.AddMaterial("uber", {Textured("eta", 0, false)});
     EXPECT_EQ(b.MakeBsdf(0).Eta(), 1);
 }
 
 TEST(Glass, IsRoughIfEitherTangentIs) {
-    MaterialScene b;
-    AddFloat(&b.AddMaterial("glass"), "vroughness", 0.1f);
-    const Bsdf bsdf = b.MakeBsdf(0);
+    const Bsdf bsdf = BsdfOf("glass", 2, {Float("vroughness", 0.1f)});
     ASSERT_EQ(bsdf.LobeCount(LobeSet::NonSpecular), 2);
     const auto& r = LobeAt<DielectricReflection>(bsdf, 0);
     EXPECT_EQ(r.interface.eta, 1.5f);
@@ -170,24 +149,18 @@ TEST(Glass, IsRoughIfEitherTangentIs) {
 }
 
 TEST(Glass, BlackPartsOfRoughGlassHaveNoLobe) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("glass");
-    AddFloat(&m, "uroughness", 0.1f);
-    AddGrey(&m, "Kr", 0);
-    const Bsdf bsdf = b.MakeBsdf(0);
-    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+    const Bsdf bsdf = BsdfOf("glass", 1, {Float("uroughness", 0.1f), Grey("Kr", 0)});
     LobeAt<MicrofacetTransmission>(bsdf, 0);
     // Smooth glass keeps its one lobe.
-    AddGrey(&b.AddMaterial("glass"), "Kr", 0);
-    EXPECT_EQ(b.MakeBsdf(1).LobeCount(LobeSet::All), 1);
+    BsdfOf("glass", 1, {Grey("Kr", 0)});
 }
 
 TEST(Mirror, Defaults) {
-    ExpectGrey(LobeAt<SpecularReflection<PerfectMirror>>(DefaultsOf("mirror", 1), 0).r, 0.9f);
+    ExpectGrey(LobeAt<SpecularReflection<PerfectMirror>>(BsdfOf("mirror", 1), 0).r, 0.9f);
 }
 
 TEST(Uber, Defaults) {
-    const Bsdf bsdf = DefaultsOf("uber", 2);
+    const Bsdf bsdf = BsdfOf("uber", 2);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 0).r, 0.25f);
     const auto& coat = LobeAt<DielectricReflection>(bsdf, 1);
     ExpectGrey(coat.r, 0.25f);
@@ -197,15 +170,9 @@ TEST(Uber, Defaults) {
 }
 
 TEST(Uber, HasAllItsLobesInOrder) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("uber");
-    AddGrey(&m, "opacity", 0.5f);
-    AddGrey(&m, "Kr", 0.4f);
-    AddGrey(&m, "Kt", 0.2f);
-    AddFloat(&m, "uroughness", 0.3f);
-    AddBool(&m, "remaproughness", false);
-    const Bsdf bsdf = b.MakeBsdf(0);
-    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 5);
+    const Bsdf bsdf = BsdfOf("uber", 5,
+                             {Grey("opacity", 0.5f), Grey("Kr", 0.4f), Grey("Kt", 0.2f),
+                              Float("uroughness", 0.3f), Bool("remaproughness", false)});
     ExpectGrey(LobeAt<SpecularTransmission>(bsdf, 0).t, 0.5f);
     EXPECT_EQ(LobeAt<SpecularTransmission>(bsdf, 0).eta, 1);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 1).r, 0.125f);
@@ -218,7 +185,7 @@ TEST(Uber, HasAllItsLobesInOrder) {
 }
 
 TEST(Substrate, Defaults) {
-    const Bsdf bsdf = DefaultsOf("substrate", 1);
+    const Bsdf bsdf = BsdfOf("substrate", 1);
     const auto& blend = LobeAt<FresnelBlend>(bsdf, 0);
     ExpectGrey(blend.rd, 0.5f);
     ExpectGrey(blend.rs, 0.5f);
@@ -227,7 +194,7 @@ TEST(Substrate, Defaults) {
 }
 
 TEST(Translucent, Defaults) {
-    const Bsdf bsdf = DefaultsOf("translucent", 4);
+    const Bsdf bsdf = BsdfOf("translucent", 4);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 0).r, 0.125f);
     ExpectGrey(LobeAt<LambertianTransmission>(bsdf, 1).t, 0.125f);
     ExpectGrey(LobeAt<DielectricReflection>(bsdf, 2).r, 0.125f);
@@ -237,7 +204,7 @@ TEST(Translucent, Defaults) {
 }
 
 TEST(Disney, Defaults) {
-    const Bsdf bsdf = DefaultsOf("disney", 3);
+    const Bsdf bsdf = BsdfOf("disney", 3);
     using Part = DisneyDiffuse::Part;
     ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 0).r, 0.5f);
     EXPECT_EQ(LobeAt<DisneyDiffuse>(bsdf, 0).part, Part::Base);
@@ -250,18 +217,12 @@ TEST(Disney, Defaults) {
 }
 
 TEST(Disney, AddsWhatItsWeightsAskFor) {
-    MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("disney");
-    AddBool(&m, "thin", true);
-    AddGrey(&m, "color", 0.64f);
-    for (const auto& [name, value] :
-         {std::pair("metallic", 0.5f), std::pair("anisotropic", 1.f), std::pair("roughness", 0.6f),
-          std::pair("sheen", 0.5f), std::pair("clearcoat", 0.7f), std::pair("clearcoatgloss", 0.f),
-          std::pair("spectrans", 0.2f), std::pair("flatness", 0.25f), std::pair("difftrans", 0.5f),
-          std::pair("eta", 1.3f)})
-        AddFloat(&m, name, value);
-    const Bsdf bsdf = b.MakeBsdf(0);
-    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 8);
+    const Bsdf bsdf =
+        BsdfOf("disney", 8,
+               {Bool("thin", true), Grey("color", 0.64f), Float("metallic", 0.5f),
+                Float("anisotropic", 1), Float("roughness", 0.6f), Float("sheen", 0.5f),
+                Float("clearcoat", 0.7f), Float("clearcoatgloss", 0), Float("spectrans", 0.2f),
+                Float("flatness", 0.25f), Float("difftrans", 0.5f), Float("eta", 1.3f)});
     const float diffuse = 0.5f * 0.8f * 0.64f;
     ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 0).r, diffuse * 0.75f * 0.75f);
     ExpectGrey(LobeAt<DisneyDiffuse>(bsdf, 1).r, diffuse * 0.25f * 0.75f);
@@ -279,10 +240,8 @@ TEST(Disney, AddsWhatItsWeightsAskFor) {
 
 TEST(Disney, ScattersBelowTheSurfaceInsteadOfDiffusely) {
     MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("disney");
-    AddGrey(&m, "scatterdistance", 0.1f);
-    AddFloat(&m, "eta", 1.3f);
-    AddGrey(&b.AddMaterial("disney"), "scatterdistance", 0);
+    b.AddMaterial("disney", {Grey("scatterdistance", 0.1f), Float("eta", 1.3f)});
+    b.AddMaterial("disney", {Grey("scatterdistance", 0)});
     const MaterialTable table = b.Make();
     EXPECT_TRUE(table.Needs(0) & kScattersBelow);
     EXPECT_FALSE(table.Needs(1) & kScattersBelow);
@@ -298,9 +257,8 @@ TEST(Disney, ScattersBelowTheSurfaceInsteadOfDiffusely) {
 TEST(Hair, ReadsWhatItAbsorbs) {
     MaterialScene b;
     b.AddMaterial("hair");
-    MaterialEntity& colored = b.AddMaterial("hair");
-    AddGrey(&colored, "color", 0.5f);
-    AddGrey(&b.AddMaterial("hair"), "sigma_a", 3);
+    b.AddMaterial("hair", {Grey("color", 0.5f)});
+    b.AddMaterial("hair", {Grey("sigma_a", 3)});
     const auto lobe = [&](int i) { return LobeAt<HairLobe>(b.MakeBsdf(i), 0); };
     EXPECT_NEAR(lobe(0).sigmaA.r, 1.3f * 0.419f, 1e-5);
     EXPECT_NEAR(lobe(1).sigmaA.g, HairAbsorptionOfColor(Rgb(0.5f, 0.5f, 0.5f), 0.3f).y(), 1e-5);

@@ -12,6 +12,28 @@ using ConductorReflection = MicrofacetReflection<ConductorInterface>;
 
 inline FileLoc At(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
 
+// Make parameters.
+inline Parameter Float(const std::string& name, float value) {
+    return {ParameterType::Float, name, At(3), std::vector<float>{value}};
+}
+inline Parameter Bool(const std::string& name, bool value) {
+    return {ParameterType::Bool, name, At(3), std::vector<int>{value}};
+}
+inline Parameter String(const std::string& name, const std::string& value) {
+    return {ParameterType::String, name, At(3), std::vector<std::string>{value}};
+}
+inline Parameter Color(const std::string& name, const Rgb& c) {
+    return {ParameterType::Spectrum, name, At(3), std::vector<float>{c.x(), c.y(), c.z()}};
+}
+inline Parameter Grey(const std::string& name, float value) {
+    return Color(name, Rgb::Constant(value));
+}
+inline Parameter Textured(const std::string& name, int texture, bool isSpectrum) {
+    TextureRef ref{"checks"};
+    (isSpectrum ? ref.spectrumIndex : ref.floatIndex) = texture;
+    return {ParameterType::Texture, name, At(3), std::vector<TextureRef>{ref}};
+}
+
 // Builds descriptions of materials and textures.
 struct MaterialScene {
     Description description;
@@ -21,10 +43,12 @@ struct MaterialScene {
     explicit MaterialScene(bool substitutes = false)
         : warnings([this](const std::string& m) { messages.push_back(m); }, substitutes) {}
 
-    MaterialEntity& AddMaterial(const std::string& kind) {
+    MaterialEntity& AddMaterial(const std::string& kind,
+                                const std::vector<Parameter>& parameters = {}) {
         MaterialEntity& m = description.materials.emplace_back();
         m.name = kind;
         m.loc = At(10 * int(description.materials.size()));
+        for (const Parameter& parameter : parameters) m.parameters.Add(parameter);
         return m;
     }
     // Adds a 3D checkerboard of 0 and `value`, which reads p, or a 2D one, which reads uv.
@@ -35,11 +59,7 @@ struct MaterialScene {
         t.isSpectrum = isSpectrum;
         t.loc = At(1);
         t.parameters.Add({ParameterType::Integer, "dimension", At(2), std::vector<int>{dimension}});
-        if (isSpectrum)
-            t.parameters.Add(
-                {ParameterType::Spectrum, "tex1", At(2), std::vector<float>(3, value)});
-        else
-            t.parameters.Add({ParameterType::Float, "tex1", At(2), std::vector<float>{value}});
+        t.parameters.Add(isSpectrum ? Grey("tex1", value) : Float("tex1", value));
     }
     TextureTable textures;
     // Throws Error, as Compile() does.
@@ -68,25 +88,6 @@ struct MaterialScene {
         return hit;
     }
 };
-
-inline void AddFloat(MaterialEntity* m, const std::string& name, float value) {
-    m->parameters.Add({ParameterType::Float, name, At(3), std::vector<float>{value}});
-}
-inline void AddBool(MaterialEntity* m, const std::string& name, bool value) {
-    m->parameters.Add({ParameterType::Bool, name, At(3), std::vector<int>{value}});
-}
-inline void AddRgb(MaterialEntity* m, const std::string& name, const Rgb& c) {
-    m->parameters.Add(
-        {ParameterType::Spectrum, name, At(3), std::vector<float>{c.x(), c.y(), c.z()}});
-}
-inline void AddGrey(MaterialEntity* m, const std::string& name, float value) {
-    AddRgb(m, name, Rgb::Constant(value));
-}
-inline void AddTexture(MaterialEntity* m, const std::string& name, int texture, bool isSpectrum) {
-    TextureRef ref{"checks"};
-    (isSpectrum ? ref.spectrumIndex : ref.floatIndex) = texture;
-    m->parameters.Add({ParameterType::Texture, name, At(3), std::vector<TextureRef>{ref}});
-}
 
 template <typename L>
 L LobeAt(const Bsdf& bsdf, int i) {

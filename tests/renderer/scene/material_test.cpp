@@ -12,7 +12,7 @@ TEST(Mix, ScalesTheLobesOfBoth) {
     b.AddMaterial("plastic");
     MaterialEntity& m = b.AddMaterial("mix");
     m.operands = {0, 1};
-    AddRgb(&m, "amount", Rgb(0.25f, 0.5f, 1));
+    m.parameters.Add(Color("amount", Rgb(0.25f, 0.5f, 1)));
     const Bsdf bsdf = b.MakeBsdf(2);
     ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
     EXPECT_TRUE((Rgb(LobeAt<FresnelSpecular>(bsdf, 0).t) == Rgb(0.25f, 0.5f, 1)).all());
@@ -49,7 +49,7 @@ TEST(Mix, OfTexturesIsTheSameAsFolded) {
     b.AddMaterial("plastic");
     MaterialEntity& m = b.AddMaterial("mix");
     m.operands = {0, 1};
-    AddTexture(&m, "amount", 0, true);
+    m.parameters.Add(Textured("amount", 0, true));
     const Bsdf even = b.MakeBsdf(2, Vec3f(0.5f, 0.5f, 0.5f));
     const Bsdf odd = b.MakeBsdf(2, Vec3f(1.5f, 0.5f, 0.5f));
     ASSERT_EQ(even.LobeCount(LobeSet::All), 3);
@@ -77,8 +77,7 @@ TEST(Mix, RefusesUnknownOperands) {
     b.AddMaterial("matte");
     MaterialEntity& m = b.AddMaterial("mix");
     m.operands = {0, -1};
-    m.parameters.Add(
-        {ParameterType::String, "namedmaterial2", At(3), std::vector<std::string>{"gold"}});
+    m.parameters.Add(String("namedmaterial2", "gold"));
     EXPECT_EQ(ErrorOf(&b),
               "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"; with "
               "--substitute a matte "
@@ -98,8 +97,8 @@ TEST(Materials, UnknownKindsAreRefused) {
 
 TEST(Materials, SubstitutionIsCounted) {
     MaterialScene b(true);
-    AddFloat(&b.AddMaterial("velvet"), "beta_m", 0.3f);
-    AddGrey(&b.AddMaterial("velvet"), "Kd", 0.2f);
+    b.AddMaterial("velvet", {Float("beta_m", 0.3f)});
+    b.AddMaterial("velvet", {Grey("Kd", 0.2f)});
     b.AddMaterial("silk");
     const MaterialTable table = b.Make();
     EXPECT_EQ(b.warnings.Total(), 3);
@@ -116,7 +115,7 @@ TEST(Materials, SubstitutionIsCounted) {
 TEST(Materials, SubsurfaceIsChecked) {
     const auto error = [](const char* kind, const char* name, float value) {
         MaterialScene b;
-        AddFloat(&b.AddMaterial(kind), name, value);
+        b.AddMaterial(kind, {Float(name, value)});
         return ErrorOf(&b);
     };
     EXPECT_EQ(
@@ -139,9 +138,8 @@ TEST(Materials, SubsurfaceIsChecked) {
 
 TEST(Materials, UnusedParametersAreReported) {
     MaterialScene b;
-    MaterialEntity& m = b.AddMaterial("matte");
-    AddFloat(&m, "roughness", 0.1f);
-    m.parameters.Add({ParameterType::String, "type", At(3), std::vector<std::string>{"matte"}});
+    MaterialEntity& m = b.AddMaterial("matte", {Float("roughness", 0.1f)});
+    m.parameters.Add(String("type", "matte"));
     b.Make();
     ASSERT_EQ(b.messages.size(), 1u);
     EXPECT_NE(b.messages[0].find("scene.pbrt:3"), std::string::npos);
@@ -155,15 +153,15 @@ TEST(Materials, AskOnlyForWhatTheyNeed) {
     b.AddChecks(false, 2);
     b.AddChecks(false, 3);
     b.AddMaterial("matte");
-    AddTexture(&b.AddMaterial("matte"), "Kd", 0, true);
-    AddTexture(&b.AddMaterial("matte"), "Kd", 1, true);
-    AddFloat(&b.AddMaterial("metal"), "uroughness", 0.3f);
-    AddTexture(&b.AddMaterial("metal"), "roughness", 2, false);
-    AddTexture(&b.AddMaterial("matte"), "bumpmap", 2, false);
-    AddTexture(&b.AddMaterial("matte"), "bumpmap", 3, false);
+    b.AddMaterial("matte", {Textured("Kd", 0, true)});
+    b.AddMaterial("matte", {Textured("Kd", 1, true)});
+    b.AddMaterial("metal", {Float("uroughness", 0.3f)});
+    b.AddMaterial("metal", {Textured("roughness", 2, false)});
+    b.AddMaterial("matte", {Textured("bumpmap", 2, false)});
+    b.AddMaterial("matte", {Textured("bumpmap", 3, false)});
     b.AddMaterial("mix").operands = {6, 1};
     b.AddMaterial("mix").operands = {1, 6};
-    AddFloat(&b.AddMaterial("matte"), "bumpmap", 0);
+    b.AddMaterial("matte", {Float("bumpmap", 0)});
     const MaterialTable table = b.Make();
     const int bump = kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint;
     const int expected[] = {kNeedsNothing, kNeedsUv,        kNeedsNothing, kNeedsTangents,
@@ -175,7 +173,7 @@ TEST(Materials, AskOnlyForWhatTheyNeed) {
 
 TEST(Materials, AnisotropyFollowsTheTangent) {
     MaterialScene b;
-    AddFloat(&b.AddMaterial("metal"), "uroughness", 0.3f);
+    b.AddMaterial("metal", {Float("uroughness", 0.3f)});
     const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0);
     hit.ns = Vec3f(0, 0.6f, 0.8f);

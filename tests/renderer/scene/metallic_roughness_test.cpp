@@ -11,9 +11,9 @@ namespace {
 struct SceneWith : MaterialScene {
     SceneWith(const std::map<std::string, float>& factors, bool solid = false) {
         MaterialEntity& m = AddMaterial("metallicroughness");
-        AddRgb(&m, "basecolorfactor", Rgb(0.5f, 0.25f, 0));
-        for (const auto& [name, value] : factors) AddFloat(&m, name, value);
-        if (solid) AddBool(&m, "solid", true);
+        m.parameters.Add(Color("basecolorfactor", Rgb(0.5f, 0.25f, 0)));
+        for (const auto& [name, value] : factors) m.parameters.Add(Float(name, value));
+        if (solid) m.parameters.Add(Bool("solid", true));
     }
 };
 
@@ -104,7 +104,7 @@ TEST(MetallicRoughness, LaysSheenOverTheRest) {
     const std::map<std::string, float> factors = {
         {"metallicfactor", 0}, {"specularfactor", 0}, {"sheenroughnessfactor", 0.5f}};
     const auto make = [](SceneWith b, const Vec3f& wo) {
-        AddRgb(&b.description.materials[0], "sheencolorfactor", Rgb(0.25f, 0.5f, 1));
+        b.description.materials[0].parameters.Add(Color("sheencolorfactor", Rgb(0.25f, 0.5f, 1)));
         const MaterialTable table = b.Make();
         SurfaceInteraction hit = MaterialScene::Hit(0);
         hit.wo = wo;
@@ -160,7 +160,7 @@ TEST(MetallicRoughness, IsAnisotropicAlongItsTangent) {
 
 TEST(MetallicRoughness, MultipliesVertexColours) {
     SceneWith b({});
-    AddBool(&b.description.materials[0], "vertexcolors", true);
+    b.description.materials[0].parameters.Add(Bool("vertexcolors", true));
     const MaterialTable table = b.Make();
     EXPECT_EQ(table.Needs(0), kNeedsColor);
     SurfaceInteraction hit = MaterialScene::Hit(0);
@@ -172,7 +172,7 @@ TEST(NormalMap, IsAskedForByMaterialsThatHaveOneAlone) {
     SceneWith b({});
     EXPECT_EQ(b.Make().Needs(0), kNeedsNothing);
     b.AddChecks(true, 2);
-    AddTexture(&b.description.materials[0], "normalmap", 0, true);
+    b.description.materials[0].parameters.Add(Textured("normalmap", 0, true));
     EXPECT_EQ(b.Make().Needs(0), kNeedsTangents | kNeedsUv);
 }
 
