@@ -22,7 +22,7 @@ namespace lull {
 namespace {
 
 // The subcommands that render for long.
-constexpr std::array sharedCommands = {"render", "compare", "bench", "dataset"};
+constexpr std::array kSharedCommands = {"render", "compare", "bench", "dataset"};
 
 ExitCode Run(Job* job, const Command& command) {
     std::string message;
@@ -143,7 +143,7 @@ ExitCode Main(Job* job, int argc, char** argv) {
         return Run(job, [&]() -> ExitCode { throw UsageError(ProblemOfUsage(app, e)); });
     }
     const auto isShared = [&](const char* name) { return app.got_subcommand(name); };
-    if (job->Count() > 1 && std::ranges::none_of(sharedCommands, isShared))
+    if (job->Count() > 1 && std::ranges::none_of(kSharedCommands, isShared))
         command = []() -> ExitCode {
             throw Error(
                 "only render, compare, bench and dataset run on several ranks; start this one by "

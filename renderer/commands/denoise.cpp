@@ -72,11 +72,11 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
                 fmt::format("{} and {}: {} (--seed)", options.input, options.half, dependence));
     }
     const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
-    if (spp && std::ranges::min(spp->values) < float(leastDenoisedSpp))
+    if (spp && std::ranges::min(spp->values) < float(kLeastDenoisedSpp))
         throw Error(
             fmt::format("{}: some pixels have fewer than {} samples, too few to know what "
                         "is noise; render more",
-                        options.input, leastDenoisedSpp));
+                        options.input, kLeastDenoisedSpp));
 }
 
 ExitCode RunDenoise(Options options) {

@@ -200,7 +200,7 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
     constexpr float mostLightness = 100;
     int count = 0;
     for (size_t i = 0; i < result.blocks.size(); ++i) {
-        if (result.blocks[i].block.spp >= int(leastDenoisedSpp)) continue;
+        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
         ++count;
         denoised->blocks[i].reset();
         const PixelRect& pixels = result.blocks[i].block.pixels;
@@ -213,7 +213,7 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
         talk.Warn(
             fmt::format("{} of {} blocks are not denoised: they have fewer than {} samples per "
                         "pixel",
-                        count, result.blocks.size(), leastDenoisedSpp));
+                        count, result.blocks.size(), kLeastDenoisedSpp));
 }
 
 // What the denoiser makes of a finished render.

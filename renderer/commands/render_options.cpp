@@ -110,10 +110,10 @@ void CheckRequest(const RenderRequest& request) {
             "--pixel: paths with a guide depend on all that it has learned, and are not printed; "
             "leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.
-    if (request.CollectsFeatures() && request.spp > 0 && request.spp < int(leastDenoisedSpp))
+    if (request.CollectsFeatures() && request.spp > 0 && request.spp < int(kLeastDenoisedSpp))
         throw UsageError(
             fmt::format("--spp {}: {} needs at least {}, to know what is noise", request.spp,
-                        request.denoise ? "--denoise" : "--denoise-layers", leastDenoisedSpp));
+                        request.denoise ? "--denoise" : "--denoise-layers", kLeastDenoisedSpp));
 }
 
 }  // namespace lull

@@ -10,16 +10,16 @@ namespace lull {
 namespace {
 
 // Digits of 3 x 5 dots, three bits a row from the top.
-constexpr uint16_t digits[10] = {
+constexpr uint16_t kDigits[10] = {
     0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'011'001'111,
     0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010,
     0b111'101'111'101'111, 0b111'101'111'001'111};
-constexpr int digitWidth = 4, digitHeight = 5;  // dots, with the gap to the next
+constexpr int kDigitWidth = 4, kDigitHeight = 5;  // dots, with the gap to the next
 
-constexpr uint16_t plus = 0b000'010'111'010'000;
+constexpr uint16_t kPlus = 0b000'010'111'010'000;
 
 int TextWidth(const std::string& number, int dot) {
-    return (int(number.size()) * digitWidth - 1) * dot;
+    return (int(number.size()) * kDigitWidth - 1) * dot;
 }
 
 class Canvas {
@@ -41,11 +41,11 @@ class Canvas {
     void Number(const std::string& number, Vec2i at, int dot, const Rgb& srgb) {
         for (const char c : number) {
             for (int i = 0; i < 15; ++i)
-                if ((c == '+' ? plus : digits[c - '0']) >> (14 - i) & 1) {
+                if ((c == '+' ? kPlus : kDigits[c - '0']) >> (14 - i) & 1) {
                     const Vec2i p = at + dot * Vec2i(i % 3, i / 3);
                     Fill({p, p + Vec2i(dot, dot)}, srgb);
                 }
-            at.x() += digitWidth * dot;
+            at.x() += kDigitWidth * dot;
         }
     }
 
@@ -78,10 +78,10 @@ void DrawBlock(Canvas& canvas, const PixelRect& rect, const SppBlock& block, flo
 
     if (block.isNoisy) DrawFrame(canvas, rect);
     const std::string number = std::to_string(block.spp) + (block.isNoisy ? "+" : "");
-    const int dot =
-        std::min({4, rect.Width() * 3 / 4 / TextWidth(number, 1), rect.Height() / 2 / digitHeight});
+    const int dot = std::min(
+        {4, rect.Width() * 3 / 4 / TextWidth(number, 1), rect.Height() / 2 / kDigitHeight});
     if (dot < 1) return;
-    const Vec2i size(TextWidth(number, dot), digitHeight * dot);
+    const Vec2i size(TextWidth(number, dot), kDigitHeight * dot);
     const Rgb ink = Luminance(color) > 0.5f ? Rgb(0, 0, 0) : Rgb(1, 1, 1);
     canvas.Number(number, (rect.min + rect.max - size) / 2, dot, ink);
 }
@@ -100,8 +100,8 @@ void DrawLegend(Canvas& canvas, int top, int barHeight, int dot, int lowest, int
         const int textWidth = TextWidth(number, dot);
         const int center = int(Scale(spp, lowest, highest) * float(width - 1));
         const int x = std::clamp(center - textWidth / 2, 0, std::max(0, width - textWidth));
-        if (!isEnd &&
-            (x < usedTo + 2 * digitWidth * dot || x + textWidth > usedFrom - 2 * digitWidth * dot))
+        if (!isEnd && (x < usedTo + 2 * kDigitWidth * dot ||
+                       x + textWidth > usedFrom - 2 * kDigitWidth * dot))
             return;
         canvas.Fill({{center, top + barHeight - 3}, {center + 1, top + barHeight + dot}},
                     Rgb(0, 0, 0));
@@ -136,7 +136,7 @@ SppMap DrawSppMap(const PixelRect& region, std::span<const SppBlock> blocks, int
                   int highest) {
     const int dot = std::clamp(region.Width() / 200, 1, 4);
     const int gap = 4 * dot, barHeight = 8 * dot;
-    Canvas canvas(region.Width(), region.Height() + gap + barHeight + (digitHeight + 3) * dot);
+    Canvas canvas(region.Width(), region.Height() + gap + barHeight + (kDigitHeight + 3) * dot);
     for (const SppBlock& block : blocks)
         DrawBlock(canvas, {block.pixels.min - region.min, block.pixels.max - region.min}, block,
                   Scale(block.spp, lowest, highest));

@@ -12,7 +12,7 @@ namespace lull {
 namespace {
 
 // Comes first, so that a render ignores the message: it can be in the middle of one.
-constexpr uint8_t mark = 0xff;
+constexpr uint8_t kMark = 0xff;
 
 struct Report {
     int32_t round;
@@ -28,7 +28,7 @@ struct Reply {
 template <typename T>
 std::vector<std::byte> Pack(const T& what) {
     StateWriter writer;
-    writer.Put(mark);
+    writer.Put(kMark);
     writer.Put(what);
     return std::move(writer.bytes);
 }
@@ -38,7 +38,7 @@ template <typename T>
 std::optional<std::pair<int, T>> Receive(Peers* peers) {
     while (const std::optional<PeerMessage> message = peers->Receive()) {
         StateReader reader(message->bytes, "a message of a rank");
-        if (reader.Get<uint8_t>() == mark) return std::pair(message->from, reader.Get<T>());
+        if (reader.Get<uint8_t>() == kMark) return std::pair(message->from, reader.Get<T>());
     }
     return {};
 }

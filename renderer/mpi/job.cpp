@@ -17,7 +17,7 @@ namespace lull {
 namespace {
 
 // Seconds that ranks are waited for.
-constexpr double leastPatience = 5, mostPatience = 60;
+constexpr double kLeastPatience = 5, kMostPatience = 60;
 
 // Returns how many processes mpirun or srun has started, from what they tell each.
 int LaunchedProcesses() {
@@ -70,13 +70,13 @@ Job::Job() {
 // What was left already is not waited for again.
 Job::~Job() {
     peers.reset();
-    EndMpi(leastPatience);
+    EndMpi(kLeastPatience);
 }
 
 double Job::Patience() const {
     const std::chrono::duration<double> busy = std::chrono::steady_clock::now() - start;
     const double patience =
-        clock ? std::clamp(clock() / 10, leastPatience, mostPatience) : mostPatience;
+        clock ? std::clamp(clock() / 10, kLeastPatience, kMostPatience) : kMostPatience;
     return std::max(patience, busy.count());
 }
 
@@ -113,7 +113,7 @@ void Job::Leave(int exitCode) {
     std::fflush(nullptr);  // an abort would not
     if (givenUp < 0) {
         peers.reset();
-        if (EndMpi(mostPatience)) return;
+        if (EndMpi(kMostPatience)) return;
     }
     AbortMpi(exitCode);
 }

@@ -20,7 +20,7 @@ const bool hasMpi = true;
 
 namespace {
 
-constexpr int tag = 0x6c;
+constexpr int kTag = 0x6c;
 
 // Returns false if it takes longer than `patience` seconds.
 bool WaitFor(MPI_Request request, double patience = INFINITY) {
@@ -57,19 +57,19 @@ class MpiPeers final : public Peers {
         Sent& entry = sent.emplace_back();
         entry.to = to;
         entry.message = std::move(message);
-        MPI_Isend(entry.message.data(), int(entry.message.size()), MPI_BYTE, to, tag, world,
+        MPI_Isend(entry.message.data(), int(entry.message.size()), MPI_BYTE, to, kTag, world,
                   &entry.request);
     }
 
     std::optional<PeerMessage> Receive() override {
         int isThere = 0;
         MPI_Status status;
-        MPI_Iprobe(MPI_ANY_SOURCE, tag, world, &isThere, &status);
+        MPI_Iprobe(MPI_ANY_SOURCE, kTag, world, &isThere, &status);
         if (!isThere) return {};
         int size = 0;
         MPI_Get_count(&status, MPI_BYTE, &size);
         PeerMessage message{status.MPI_SOURCE, std::vector<std::byte>(size_t(size))};
-        MPI_Recv(message.bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, tag, world,
+        MPI_Recv(message.bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, kTag, world,
                  MPI_STATUS_IGNORE);
         return message;
     }

@@ -10,7 +10,7 @@ namespace lull {
 
 namespace {
 
-constexpr int smallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
+constexpr int kSmallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
 
 // Returns the end of the pass that pixels of a block have samples of, beyond its spp; 0: none have.
 int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film) {
@@ -24,7 +24,7 @@ int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film
 
 // Returns the visible noise of a block, of any size, both of whose means are in the view.
 double NoiseOf(const BlockView& view) {
-    if (std::min(view.width, view.height) >= smallestNoiseSide) return VisibleNoise(view);
+    if (std::min(view.width, view.height) >= kSmallestNoiseSide) return VisibleNoise(view);
     const LightnessNoise noise = ComputeLightnessNoise(view);
     return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
 }

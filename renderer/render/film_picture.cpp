@@ -37,7 +37,8 @@ void ForEachSampled(const Film& film, const PixelRect& rect, const Use& use) {
             const FilmPixel pixel = film.At({x, y});
             if (pixel.count == 0) continue;
             const double inA = HalfCount(pixel.count);
-            use(Split{pixel.count >= leastDenoisedSpp, inA, pixel.count - inA}, pixel, Vec2i(x, y));
+            use(Split{pixel.count >= kLeastDenoisedSpp, inA, pixel.count - inA}, pixel,
+                Vec2i(x, y));
         }
 }
 

@@ -8,11 +8,11 @@
 namespace lull {
 
 // Samples a pixel needs for both halves to have some.
-inline constexpr uint32_t leastDenoisedSpp = 4;
+inline constexpr uint32_t kLeastDenoisedSpp = 4;
 
 // Returns the pixels of a rectangle inside both films, which have the same samples; the film keeps
-// its half. Where a pixel has less than leastDenoisedSpp samples, both halves are their mean, which
-// the denoiser leaves alone.
+// its half. Where a pixel has less than kLeastDenoisedSpp samples, both halves are their mean,
+// which the denoiser leaves alone.
 NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
 
 // Return its parts, so that a film that one of them is made of can be freed before the other is

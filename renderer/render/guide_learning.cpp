@@ -190,7 +190,7 @@ bool GuideLearner::Finish(bool isUsed, const std::string& why) {
     learning.figures.why = why;
     learning.state = {};
     learning.tally = {};
-    learning.end = noRoundEnd;
+    learning.end = kNoRoundEnd;
     return false;
 }
 

@@ -64,7 +64,7 @@ struct LearningOptions {
 struct Learning {
     int round = 0;        // 0: nothing was recorded yet
     int decided = 0;      // of auto: the round after which it was known that guides pay; 0: none
-    int end = 0;          // of the round, in samples per pixel; noRoundEnd: learning is done
+    int end = 0;          // of the round, in samples per pixel; kNoRoundEnd: learning is done
     double usual = 0;     // mean luminance of the image
     int64_t paths = 0;    // that were recorded
     int64_t samples = 0;  // of the film when the round began
@@ -74,7 +74,7 @@ struct Learning {
     std::vector<TileNoise> noise;  // what the tally then said, where guides pay
     GuideFigures figures;
 
-    bool IsDone() const { return end == noRoundEnd; }
+    bool IsDone() const { return end == kNoRoundEnd; }
 };
 
 // Returns whether paths of the scene can be guided; if not, why.
@@ -92,7 +92,7 @@ class GuideLearner {
     GuideLearner& operator=(const GuideLearner&) = delete;
 
     // Return how paths of this round are traced, and the spp at which it ends: no block goes beyond
-    // it before EndRound(). noRoundEnd: there are no more rounds.
+    // it before EndRound(). kNoRoundEnd: there are no more rounds.
     const PathOptions& Paths() const { return paths; }
     int RoundEnd() const { return learning.end; }
     bool IsDone() const { return learning.IsDone(); }

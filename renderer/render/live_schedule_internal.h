@@ -12,7 +12,7 @@ namespace lull {
 // How a block goes on after a pass.
 struct BlockAnswer {
     bool stop = false;
-    double noise = unknownNoise;
+    double noise = kUnknownNoise;
 };
 
 // Costs a lock a call, a few for each tile.

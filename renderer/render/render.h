@@ -28,7 +28,7 @@ struct BlockResult {
     std::vector<DecisionRecord> decisions;  // those for which the block was checked
 };
 
-// Holds, together with the film, all that is needed to go on with a render: the pixels will be the
+// With the film, all that is needed to go on with a render: the pixels will be the
 // same bits as without the interruption. A pass may be under way, for some of its pixels.
 struct RenderState {
     std::vector<BlockResult> blocks;

@@ -7,7 +7,7 @@ namespace lull {
 namespace {
 
 // How many times the samples of another block may be before that one goes first.
-constexpr int largestLead = 16;
+constexpr int kLargestLead = 16;
 
 int CeilDiv(int a, int b) { return (a + b - 1) / b; }
 
@@ -130,7 +130,7 @@ int Schedule::NextBlock() const {
     if (!options.worstFirst) return first;
     if (current >= 0) return current;
     const auto [noise, spp, worst] = *readyByNoise.begin();
-    return int64_t(fewest) * largestLead < spp ? first : worst;
+    return int64_t(fewest) * kLargestLead < spp ? first : worst;
 }
 
 bool Schedule::MustGoOn() const {

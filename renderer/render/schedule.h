@@ -14,7 +14,7 @@
 namespace lull {
 
 // The end of a round, in spp, that never comes.
-inline constexpr int noRoundEnd = std::numeric_limits<int>::max();
+inline constexpr int kNoRoundEnd = std::numeric_limits<int>::max();
 
 struct ScheduleOptions {
     int blockSize = 200;  // pixels a side, > 0; blocks at the right and bottom can be smaller
@@ -32,7 +32,7 @@ struct ScheduleOptions {
     // steps.
     bool worstFirst = false;
     // Samples per pixel that no block exceeds before the next round has begun.
-    int roundEnd = noRoundEnd;
+    int roundEnd = kNoRoundEnd;
 };
 
 // Returns the spp at the end of the pass that begins at `spp`, a multiple of the length of passes
@@ -48,16 +48,16 @@ inline TileGrid GridOf(const ScheduleOptions& options) {
 }
 
 // The noise of a block of which nobody knows it: more than that of any other.
-inline constexpr double unknownNoise = std::numeric_limits<double>::infinity();
+inline constexpr double kUnknownNoise = std::numeric_limits<double>::infinity();
 
 struct Block {
     PixelRect pixels;
-    int spp = 0;                  // samples per pixel of all finished passes
-    bool votes = true;            // false: too small for its criterion to be asked
-    int leader = -1;              // of a block that does not vote: the one it stops with, if any
-    bool stopped = false;         // takes no more samples
-    bool stoppedByVote = false;   // stopped by its own vote or its leader's, not by the cap
-    double noise = unknownNoise;  // visible at the end of the last pass, as Decide() was told
+    int spp = 0;                   // samples per pixel of all finished passes
+    bool votes = true;             // false: too small for its criterion to be asked
+    int leader = -1;               // of a block that does not vote: the one it stops with, if any
+    bool stopped = false;          // takes no more samples
+    bool stoppedByVote = false;    // stopped by its own vote or its leader's, not by the cap
+    double noise = kUnknownNoise;  // visible at the end of the last pass, as Decide() was told
 
     // Returns whether it ended at the cap, with no rule that had stopped it before.
     bool IsAtCap() const { return stopped && !stoppedByVote; }
@@ -84,7 +84,7 @@ struct BlockStart {
     int spp = 0;  // samples per pixel of all finished passes
     bool stopped = false;
     bool stoppedByVote = false;
-    double noise = unknownNoise;
+    double noise = kUnknownNoise;
     // The spp at the end of a pass that has been begun, and has to be finished though time is
     // called; 0: none.
     int passEnd = 0;
@@ -139,7 +139,7 @@ class Schedule {
     // Tells whether `block`, whose pass has just been finished, stops here, which is ignored for
     // blocks that do not vote, and how much noise it shows. Makes the tiles of the next pass ready
     // (its own and those of followers).
-    void Decide(int block, bool stop, double noise = unknownNoise);
+    void Decide(int block, bool stop, double noise = kUnknownNoise);
     // Gives out no more tiles, but those of passes that have to be finished: the first, or its
     // first step, of each block, so that no part of the image is black, and those begun before this
     // schedule was.

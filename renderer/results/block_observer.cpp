@@ -13,14 +13,14 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t observerTag = 0x3153424f;  // "OBS1"
-constexpr int curveSubBlocks = 100;
-constexpr int smallestCurveSide = 10;  // pixels: one to each row of sub-blocks
+constexpr uint32_t kObserverTag = 0x3153424f;  // "OBS1"
+constexpr int kCurveSubBlocks = 100;
+constexpr int kSmallestCurveSide = 10;  // pixels: one to each row of sub-blocks
 
 double MeanEntropy(const BlockView& view) {
     double sum = 0;
-    for (const SvdEntropy& e : PictureEntropies(view, curveSubBlocks)) sum += e.h;
-    return sum / curveSubBlocks;
+    for (const SvdEntropy& e : PictureEntropies(view, kCurveSubBlocks)) sum += e.h;
+    return sum / kCurveSubBlocks;
 }
 
 Snapshot TakeSnapshot(const BlockView& view, bool withNoise) {
@@ -69,7 +69,7 @@ Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
 void BlockObserver::AddToCurves(const BlockView& view) {
     BlockCurves& curves = history->curves;
     const bool isDue = curves.spp.empty() || view.spp >= 1.07 * curves.spp.back();
-    if (!isDue || std::min(view.width, view.height) < smallestCurveSide) return;
+    if (!isDue || std::min(view.width, view.height) < kSmallestCurveSide) return;
     curves.spp.push_back(view.spp);
     curves.entropy.push_back(float(MeanEntropy(view)));
     curves.noise.push_back(float(VisibleNoise(view)));
@@ -90,7 +90,7 @@ Decision BlockObserver::Observe(const BlockView& view) {
 
 std::vector<std::byte> BlockObserver::Save() const {
     StateWriter writer;
-    writer.Put(observerTag);
+    writer.Put(kObserverTag);
     writer.PutVector(history->stops);
     for (const std::unique_ptr<Criterion>& rule : rules)
         writer.PutVector(rule ? rule->Save() : std::vector<std::byte>());
@@ -108,7 +108,7 @@ std::vector<std::byte> BlockObserver::Save() const {
 
 void BlockObserver::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
-    reader.Expect(observerTag);
+    reader.Expect(kObserverTag);
     history->stops = reader.GetVector<RuleStop>(kDamaged);
     if (history->stops.size() != rules.size())
         throw std::runtime_error("the saved observations are of other rules");

@@ -10,7 +10,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t ladderTag = 0x3152444c;  // "LDR1"
+constexpr uint32_t kLadderTag = 0x3152444c;  // "LDR1"
 
 }  // namespace
 
@@ -69,7 +69,7 @@ Decision PictureLadder::Observe(const BlockView& view) {
 
 std::vector<std::byte> PictureLadder::Save() const {
     StateWriter writer;
-    writer.Put(ladderTag);
+    writer.Put(kLadderTag);
     writer.Put(uint64_t(pictures->size()));
     for (const DisplayPixels& picture : *pictures) writer.PutVector(picture);
     writer.Put(uint8_t(companion != nullptr));
@@ -79,7 +79,7 @@ std::vector<std::byte> PictureLadder::Save() const {
 
 void PictureLadder::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
-    reader.Expect(ladderTag);
+    reader.Expect(kLadderTag);
     pictures->clear();
     const auto count = reader.Get<uint64_t>();
     if (count > levels.size()) throw std::runtime_error("the saved pictures are of another ladder");

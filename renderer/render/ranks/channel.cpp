@@ -9,9 +9,9 @@ namespace {
 
 // How long nobody looks for messages: an eighth of the time for which none has come, so that none
 // is late by more than that, within what costs nothing.
-constexpr std::chrono::microseconds shortest{50}, longest{10000};
+constexpr std::chrono::microseconds kShortestNap{50}, kLongestNap{10000};
 
-constexpr std::chrono::milliseconds patience{500};  // with ranks, to answer a Ping
+constexpr std::chrono::milliseconds kPatience{500};  // with ranks, to answer a Ping
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void RankChannel::AskForLife(const std::vector<int>& ranks) {
 }
 
 void RankChannel::CheckLife() {
-    if (silent.empty() || Clock::now() < silentSince + patience) return;
+    if (silent.empty() || Clock::now() < silentSince + kPatience) return;
     if (onSilence) onSilence({silent.begin(), silent.end()});
     silent.clear();
 }
@@ -115,7 +115,7 @@ void RankChannel::Wait() {
     const auto silence =
         std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - lastMessage);
     std::unique_lock lock(mutex);
-    changed.wait_for(lock, std::clamp(silence / 8, shortest, longest),
+    changed.wait_for(lock, std::clamp(silence / 8, kShortestNap, kLongestNap),
                      [&] { return !outbox.empty() || failure; });
 }
 

@@ -7,8 +7,8 @@ namespace lull {
 
 namespace {
 
-constexpr int dealsARank = 16;  // entries of a sequence for each rank: how finely speeds are told
-constexpr double slowest = 1.0 / 64;  // of the fastest; who is slower is still asked now and then
+constexpr int kDealsARank = 16;  // entries of a sequence for each rank: how finely speeds are told
+constexpr double kSlowest = 1.0 / 64;  // of the fastest; who is slower is still asked now and then
 
 }  // namespace
 
@@ -22,9 +22,9 @@ std::vector<int> DealBySpeed(const std::vector<double>& speeds) {
     const size_t ranks = speeds.size();
     const double fastest = *std::ranges::max_element(speeds);
     std::vector<double> shares;
-    for (const double speed : speeds) shares.push_back(std::max(speed, slowest * fastest));
+    for (const double speed : speeds) shares.push_back(std::max(speed, kSlowest * fastest));
     const double all = std::accumulate(shares.begin(), shares.end(), 0.0);
-    const int length = dealsARank * int(ranks);
+    const int length = kDealsARank * int(ranks);
 
     // Each entry is for the rank that lags furthest behind its share.
     std::vector<int> deal, given(ranks, 0);

@@ -11,8 +11,8 @@ namespace lull {
 
 namespace {
 
-constexpr double leastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
-constexpr double leastRun = 20;    // until the next pause: times what the last one took
+constexpr double kLeastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
+constexpr double kLeastRun = 20;    // until the next pause: times what the last one took
 
 class Leader {
   public:
@@ -62,7 +62,7 @@ class Leader {
                 channel.PostToAll(Pack(RankWord::Resume));
             else
                 Deal();
-            nextDeal = Seconds() + std::max(options.dealInterval, leastRun * (Seconds() - pause));
+            nextDeal = Seconds() + std::max(options.dealInterval, kLeastRun * (Seconds() - pause));
         }
         channel.PostToAll(Pack(RankWord::End));
         Exchange();  // sends the last word
@@ -158,7 +158,7 @@ class Leader {
         std::lock_guard lock(partsMutex);
         const std::vector<double> known = speeds.Speeds(options.dealInterval / 10);
         if (known.empty()) return;
-        if (GainOfDealing(known, schedule.Share().deal) >= leastGain) {
+        if (GainOfDealing(known, schedule.Share().deal) >= kLeastGain) {
             deal = DealBySpeed(known);
             executor.pausing = true;
         }

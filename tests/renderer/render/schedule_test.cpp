@@ -167,11 +167,11 @@ TEST(Schedule, WaitsForTheEndOfARound) {
         return block == 0 && spp == 20;
     };
     EXPECT_FALSE(schedule.IsRoundOver());
-    for (const int end : {8, 16, 50, noRoundEnd}) {
+    for (const int end : {8, 16, 50, kNoRoundEnd}) {
         schedule.BeginRound(end);
         for (const Tile& tile : RunAll(schedule, stop)) EXPECT_LE(tile.first + tile.count, end);
-        EXPECT_EQ(schedule.IsRoundOver(), end != noRoundEnd);
-        if (end == noRoundEnd) continue;
+        EXPECT_EQ(schedule.IsRoundOver(), end != kNoRoundEnd);
+        if (end == kNoRoundEnd) continue;
         EXPECT_EQ(schedule.Blocks()[1].spp, end);
         EXPECT_EQ(schedule.Blocks()[2].spp, end);
     }
