@@ -24,11 +24,8 @@ class Accelerator {
     // Returns whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
     bool Occluded(const Ray& ray, float time = 0) const;
 
-    // For programs that measure Embree itself, see accelerator_internal.h.
-    struct Implementation;
-    const Implementation& Internals() const { return *implementation; }
-
   private:
+    struct Implementation;
     std::unique_ptr<Implementation> implementation;
 };
 
