@@ -146,6 +146,15 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
     return shared;
 }
 
+// Lets blocks stop at the samples that they have had in a render that was short of time.
+void StopAs(const RenderResult& result, RenderSetup* setup) {
+    setup->schedule.smallestSide = 0;
+    setup->schedule.passLength = 1;  // the time may have ended within the first pass
+    setup->makeCriterion = [&](const BlockInfo& block) {
+        return std::make_unique<ScriptedCriterion>(result.blocks[size_t(block.index)].block.spp);
+    };
+}
+
 std::vector<int> StopsOf(const Shared& shared) {
     std::vector<int> stops;
     for (const BlockResult& b : shared.result.blocks)
@@ -265,14 +274,8 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
             },
             nullptr, [&](int) { return source; });
         EXPECT_TRUE(shared.result.timeUp);
-        const Shared again = RenderShared(2, [&](RenderSetup* o, int) {
-            o->schedule.smallestSide = 0;
-            o->schedule.passLength = 1;  // the time may have ended within the first pass
-            o->makeCriterion = [&](const BlockInfo& block) {
-                return std::make_unique<ScriptedCriterion>(
-                    shared.result.blocks[size_t(block.index)].block.spp);
-            };
-        });
+        const Shared again =
+            RenderShared(2, [&](RenderSetup* o, int) { StopAs(shared.result, o); });
         EXPECT_TRUE(SamePixels(*again.film, *shared.film));
         // How far each has got by then is for the machine to decide.
         for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 1);
@@ -478,14 +481,7 @@ TEST(Ranks, UndoLayers) {
             },
             nullptr, source);
         undone = timed.film->SampleCount() < taken;
-        const Shared again = RenderLayers(0, [&](RenderSetup* o, int) {
-            o->schedule.smallestSide = 0;
-            o->schedule.passLength = 1;  // the time may have ended within the first pass
-            o->makeCriterion = [&](const BlockInfo& block) {
-                return std::make_unique<ScriptedCriterion>(
-                    timed.result.blocks[size_t(block.index)].block.spp);
-            };
-        });
+        const Shared again = RenderLayers(0, [&](RenderSetup* o, int) { StopAs(timed.result, o); });
         EXPECT_TRUE(SamePixels(*timed.film, *again.film));
         EXPECT_TRUE(SameLayers(*timed.layers, *again.layers));
     }
