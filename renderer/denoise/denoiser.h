@@ -12,11 +12,6 @@ namespace lull {
 inline constexpr int kDenoiserBytes = 230;        // of memory a pixel, while it works
 inline constexpr int kSmallestMeasuredSide = 10;  // pixels of a block whose error can be measured
 
-// A part of a picture, [x0, x1) x [y0, y1).
-struct PictureBlock {
-    int x0, y0, x1, y1;
-};
-
 struct DenoiserOptions {
     bool isQuick = false;  // a little worse, in 60 % of the time: for a look at how far a render is
     bool withDeviation = true;  // measure the standard error of pixels, too
@@ -31,7 +26,6 @@ struct DenoiserResult {
 
 // Denoises a picture, whose memory it uses, and measures the error of blocks within it. The same
 // bits for any number of threads.
-DenoiserResult RunDenoiser(NoisyPicture, std::span<const PictureBlock>,
-                           const DenoiserOptions& = {});
+DenoiserResult RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
 }  // namespace lull

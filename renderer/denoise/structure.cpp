@@ -253,7 +253,7 @@ Planes StructureLeft(const Halves& noisy, const Planes& variance, const Halves& 
     tbb::this_task_arena::isolate([&] {
         for (const auto& row :
              Find(ResidualOf(noisy, variance, picture), AllKernels(), left.width, left.height))
-            for (const Found& f : row) left.Row(0, f.y)[f.x] = f.share * f.mean * f.mean;
+            for (const Found& f : row) left.Row(0, f.y)[f.x] = std::sqrt(f.share) * f.mean;
     });
     return left;
 }

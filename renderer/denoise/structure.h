@@ -18,7 +18,8 @@ namespace lull {
 // threads.
 void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* picture);
 
-// Returns the square of that mean, in lightness, where it is structure; elsewhere 0.
+// Returns that mean in lightness, which the picture lacks, where it is structure; elsewhere 0.
+// Where it is doubtful, its square counts in part.
 Planes StructureLeft(const Halves& noisy, const Planes& variance, const Halves& picture);
 
 }  // namespace lull

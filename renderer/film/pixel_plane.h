@@ -4,20 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "renderer/base/math.h"
+#include "renderer/base/pixel_rect.h"
 #include "stopping/base/state.h"
 
 namespace lull {
-
-// The pixels [min, max).
-struct PixelRect {
-    Vec2i min = {0, 0}, max = {0, 0};
-
-    int Width() const { return max.x() - min.x(); }
-    int Height() const { return max.y() - min.y(); }
-    int64_t Area() const { return int64_t(Width()) * Height(); }
-    bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
-};
 
 // A Pixel, value-initialised, for each of a region. Different ones can be changed by
 // different threads at the same time.

@@ -34,7 +34,7 @@ function showBlock(data, i) {
   if (block.people) rows.push(["people, 80 of 100 times", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", blockEnds[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["visible noise in lightness", block.visibleNoise.toFixed(2)]);
-  if (block.visibleError) rows.push(["visible error, denoised", `about ${block.visibleError.estimate.toFixed(2)}, probably at most ${block.visibleError.upper.toFixed(2)}`]);
+  if (block.visibleDifference) rows.push(["visible difference, denoised", `about ${block.visibleDifference.estimate.toFixed(1)}, probably at most ${block.visibleDifference.upper.toFixed(1)}`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["would probably have stopped at", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["CPU time needed (estimate)", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));

@@ -139,7 +139,7 @@ Denoised Denoise(const py::array& a, const py::array& b, const py::object& albed
 std::string ReprOf(const Denoised& d) {
     const auto worst = std::ranges::max(d.blocks, {}, &lull_block_error::upper);
     return py::str(
-               "<lull_denoising.Denoised of {} x {} pixels: visible error {:.2g} in its worst "
+               "<lull_denoising.Denoised of {} x {} pixels: visible difference {:.2g} in its worst "
                "block, hardly above {:.2g}>")
         .format(d.picture.shape(1), d.picture.shape(0), worst.estimate, worst.upper);
 }
@@ -164,7 +164,8 @@ PYBIND11_MODULE(lull_denoising, module) {
                                "Where the blocks lie: (x, y, width, height), row by row.")
         .def_property_readonly(
             "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
-            "The visible error of each block, in lightness: an array of rows x columns.")
+            "The visible difference of each block from the true picture; people just accept 3.1. "
+            "An array of rows x columns.")
         .def_property_readonly(
             "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
             "What that hardly exceeds: meant to, in 5 of 100 blocks.")

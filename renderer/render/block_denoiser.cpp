@@ -6,7 +6,7 @@ namespace lull {
 
 VisibleError BlockDenoiser::MeasureBlock(int block) const {
     const PixelRect& pixels = blocks.at(size_t(block)).pixels;
-    const PictureBlock whole{0, 0, pixels.Width(), pixels.Height()};
+    const PixelRect whole{{0, 0}, {pixels.Width(), pixels.Height()}};
     // The picture in the end is a little better than that which is judged.
     const DenoiserResult result = RunDenoiser(PictureOf(*film, *featureFilm, pixels), {&whole, 1},
                                               {.isQuick = true, .withDeviation = false});

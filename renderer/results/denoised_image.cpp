@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "renderer/vision/visible_difference.h"
+
 namespace lull {
 
 DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks) {
-    std::vector<PictureBlock> measured;
-    for (const Block& block : blocks) {
-        const Vec2i min = block.pixels.min - region.min, max = block.pixels.max - region.min;
-        measured.push_back({min.x(), min.y(), max.x(), max.y()});
-    }
+    std::vector<PixelRect> measured;
+    for (const Block& block : blocks)
+        measured.push_back({block.pixels.min - region.min, block.pixels.max - region.min});
     DenoiserResult result = RunDenoiser(std::move(picture), measured);
     return {{region.Width(), region.Height(), std::move(result.rgb)},
             std::move(result.deviation),
@@ -23,15 +23,15 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
         if (error) upper.push_back(error->upper);
     if (upper.empty())
         return fmt::format(
-            "visible error not known: blocks have less than {} pixels a side, or few samples",
+            "visible difference unknown: blocks have less than {} pixels a side, or few samples",
             kSmallestMeasuredSide);
     std::ranges::sort(upper);
     const bool isKnown = upper.size() == blocks.size();
     return fmt::format(
-        "visible error in lightness, of 0 to 100, probably at most {:.2f} in half of "
-        "the {}blocks{} and {:.2f} in all",
+        "visible difference from the true image probably at most {:.2g} in half of the {}blocks{} "
+        "and {:.2g} in all (accepted: {})",
         upper[upper.size() / 2], isKnown ? "" : fmt::format("{} ", upper.size()),
-        isKnown ? "" : " of which it is known", upper.back());
+        isKnown ? "" : " of which it is known", upper.back(), kVisibilityThreshold);
 }
 
 std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb) {

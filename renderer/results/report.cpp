@@ -153,8 +153,8 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     if (denoised)
         for (size_t i = 0; i < result.blocks.size(); ++i)
             if (const auto& error = denoised->blocks[i])
-                report["blocks"][i]["visibleError"] = {{"estimate", error->estimate},
-                                                       {"upper", error->upper}};
+                report["blocks"][i]["visibleDifference"] = {{"estimate", error->estimate},
+                                                            {"upper", error->upper}};
     if (result.timeUp) AddShortfall(provenance, result, &report);
     AddCapped(provenance, result, &report);
     report["warnings"] = warnings;

@@ -6,7 +6,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t kTag = 0x32534e44;  // "DNS2"
+constexpr uint32_t kTag = 0x33534e44;  // "DNS3"
 constexpr int kVotes = 1;
 constexpr int kFirstSpp = 20;
 constexpr double kGrowth = 1.25;

@@ -1,12 +1,12 @@
-// Stops blocks by the error that is still visible once they are denoised.
+// Stops blocks by the difference that is still visible once they are denoised.
 #pragma once
 
 #include "stopping/rules/rule.h"
 
 namespace lull {
 
-// The name under which a program supplies the measure: the visible error of the block, denoised
-// from nothing but its own samples, in lightness, as a bound that is seldom exceeded.
+// The name under which a program supplies the measure: the visible difference between the block,
+// denoised from nothing but its own samples, and the true one, as a bound that is seldom exceeded.
 inline constexpr const char* kDenoisedRuleName = "denoised";
 
 // Reads the threshold T, which the context's caution divides. The block is checked first at 20

@@ -83,10 +83,10 @@ constexpr RuleEntry kRules[] = {
      .read = ReadLightnessNoise},
     {.name = kDenoisedRuleName,
      .argument = "[:T]",
-     .standard = "0.64",
-     .stops = "when the error that is visible once it is denoised was probably below T@ in "
-              "lightness, looked at whenever samples have grown by a quarter; the default with "
-              "--denoise",
+     .standard = "3.1",
+     .stops = "when the visible difference between the denoised block and the true one is "
+              "probably below T@, checked whenever samples have grown by a quarter; the default "
+              "with --denoise",
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .replay = Replay::Unknown,

@@ -56,7 +56,7 @@ class DenoisingTest(unittest.TestCase):
         for message, factor in ("mostly above 1", 5), ("negative", np.where(np.arange(WIDTH) % 5, 1, -1)[None, :, None]):
             with self.assertWarnsRegex(UserWarning, "a or b .*" + message):
                 lull_denoising.denoise(np.float32(factor * np.nan_to_num(a)), np.float32(factor * b))
-        self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 130 x 70 pixels: visible error [\d.]+ in")
+        self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 130 x 70 pixels: visible difference [\d.]+ in")
 
     def test_says_what_is_wrong(self):
         _, a, b, albedo = pictures()

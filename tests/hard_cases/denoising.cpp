@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "renderer/denoise/visible_error.h"
+#include "renderer/vision/visible_difference.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/denoise/example_pictures.h"
 
@@ -10,6 +11,7 @@ namespace lull {
 namespace {
 
 constexpr int kWidth = 120, kHeight = 100, kBorder = 12;
+const PixelRect kWhole{{0, 0}, {kWidth, kHeight}};
 
 using Truth = std::function<double(int x, int y)>;
 
@@ -105,7 +107,7 @@ HardCaseResult Extremes(const HardCaseOptions& o) {
             bool failed = false;
             for (const float v : p.denoised.picture.values) failed |= !(v >= 0 && v < HUGE_VALF);
             const VisibleError error =
-                MeasureVisibleError(MeasureError(p.denoised), 0, 0, kWidth, kHeight);
+                MeasureVisibleError(p.denoised, MeasureError(p.denoised), kWhole);
             failed |= !(error.estimate >= 0 && error.upper >= error.estimate);
             failed |= !(error.upper < HUGE_VAL);
             failures.Note(failed,
@@ -125,20 +127,11 @@ HardCaseResult Bound(const HardCaseOptions& o) {
                         return 0.4 + texture * std::sin(1.1 * x) * std::cos(0.7 * y);
                     },
                     noise, seed);
-                EstimatedError error = MeasureError(p.denoised);
-                const VisibleError said = MeasureVisibleError(error, 0, 0, kWidth, kHeight);
-                // The same measure of the true error, which has no noise.
-                Planes difference(kWidth, kHeight, 1);
-                for (size_t i = 0; i < difference.Area(); ++i) {
-                    const auto lightness = [](float y) { return 116 * std::cbrt(y) - 16; };
-                    difference.values[i] =
-                        lightness(std::max(0.01f, p.denoised.picture.values[i])) -
-                        lightness(p.truth.values[i]);
-                }
-                difference = AsSeen(std::move(difference));
-                for (size_t i = 0; i < difference.Area(); ++i)
-                    error.least.values[i] = difference.values[i] * difference.values[i];
-                const double truth = MeasureVisibleError(error, 0, 0, kWidth, kHeight).least;
+                const VisibleError said =
+                    MeasureVisibleError(p.denoised, MeasureError(p.denoised), kWhole);
+                const double truth = PooledDifference(
+                    FindVisibleDifference(Interleaved(p.denoised.picture), Interleaved(p.truth),
+                                          kWidth, kHeight, DisplayModel()));
                 above.Note(truth > said.upper, [&] {
                     return fmt::format("noise {:g}, texture {:g}, seed {}", noise, texture, seed);
                 });

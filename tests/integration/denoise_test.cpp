@@ -121,7 +121,7 @@ TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
     EXPECT_NE(small.err.find("not known: blocks have less than 10 pixels a side"),
               std::string::npos)
         << small.err;
-    EXPECT_EQ(RunShell(directory, "grep visibleError a.json").exitCode, 1);
+    EXPECT_EQ(RunShell(directory, "grep visibleDifference a.json").exitCode, 1);
 }
 
 TEST(DenoiseCommand, SaysWhatIsMissing) {

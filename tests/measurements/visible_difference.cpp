@@ -13,7 +13,7 @@
 #include <string>
 
 #include "renderer/base/error.h"
-#include "renderer/lab/metrics/visible_difference.h"
+#include "renderer/vision/visible_difference.h"
 
 using namespace lull;
 

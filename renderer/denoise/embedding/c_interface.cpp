@@ -121,9 +121,9 @@ void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& c
 
 void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
     const std::span<lull_block_error> blocks(clean->blocks, size_t(clean->block_count));
-    std::vector<PictureBlock> measured;
+    std::vector<PixelRect> measured;
     for (const lull_block_error& block : blocks)
-        measured.push_back({block.x, block.y, block.x + block.width, block.y + block.height});
+        measured.push_back({{block.x, block.y}, {block.x + block.width, block.y + block.height}});
     const DenoiserResult result =
         RunDenoiser(std::move(picture), measured, {.withDeviation = clean->error != nullptr});
     for (size_t i = 0; i < blocks.size(); ++i) {

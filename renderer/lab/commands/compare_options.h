@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/commands/render_settings.h"
-#include "renderer/lab/metrics/display_model.h"
+#include "renderer/vision/display_model.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

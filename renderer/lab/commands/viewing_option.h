@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/lab/metrics/display_model.h"
+#include "renderer/vision/display_model.h"
 
 namespace lull {
 

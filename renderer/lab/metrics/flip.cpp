@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "renderer/base/math.h"
-#include "renderer/lab/metrics/convolution.h"
+#include "renderer/vision/convolution.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

@@ -5,7 +5,7 @@
 
 #include "renderer/film/film.h"
 #include "renderer/image/rgb_image.h"
-#include "renderer/lab/metrics/visible_difference.h"
+#include "renderer/vision/visible_difference.h"
 
 namespace lull {
 

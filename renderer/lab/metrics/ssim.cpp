@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "renderer/lab/metrics/convolution.h"
+#include "renderer/vision/convolution.h"
 
 namespace lull {
 

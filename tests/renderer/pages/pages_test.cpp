@@ -98,11 +98,11 @@ TEST(MakeRenderPage, HasCurvesAndDecisions) {
 
     const DenoisedImage denoised{{4, 4, std::vector<float>(48, .5f)},
                                  std::vector<float>(16, .3f),
-                                 {VisibleError{.estimate = .25, .upper = .5, .least = .125}}};
+                                 {VisibleError{.estimate = .25, .upper = .5}}};
     const Json clean = DataOf(MakeRenderPage(provenance, result, film, histories, {}, &denoised));
     EXPECT_EQ(clean["images"].size(), 3);
     EXPECT_EQ(clean["images"][0]["label"], "denoised (lnoise:2)");
-    EXPECT_EQ(clean["blocks"][0]["visibleError"]["upper"], .5);
+    EXPECT_EQ(clean["blocks"][0]["visibleDifference"]["upper"], .5);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/convolution.h"
+#include "renderer/vision/convolution.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/image_pyramid.h"
+#include "renderer/vision/image_pyramid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/visible_difference.h"
+#include "renderer/vision/visible_difference.h"
 
 #include <gtest/gtest.h>
 

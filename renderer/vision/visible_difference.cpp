@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/visible_difference.h"
+#include "renderer/vision/visible_difference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
-#include "renderer/lab/metrics/convolution.h"
+#include "renderer/vision/convolution.h"
 
 namespace lull {
 
@@ -156,18 +156,24 @@ std::array<SensitivityCurve, kChannels> SensitivityCurves(double frequency) {
             SensitivityCurve(OpponentChannel::YellowViolet, frequency)};
 }
 
-// Multiplies both contrasts by the sensitivity at the luminance of the reference: to units of the
-// threshold.
-void ToThresholds(double frequency, ContrastBand* image, ContrastBand* reference) {
+// Returns the sensitivity at luminances around each place, by channel.
+Planes SensitivityPlanes(double frequency, int width, int height,
+                         const std::vector<float>& luminance) {
     const std::array<SensitivityCurve, kChannels> curves = SensitivityCurves(frequency);
-    for (size_t i = 0; i < reference->luminance.size(); ++i) {
-        const float log2Luminance = std::log2(reference->luminance[i]);
-        for (int c = 0; c < kChannels; ++c) {
-            const float sensitivity = curves[c].At(log2Luminance);
-            image->contrast[c].values[i] *= sensitivity;
-            reference->contrast[c].values[i] *= sensitivity;
-        }
+    Planes planes;
+    for (Plane& plane : planes) plane = {width, height, std::vector<float>(luminance.size())};
+    for (size_t i = 0; i < luminance.size(); ++i) {
+        const float log2Luminance = std::log2(luminance[i]);
+        for (int c = 0; c < kChannels; ++c) planes[c].values[i] = curves[c].At(log2Luminance);
     }
+    return planes;
+}
+
+// Multiplies contrasts by the sensitivity: to units of the threshold.
+void ToThresholds(const Planes& sensitivity, Planes* contrast) {
+    for (int c = 0; c < kChannels; ++c)
+        for (size_t i = 0; i < sensitivity[c].values.size(); ++i)
+            (*contrast)[c].values[i] *= sensitivity[c].values[i];
 }
 
 float PowerOf(float base, double exponent) {
@@ -219,6 +225,12 @@ Planes BaseDifference(Planes image, const Planes& reference) {
     return image;
 }
 
+void CheckSize(std::span<const float> picture, int width, int height) {
+    const size_t size = 3 * size_t(std::max(width, 0)) * size_t(std::max(height, 0));
+    if (size == 0 || picture.size() != size)
+        throw Error("visible difference: pictures of one size, not empty, are needed");
+}
+
 // Returns how much of each of the `size` cells of a level is in [begin, end) of the picture.
 std::vector<double> Shares(int level, int size, int begin, int end) {
     const double side = std::exp2(level);
@@ -234,29 +246,47 @@ std::vector<double> Shares(int level, int size, int begin, int end) {
 
 }  // namespace
 
+VisibleReference PrepareReference(std::span<const float> reference, int width, int height,
+                                  const DisplayModel& display) {
+    CheckSize(reference, width, height);
+    VisibleReference result{width, height, display, {}};
+    Planes planes = OpponentPlanes(reference, width, height, display);
+    const std::vector<double> frequencies = BandFrequencies(width, height, display.pixelsPerDegree);
+    for (size_t level = 0; level < frequencies.size(); ++level) {
+        const bool isBase = level + 1 == frequencies.size();
+        ContrastBand band = isBase ? TakeBase(std::move(planes)) : TakeBand(int(level), &planes);
+        const Plane& first = band.contrast[0];
+        Planes sensitivity =
+            SensitivityPlanes(frequencies[level], first.width, first.height, band.luminance);
+        ToThresholds(sensitivity, &band.contrast);
+        result.bands.push_back(
+            {frequencies[level], std::move(band.contrast), std::move(sensitivity)});
+    }
+    return result;
+}
+
+VisibleDifference FindVisibleDifference(std::span<const float> image,
+                                        const VisibleReference& reference) {
+    CheckSize(image, reference.width, reference.height);
+    VisibleDifference result{reference.width, reference.height, {}};
+    Planes planes = OpponentPlanes(image, reference.width, reference.height, reference.display);
+    for (size_t level = 0; level < reference.bands.size(); ++level) {
+        const ReferenceBand& band = reference.bands[level];
+        const bool isBase = level + 1 == reference.bands.size();
+        Planes contrast =
+            isBase ? TakeBase(std::move(planes)).contrast : TakeBand(int(level), &planes).contrast;
+        ToThresholds(band.sensitivity, &contrast);
+        result.bands.push_back({band.frequency, int(level),
+                                isBase ? BaseDifference(std::move(contrast), band.contrast)
+                                       : MaskedDifference(std::move(contrast), band.contrast)});
+    }
+    return result;
+}
+
 VisibleDifference FindVisibleDifference(std::span<const float> image,
                                         std::span<const float> reference, int width, int height,
                                         const DisplayModel& display) {
-    const size_t size = 3 * size_t(std::max(width, 0)) * size_t(std::max(height, 0));
-    if (size == 0 || image.size() != size || reference.size() != size)
-        throw Error("visible difference: pictures of one size, not empty, are needed");
-    VisibleDifference result{width, height, {}};
-    Planes imagePlanes = OpponentPlanes(image, width, height, display);
-    Planes referencePlanes = OpponentPlanes(reference, width, height, display);
-    const std::vector<double> frequencies = BandFrequencies(width, height, display.pixelsPerDegree);
-    for (int level = 0; level < int(frequencies.size()); ++level) {
-        const bool isBase = level + 1 == int(frequencies.size());
-        const double frequency = frequencies[size_t(level)];
-        ContrastBand a = isBase ? TakeBase(std::move(imagePlanes)) : TakeBand(level, &imagePlanes);
-        ContrastBand b =
-            isBase ? TakeBase(std::move(referencePlanes)) : TakeBand(level, &referencePlanes);
-        ToThresholds(frequency, &a, &b);
-        result.bands.push_back(
-            {frequency, level,
-             isBase ? BaseDifference(std::move(a.contrast), b.contrast)
-                    : MaskedDifference(std::move(a.contrast), std::move(b.contrast))});
-    }
-    return result;
+    return FindVisibleDifference(image, PrepareReference(reference, width, height, display));
 }
 
 double PooledDifference(const VisibleDifference& difference, const PixelRect& rect) {

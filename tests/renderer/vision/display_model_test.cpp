@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/display_model.h"
+#include "renderer/vision/display_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/lab/metrics/contrast_sensitivity.h"
+#include "renderer/vision/contrast_sensitivity.h"
 
 #include <gtest/gtest.h>
 

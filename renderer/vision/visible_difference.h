@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "renderer/film/film.h"
-#include "renderer/lab/metrics/contrast_sensitivity.h"
-#include "renderer/lab/metrics/display_model.h"
-#include "renderer/lab/metrics/image_pyramid.h"
+#include "renderer/base/pixel_rect.h"
+#include "renderer/vision/contrast_sensitivity.h"
+#include "renderer/vision/display_model.h"
+#include "renderer/vision/image_pyramid.h"
 
 namespace lull {
 
@@ -27,6 +27,23 @@ struct VisibleDifference {
     std::vector<VisibleBand> bands;
 };
 
+// A reference as it is compared with pictures, from fine to coarse: contrast and sensitivity by
+// channel, at each place of a band.
+struct ReferenceBand {
+    double frequency = 0;  // cycles per degree
+    std::array<Plane, kOpponentChannels> contrast, sensitivity;
+};
+struct VisibleReference {
+    int width = 0, height = 0;
+    DisplayModel display;
+    std::vector<ReferenceBand> bands;
+};
+
+// Prepares a picture of linear RGB (row-major triples) on a display. Throws Error if sizes do not
+// fit.
+VisibleReference PrepareReference(std::span<const float> reference, int width, int height,
+                                  const DisplayModel&);
+
 // Compares two pictures of linear RGB (row-major triples), as ColorVideoVDP compares still ones:
 // Mantiuk, Hanji, Ashraf, Asano, Chapiro: ColorVideoVDP: A visual difference predictor for image,
 // video and display distortions, ACM TOG 43(4), 2024, with the constants of its version 0.5.6.
@@ -35,6 +52,7 @@ struct VisibleDifference {
 VisibleDifference FindVisibleDifference(std::span<const float> image,
                                         std::span<const float> reference, int width, int height,
                                         const DisplayModel&);
+VisibleDifference FindVisibleDifference(std::span<const float> image, const VisibleReference&);
 
 // Visible difference above which a block differs visibly: the one number that agrees best with the
 // human thresholds of 47 blocks (docs/visible-differences.md).

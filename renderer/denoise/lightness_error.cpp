@@ -1,0 +1,207 @@
+#include "renderer/denoise/lightness_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "renderer/denoise/displayed_lightness.h"
+#include "renderer/denoise/structure.h"
+#include "stopping/signals/entropy_drop.h"
+#include "stopping/signals/svd_entropy.h"
+
+namespace lull {
+
+namespace {
+
+constexpr int kSide = 10;             // sub-blocks a side
+constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
+constexpr int kSmoothRadius = 5;      // pixels
+constexpr double kLeastDoubt = 0.01;  // of the mean doubt
+// Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
+// 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
+// well as noise that changes from pixel to pixel. With these they count 1.5, 1.8, 1.9 times.
+constexpr int kCoarseRadius = 3;  // pixels
+constexpr float kCoarseGain = 1;
+constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of products of noise
+// The error over what of it still changes, and how much that varies, over 53 pictures of
+// nine scenes (tests/measurements/denoising.md).
+constexpr double kUsual = 1.27;
+constexpr double kUsualDoubt = 0.25;
+// The bound is not below this share of what the samples by themselves allow, for what is hidden
+// under the noise of unusual pictures.
+constexpr double kTrust = 0.8;
+
+// Sums up a sub-block.
+struct Sums {
+    double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
+
+    void Add(const EstimatedError& error, size_t i) {
+        const double l = error.lightness.values[i], d = error.deviation.values[i];
+        ++count;
+        lightness += l;
+        lightnessSquares += l * l;
+        squared += error.squared.values[i];
+        variance += d * d;
+        least += error.least.values[i];
+    }
+    // Returns the square of what an observer sees of a difference in lightness.
+    double Seen() const {
+        const NoiseVisibility visibility;
+        const double mean = lightness / count;
+        const double deviation = std::sqrt(std::max(0.0, lightnessSquares / count - mean * mean));
+        const double seen = FlareFactor(mean, visibility.flare) / (1 + deviation / visibility.mask);
+        return seen * seen;
+    }
+};
+
+// Holds mean squares of errors, with the variance of the first.
+struct Squares {
+    double estimate = 0, variance = 0, least = 0;
+};
+
+Squares SquaresOf(const Sums& sums) {
+    const double seen = sums.Seen() / sums.count;
+    return {seen * sums.squared, seen * seen * sums.variance, seen * sums.least};
+}
+
+// Holds what is known of the square of the mean of roots.
+struct Belief {
+    double mean = 0, variance = 0;
+
+    double Root(double deviations) const {
+        return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
+    }
+};
+
+// Returns what the samples say. By Cauchy's inequality the square is at most mean(1 / w) mean(w s),
+// for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s). Of s
+// itself little is known, of the doubts much, which go with s; and what one sub-block of much noise
+// does not know weighs less so.
+Belief FromSamples(std::span<const Squares> all) {
+    const double n = double(all.size());
+    double doubts = 0;
+    for (const Squares& s : all) doubts += std::sqrt(s.variance) / n;
+    double inverse = 0, mean = 0, variance = 0;
+    for (const Squares& s : all) {
+        const double doubt = std::max({std::sqrt(s.variance), kLeastDoubt * doubts, 1e-12});
+        const double w = 1 / std::sqrt(doubt);
+        inverse += 1 / (w * n);
+        mean += w * s.estimate / n;
+        variance += w * w * s.variance / (n * n);
+    }
+    return {inverse * mean, inverse * inverse * variance};
+}
+
+// Returns what is usual where the halves of the denoised picture differ by this.
+Belief Usual(double least) {
+    const double mean = Sqr(kUsual * least);
+    return {mean, Sqr(2 * kUsualDoubt * mean)};
+}
+
+// Returns what both say together, each by its doubt. As far as the samples contradict what is usual
+// beyond chance, this picture is an unusual one, of which less is known beforehand (DerSimonian and
+// Laird's estimate of what two differ by).
+Belief Together(const Belief& samples, Belief usual) {
+    usual.variance +=
+        std::max(0.0, Sqr(samples.mean - usual.mean) - samples.variance - usual.variance);
+    const double both = samples.variance + usual.variance;
+    if (both <= 0) return samples;
+    const double share = usual.variance / both;  // of the samples
+    return {share * samples.mean + (1 - share) * usual.mean, share * samples.variance};
+}
+
+// Returns slope * (a - b) of the luminances of two pictures, in lightness.
+Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
+    Planes difference(a.width, a.height, 1);
+    for (size_t i = 0; i < difference.Area(); ++i)
+        difference.values[i] = std::clamp(slope.values[i] * (LuminanceOf(a, i) - LuminanceOf(b, i)),
+                                          -kLargest, kLargest);
+    return difference;
+}
+
+// Adds `share` times the square of the difference of two pictures, as it is seen.
+void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float share, bool asSeen,
+               Planes* sum) {
+    Planes difference = Difference(a, b, slope);
+    if (asSeen) difference = AsSeen(std::move(difference));
+    for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Sqr(difference.values[i]);
+}
+
+// Measures all but the structure.
+EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
+    EstimatedError error;
+    error.lightness = Planes(denoised.picture.width, denoised.picture.height, 1);
+    error.squared = error.deviation = error.least = error.lightness;
+    Planes slope = error.lightness;
+    for (size_t i = 0; i < error.lightness.Area(); ++i) {
+        const LightnessSlope<float> at = DisplayedLightness(LuminanceOf(denoised.picture, i));
+        Rgb deviations;
+        for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
+        const float deviation = Luminance(deviations);  // the colours of a path go together
+        error.lightness.values[i] = at.lightness;
+        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Sqr(at.slope * deviation);
+        slope.values[i] = at.slope;
+    }
+    const auto add = [&](const Planes& a, const Planes& b, float share, Planes* sum) {
+        AddSquare(a, b, slope, share, asSeen, sum);
+    };
+    const Halves &halves = denoised.halves, &noisy = denoised.noisy;
+    add(halves.a, halves.b, 0.25f, &error.least);
+    // The noise of both halves, and of what is made of them, is in it as products of the two.
+    add(halves.a, noisy.b, 0.5f, &error.squared);
+    add(halves.b, noisy.a, 0.5f, &error.squared);
+    add(noisy.a, noisy.b, -0.5f, &error.squared);
+    for (size_t i = 0; i < error.squared.Area(); ++i)
+        error.squared.values[i] -= error.least.values[i];
+    // The variance of a few samples is itself noisy, which would count twice in its square.
+    error.deviation = BoxMean(std::move(error.deviation), kSmoothRadius);
+    return error;
+}
+
+}  // namespace
+
+Planes AsSeen(Planes difference) {
+    const Planes coarse = BoxMean(difference, kCoarseRadius);
+    for (size_t i = 0; i < difference.values.size(); ++i)
+        difference.values[i] += kCoarseGain * coarse.values[i];
+    return difference;
+}
+
+EstimatedError MeasureError(const DenoisedPicture& denoised) {
+    EstimatedError error = Measure(denoised, true);
+    error.structure = StructureLeft(denoised.noisy, denoised.variance, denoised.halves);
+    return error;
+}
+
+LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRect& block) {
+    const std::vector<int> xs = SplitEvenly(block.Width(), kSide),
+                           ys = SplitEvenly(block.Height(), kSide);
+    const int x0 = block.min.x(), y0 = block.min.y();
+    std::vector<Squares> all;
+    LightnessError result;
+    for (size_t v = 0; v < kSide; ++v)
+        for (size_t u = 0; u < kSide; ++u) {
+            Sums sums;
+            for (int y = y0 + ys[v]; y < y0 + ys[v + 1]; ++y)
+                for (int x = x0 + xs[u]; x < x0 + xs[u + 1]; ++x)
+                    sums.Add(error, size_t(y) * size_t(error.lightness.width) + size_t(x));
+            all.push_back(SquaresOf(sums));
+            result.least += std::sqrt(all.back().least) / (kSide * kSide);
+        }
+    const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
+    result.estimate = std::max(belief.Root(0), result.least);
+    result.upper = std::max({belief.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
+    return result;
+}
+
+Planes StandardError(const DenoisedPicture& denoised, const Planes& structure) {
+    const EstimatedError error = Measure(denoised, false);
+    const Planes squared = BoxMean(error.squared, kSmoothRadius);
+    Planes result = BoxMean(error.least, kSmoothRadius);
+    for (size_t i = 0; i < result.Area(); ++i)
+        result.values[i] = std::max(std::sqrt(std::max({0.f, result.values[i], squared.values[i]})),
+                                    std::abs(structure.values[i]));
+    return result;
+}
+
+}  // namespace lull

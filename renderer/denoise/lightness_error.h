@@ -1,0 +1,41 @@
+// Estimates the error in lightness of a denoised picture from the halves of its samples.
+#pragma once
+
+#include "renderer/base/pixel_rect.h"
+#include "renderer/denoise/denoise.h"
+
+namespace lull {
+
+// Holds what is known, pixel by pixel, of the squared error in lightness L (0 to 100) of a denoised
+// picture as a display shows it.
+struct EstimatedError {
+    Planes lightness;  // of the picture
+    Planes squared;    // an estimate of it without bias (see candidates.h), and very noisy
+    Planes deviation;  // the standard deviation of that noise
+    Planes least;      // what the halves of the denoised picture differ by: what still changes
+    Planes structure;  // what the samples have and the picture has not (structure.h); not squared
+};
+// Measures it as it is seen (AsSeen).
+EstimatedError MeasureError(const DenoisedPicture&);
+
+// Makes what is coarse in differences in lightness, blotches of several pixels, as much stronger as
+// the eye is more sensitive to it. Noise without correlation between pixels stays as strong.
+Planes AsSeen(Planes difference);
+
+// The error of a block: the mean over its 10 x 10 sub-blocks of the root mean square in lightness,
+// as it is seen, times what an observer sees of a difference there (NoiseVisibility: flare and
+// detail). Structure that is missing is not in it.
+struct LightnessError {
+    double estimate = 0;
+    double upper = 0;  // not exceeded in 95 of 100 blocks
+    double least = 0;  // what of it still changes; the others are not below
+};
+
+// Measures a block of at least 10 pixels a side.
+LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
+
+// Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
+// with what is missing of structure (EstimatedError::structure).
+Planes StandardError(const DenoisedPicture&, const Planes& structure);
+
+}  // namespace lull
