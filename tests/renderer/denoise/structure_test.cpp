@@ -17,7 +17,7 @@ Planes Variance(const Planes& truth, double deviation) {
 }
 
 double ShareFound(const Planes& left) {
-    return double(std::ranges::count_if(left.values, [](float v) { return v > 0; })) /
+    return double(std::ranges::count_if(left.values, [](float v) { return v != 0; })) /
            double(left.Area());
 }
 
