@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
@@ -11,6 +13,7 @@
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/answers_table.h"
 #include "renderer/lab/commands/evaluation_table.h"
+#include "stopping/lab/evaluation/constants.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/rules/rule_table.h"
 
@@ -26,8 +29,8 @@ namespace {
 
 struct Options {
     std::vector<std::string> datasets, predicted, rules, without;
-    std::string human, answers, csv;
-    bool rivals = false, brief = false;
+    std::string human, answers, csv, blocks;
+    bool rivals = false, constants = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
     ScoreOptions judge;
     double caution = 1;
@@ -53,13 +56,21 @@ Columns:
           are taken as they are, and clipped to the ends in a row of their own.
   ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
           not, against the scores of people, in %
+  95 %    range of the first ceM in 95 of 100 draws of viewpoints, and of blocks in them, with
+          replacement; with few viewpoints too narrow
   error   mean distance from the human threshold, in spp, and in % of 10,000 spp
   early   % of the blocks that stop below 80 % of the human threshold
   late    % of the blocks that stop above 125 % of it
   acc     accuracy of the decisions (noisy or not, by block and spp) in %, classes balanced
   auc     area under their ROC curve in %, by the number that the rule compares; for those that
           have none (fixed, thresholds, cycles) by its stop / spp
+  within  rank correlation of stops and human thresholds of the blocks of a viewpoint, and
+  between of the means of the viewpoints; "-" where all are the same, or fewer than three
 All are means over the viewpoints, but acc and auc are of all decisions together.
+
+--constants adds rules that stop all blocks of a viewpoint at one spp: the best one for this
+viewpoint ("known"), for the others, and for all viewpoints. A rule shows skill by block only where
+it has a lower error than the known constant.
 
 --answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
@@ -116,9 +127,10 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_flag("--rivals", o->rivals,
                  "Judge the rules that have one setting:\n" +
                      RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
-    AddChoiceOption(
-        app, "--choose-by", &o->chooseBy,
-        "What the setting of a rival makes least: the error, or the critical error at 2 %");
+    app.add_flag("--constants", o->constants, "Judge constant spp, too");
+    AddChoiceOption(app, "--choose-by", &o->chooseBy,
+                    "What the setting of a rival or constant makes least: the error, or the "
+                    "critical error at 2 %");
     app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -126,6 +138,8 @@ void AddOptions(CLI::App& app, Options* o) {
     AddCriticalErrorOptions(app, &o->judge);
     app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
     app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
+    app.add_option("--blocks", o->blocks, "Write the stop of each block to a CSV file")
+        ->type_name("F.csv");
 }
 
 std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
@@ -184,15 +198,23 @@ void RunByAnswers(const Options& options) {
 }
 
 ExitCode RunEvaluate(const Options& options) {
-    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv}}, InputsOf(options));
+    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv}, {"--blocks", options.blocks}},
+                 InputsOf(options));
     if (!options.answers.empty()) {
         RunByAnswers(options);
         return kDone;
     }
-    const std::vector<EvaluatedRule> rules =
+    std::vector<EvaluatedRule> rules =
         options.datasets.empty() ? EvaluateFiles(options) : EvaluateRecordings(options);
+    if (options.constants)
+        std::ranges::move(
+            EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.judge.grid),
+            std::back_inserter(rules));
+    if (rules.at(0).viewpoints.size() == 1)
+        PrintTalk("one viewpoint: nothing follows for other pictures");
     PrintEvaluation(stdout, rules, options.judge, !options.brief);
     if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
+    if (!options.blocks.empty()) WriteFileAtomically(options.blocks, BlocksCsv(rules));
     return kDone;
 }
 
@@ -202,7 +224,8 @@ void CheckUsage(const Options& options) {
     if (!options.answers.empty()) {
         if (options.datasets.empty() || options.rules.empty())
             throw CLI::ValidationError("--answers", "needs DATASET.h5, and --stop for its rules");
-        if (options.rivals || !options.predicted.empty())
+        if (options.rivals || options.constants || !options.predicted.empty() ||
+            !options.blocks.empty())
             throw CLI::ValidationError("--answers", "judges the rules of --stop alone");
         return;
     }

@@ -33,6 +33,14 @@ std::string PercentText(std::optional<double> share, int digits) {
     return share ? fmt::format("{:.{}f}", 100 * *share, digits) : "-";
 }
 
+std::string TextOf(const std::optional<Interval>& shares) {
+    return shares ? fmt::format("{:.1f}-{:.1f}", 100 * shares->low, 100 * shares->high) : "-";
+}
+
+std::string RankText(std::optional<double> correlation) {
+    return correlation ? fmt::format("{:.2f}", *correlation) : "-";
+}
+
 // Prints a table whose first column is the rule or the viewpoint.
 void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first,
                const std::vector<Row>& rows, const ScoreOptions& options) {
@@ -45,16 +53,18 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
                "views", "blocks", "open");
     for (const double margin : options.margins)
         fmt::print(out, "  {:>6}", fmt::format("ce{:g}", margin));
-    fmt::print(out, "  {:>6}  {:>5}  {:>5}  {:>5}  {:>5}  {:>5}\n", "error", "err%", "early",
-               "late", "acc", "auc");
+    fmt::print(out, "  {:>11}  {:>6}  {:>5}  {:>5}  {:>5}  {:>5}  {:>5}  {:>6}  {:>7}\n", "95 %",
+               "error", "err%", "early", "late", "acc", "auc", "within", "between");
     for (const Row& row : rows) {
         const Scores& j = row.scores;
         fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", row.*first, width, row.setting,
                    settingWidth, j.viewpoints, j.blocks, j.open);
         for (const double error : j.criticalErrors) fmt::print(out, "  {:>6.2f}", 100 * error);
-        fmt::print(out, "  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}\n", j.absoluteError,
-                   100 * j.absoluteError / kJudgedCap, 100 * j.early, 100 * j.late,
-                   PercentText(j.accuracy, 1), PercentText(j.auc, 1));
+        fmt::print(out,
+                   "  {:>11}  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}  {:>6}  {:>7}\n",
+                   TextOf(j.criticalInterval), j.absoluteError, 100 * j.absoluteError / kJudgedCap,
+                   100 * j.early, 100 * j.late, PercentText(j.accuracy, 1), PercentText(j.auc, 1),
+                   RankText(j.rankWithin), RankText(j.rankBetween));
     }
 }
 
@@ -79,16 +89,34 @@ std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOp
     std::string csv = "rule,viewpoint,setting,viewpoints,blocks,open";
     const auto out = std::back_inserter(csv);
     for (const double margin : options.margins) fmt::format_to(out, ",critical_error_{:g}", margin);
-    csv += ",absolute_error_spp,early,late,accuracy,auc\n";
+    csv +=
+        ",critical_error_low,critical_error_high,absolute_error_spp,early,late,accuracy,auc,"
+        "rank_within,rank_between\n";
     for (const EvaluatedRule& rule : rules)
         for (const Row& row : MakeRows(rule, options)) {
             const Scores& j = row.scores;
             fmt::format_to(out, "{},{},{},{},{},{}", CsvField(row.rule), CsvField(row.viewpoint),
                            CsvField(row.setting), j.viewpoints, j.blocks, j.open);
             for (const double error : j.criticalErrors) fmt::format_to(out, ",{:.6f}", error);
-            fmt::format_to(out, ",{:.2f},{:.6f},{:.6f},{},{}\n", j.absoluteError, j.early, j.late,
-                           CsvField(j.accuracy), CsvField(j.auc));
+            const auto interval = j.criticalInterval;
+            fmt::format_to(out, ",{},{},{:.2f},{:.6f},{:.6f},{},{},{},{}\n",
+                           CsvField(interval ? std::optional(interval->low) : std::nullopt),
+                           CsvField(interval ? std::optional(interval->high) : std::nullopt),
+                           j.absoluteError, j.early, j.late, CsvField(j.accuracy), CsvField(j.auc),
+                           CsvField(j.rankWithin), CsvField(j.rankBetween));
         }
+    return csv;
+}
+
+std::string BlocksCsv(const std::vector<EvaluatedRule>& rules) {
+    std::string csv = "rule,viewpoint,setting,block,human,stop,open\n";
+    for (const EvaluatedRule& rule : rules)
+        for (const ViewpointOutcome& viewpoint : rule.viewpoints)
+            for (const BlockOutcome& b : viewpoint.blocks)
+                fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{}\n",
+                               CsvField(LabelOf(rule)), CsvField(viewpoint.name),
+                               CsvField(viewpoint.setting), b.block, b.human, b.outcome.stop,
+                               int(b.outcome.open));
     return csv;
 }
 

@@ -18,4 +18,8 @@ void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
 // rule one with the viewpoint "all". Fields of what is not defined are empty.
 std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOptions& options);
 
+// Returns a CSV file with a head line and one for each rule and block: where people saw no more
+// noise and where the rule stopped, in spp, and whether its recording had ended before.
+std::string BlocksCsv(const std::vector<EvaluatedRule>& rules);
+
 }  // namespace lull

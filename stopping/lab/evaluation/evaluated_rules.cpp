@@ -83,7 +83,7 @@ EvaluatedRule EvaluateThresholds(const std::string& path, const std::string& hum
         ViewpointOutcome& viewpoint = rule.viewpoints.emplace_back();
         viewpoint.name = row->name;
         for (size_t i = 0; i < row->spp.size(); ++i)
-            viewpoint.blocks.push_back({wanted.spp[i], OutcomeOfStop(row->spp[i], grid)});
+            viewpoint.blocks.push_back({wanted.spp[i], OutcomeOfStop(row->spp[i], grid), int(i)});
     }
     if (rule.viewpoints.empty())
         throw std::runtime_error(fmt::format("{} and {} have no viewpoint in common", path, human));

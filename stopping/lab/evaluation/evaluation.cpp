@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numeric>
 
+#include "stopping/lab/evaluation/rank_correlation.h"
 #include "stopping/lab/evaluation/roc.h"
 
 namespace lull {
@@ -13,6 +15,10 @@ namespace lull {
 namespace {
 
 constexpr int kPassSpp = 20;  // of the human data
+
+double MeanOf(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
 
 // Collects verdicts and what people say at the same spp.
 struct Verdicts {
@@ -46,6 +52,36 @@ void AddMeans(const ViewpointOutcome& viewpoint, const ScoreOptions& options, Sc
     for (size_t i = 0; i < options.margins.size(); ++i)
         sums->criticalErrors[i] +=
             CriticalError(viewpoint.blocks, options.margins[i], options.grid);
+}
+
+// Returns the critical errors of the blocks, by viewpoint.
+std::vector<std::vector<double>> ErrorsOfBlocks(std::span<const ViewpointOutcome> viewpoints,
+                                                double margin, int grid) {
+    std::vector<std::vector<double>> errors;
+    for (const ViewpointOutcome& viewpoint : viewpoints) {
+        if (viewpoint.blocks.empty()) continue;
+        std::vector<double>& row = errors.emplace_back();
+        for (const BlockOutcome& block : viewpoint.blocks)
+            row.push_back(CriticalError(std::span(&block, 1), margin, grid));
+    }
+    return errors;
+}
+
+void AddRankCorrelations(std::span<const ViewpointOutcome> viewpoints, Scores* scores) {
+    std::vector<double> meanStops, meanHumans, within;
+    for (const ViewpointOutcome& viewpoint : viewpoints) {
+        if (viewpoint.blocks.empty()) continue;
+        std::vector<double> stops, humans;
+        for (const BlockOutcome& block : viewpoint.blocks) {
+            stops.push_back(block.outcome.stop);
+            humans.push_back(block.human);
+        }
+        meanStops.push_back(MeanOf(stops));
+        meanHumans.push_back(MeanOf(humans));
+        if (const auto rank = RankCorrelation(stops, humans)) within.push_back(*rank);
+    }
+    if (!within.empty()) scores->rankWithin = MeanOf(within);
+    scores->rankBetween = RankCorrelation(meanStops, meanHumans);
 }
 
 }  // namespace
@@ -91,6 +127,10 @@ Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& o
             verdicts.Add(block);
         }
     }
+    if (!options.margins.empty() && result.blocks > 0)
+        result.criticalInterval =
+            BootstrapInterval(ErrorsOfBlocks(viewpoints, options.margins[0], options.grid));
+    AddRankCorrelations(viewpoints, &result);
     const double count = std::max(1, result.viewpoints);
     for (double& error : result.criticalErrors) error /= count;
     result.absoluteError /= count;

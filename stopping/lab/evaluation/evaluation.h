@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "stopping/lab/evaluation/bootstrap.h"
 #include "stopping/network/human_range.h"
 
 namespace lull {
@@ -33,6 +34,7 @@ RuleOutcome OutcomeOfStop(int stop, int grid);
 struct BlockOutcome {
     int human = 0;  // the threshold of people in spp, kJudgedCap where they saw noise even there
     RuleOutcome outcome = {};
+    int block = 0;  // row-major number in the image
 };
 struct ViewpointOutcome {
     std::string name;
@@ -77,6 +79,12 @@ struct Scores {
     std::vector<double> criticalErrors = {};  // for each margin
     double absoluteError = 0;                 // |stop - human| in spp
     double early = 0, late = 0;               // shares with stop < 80 %, > 125 % of human
+    // What else other viewpoints and blocks might have for the first margin (BootstrapInterval());
+    // nothing without margins or blocks.
+    std::optional<Interval> criticalInterval = {};
+    // Rank correlation of stops and human thresholds: of blocks within a viewpoint, in the mean of
+    // those where both differ, and of the means of the viewpoints.
+    std::optional<double> rankWithin = {}, rankBetween = {};
     // Of all verdicts together, where people see noise below their threshold; nothing where all
     // verdicts are on one side of it. The accuracy is the mean of those of both classes, which
     // balances them.

@@ -70,14 +70,6 @@ std::vector<Setting> SettingsOf(const RivalRule& rule) {
 // Runs a setting over block number `index`; without verdicts if `brief`.
 using Run = std::function<RuleOutcome(size_t index, const Setting& setting, bool brief)>;
 
-double Cost(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
-    const bool critical = chooseBy == ChooseBy::CriticalError;
-    const Scores scores =
-        Score(std::span(&viewpoint, 1),
-              {.grid = grid, .margins = critical ? std::vector<double>{2} : std::vector<double>()});
-    return critical ? scores.criticalErrors[0] : scores.absoluteError;
-}
-
 // Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
 std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
@@ -91,7 +83,7 @@ std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
             for (size_t i = begins[v]; i < begins[v + 1]; ++i)
                 viewpoint.blocks.push_back(
                     {.human = blocks[i].human, .outcome = run(i, setting, true)});
-            row.push_back(Cost(viewpoint, chooseBy, grid));
+            row.push_back(CostOf(viewpoint, chooseBy, grid));
         }
     }
     return costs;
@@ -118,8 +110,9 @@ Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> bloc
         ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
             ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = setting.text});
         for (size_t i = begins[v]; i < begins[v + 1]; ++i)
-            viewpoint.blocks.push_back(
-                {.human = blocks[i].human, .outcome = run(i, setting, false)});
+            viewpoint.blocks.push_back({.human = blocks[i].human,
+                                        .outcome = run(i, setting, false),
+                                        .block = blocks[i].block});
     }
     return rival;
 }
@@ -145,6 +138,11 @@ Run MakeRun(std::span<const LabelledBlock> blocks, const RivalRule& rival) {
 }
 
 }  // namespace
+
+double CostOf(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
+    if (chooseBy == ChooseBy::CriticalError) return CriticalError(viewpoint.blocks, 2, grid);
+    return Score(std::span(&viewpoint, 1), {.grid = grid, .margins = {}}).absoluteError;
+}
 
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
                                   int grid) {

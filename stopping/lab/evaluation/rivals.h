@@ -13,6 +13,10 @@ namespace lull {
 // with the least critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 
+// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is that of critical
+// errors, in spp.
+double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
+
 struct Rival {
     // A name of the table of rules; "entropy, mask" is that with the mask of its visible noise
     // chosen as well.

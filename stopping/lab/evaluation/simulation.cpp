@@ -188,8 +188,9 @@ std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, co
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (result.empty() || result.back().name != blocks[i].viewpoint)
             result.push_back({.name = blocks[i].viewpoint, .setting = setting});
-        result.back().blocks.push_back(
-            {.human = blocks[i].human, .outcome = std::move(outcomes[i])});
+        result.back().blocks.push_back({.human = blocks[i].human,
+                                        .outcome = std::move(outcomes[i]),
+                                        .block = blocks[i].block});
     }
     return result;
 }
