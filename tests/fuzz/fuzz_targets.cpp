@@ -1,5 +1,7 @@
 #include "tests/fuzz/fuzz_targets.h"
 
+#include <algorithm>
+#include <array>
 #include <sstream>
 #include <stdexcept>
 
@@ -11,10 +13,16 @@
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
 #include "renderer/scene/medium_table.h"
+#include "renderer/vision/display_model.h"
+#include "stopping/base/checksum.h"
 #include "stopping/lab/evaluation/single_answers.h"
 #include "stopping/lab/observers/observers.h"
+#include "stopping/lab/recordings/dataset.h"
+#include "stopping/lab/training/training_checkpoint.h"
 #include "stopping/network/keras_config.h"
 #include "stopping/network/model_file.h"
+#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
 #include "tests/renderer/files/test_files.h"
 
@@ -172,6 +180,54 @@ void FuzzSingleAnswers(std::span<const char> bytes) {
             throw std::logic_error("an answer that cannot be was taken");
 }
 
+// What is read is written so that it is read as the same display.
+void FuzzDisplay(std::span<const char> bytes) {
+    DisplayModel display;
+    try {
+        display = ParseDisplay({bytes.data(), bytes.size()});
+    } catch (const Error&) {
+        return;
+    }
+    const DisplayModel again = ParseDisplay(NameOf(display));
+    if (again.peak != display.peak || again.pixelsPerDegree != display.pixelsPerDegree ||
+        again.ambient != display.ambient)
+        throw std::logic_error("a display changes when written and read again");
+}
+
+// Most of what is found is in the HDF5 library, as with `model`.
+void FuzzDataset(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        ReadDataset(path);
+    } catch (const std::runtime_error&) {
+    }
+}
+
+// What is behind the checksum of a file.
+void FuzzTrainingCheckpoint(std::span<const char> bytes) {
+    std::vector<std::byte> sealed(bytes.size());
+    std::ranges::copy(std::as_bytes(bytes), sealed.begin());
+    Seal(&sealed);
+    const std::string path =
+        WriteInput({reinterpret_cast<const char*>(sealed.data()), sealed.size()});
+    try {
+        TrainingCheckpoint(path, 1, {}).Read();
+    } catch (const std::runtime_error&) {
+    }
+}
+
+// The states of rules in a checkpoint; the first byte says of which.
+void FuzzCriterionState(std::span<const char> bytes) {
+    static const std::array<Rule, 4> rules = {ParseRule("entropy:0.5"), ParseRule("lnoise:0.5"),
+                                              ParseRule("dammertz:0.02"), ParseRule("fixed:100")};
+    if (bytes.empty()) return;
+    const auto criterion = MakeCriterion(rules[size_t(bytes[0]) % rules.size()]);
+    try {
+        criterion->Restore(std::as_bytes(bytes.subspan(1)));
+    } catch (const std::runtime_error&) {
+    }
+}
+
 }  // namespace
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
@@ -187,7 +243,11 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"keras_config", FuzzKerasConfig},
             {"thresholds", FuzzThresholds},
             {"answers", FuzzAnswers},
-            {"single_answers", FuzzSingleAnswers}};
+            {"single_answers", FuzzSingleAnswers},
+            {"display", FuzzDisplay},
+            {"dataset", FuzzDataset},
+            {"training_checkpoint", FuzzTrainingCheckpoint},
+            {"criterion_state", FuzzCriterionState}};
 }
 
 }  // namespace lull

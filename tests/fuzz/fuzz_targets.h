@@ -16,9 +16,8 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Lists the targets: pbrt, gltf, ply, bsdf, lens, png, exr, scene, model, keras_config, thresholds,
-// answers and single_answers. Most of what `model` finds is in the HDF5 library, which does
-// not withstand files made to harm it.
+// Most of what `model` and `dataset` find is in the HDF5 library, which does not withstand files
+// made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 
 }  // namespace lull
