@@ -415,14 +415,15 @@ def still_life():
     glb.write('gltf/scene.glb')
 
 
-goblet()
-revolve('caustic/shade.ply', [(.34, 0), (.37, .2), (.36, .45), (.3, .7), (.24, .85)], 32)
-revolve('textured/pot.ply',
-        [(0, 0), (.3, 0), (.31, .02), (.36, .3), (.42, .6), (.44, .68), (.5, .69), (.51, .72),
-         (.51, .84), (.5, .86), (.46, .86), (.44, .83), (.42, .7)], 40)
-bricks()
-leaf()
-plants()
-sky()
-bulbs()
-still_life()
+if __name__ == '__main__':
+    goblet()
+    revolve('caustic/shade.ply', [(.34, 0), (.37, .2), (.36, .45), (.3, .7), (.24, .85)], 32)
+    revolve('textured/pot.ply',
+            [(0, 0), (.3, 0), (.31, .02), (.36, .3), (.42, .6), (.44, .68), (.5, .69), (.51, .72),
+             (.51, .84), (.5, .86), (.46, .86), (.44, .83), (.42, .7)], 40)
+    bricks()
+    leaf()
+    plants()
+    sky()
+    bulbs()
+    still_life()

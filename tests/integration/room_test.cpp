@@ -1,0 +1,78 @@
+// Renders the room of scenes/room, and makes its files once more.
+#include <numeric>
+
+#include "renderer/image/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull::room_test {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kRoom = fs::path(LULL_SCENES_DIR) / "room";
+
+// Returns the number behind `label` in what `lull info` prints.
+int NumberOf(const std::string& info, const std::string& label) {
+    const size_t at = info.find("\n" + label + " ");
+    return at == std::string::npos ? -1 : std::stoi(info.substr(at + label.size() + 1));
+}
+
+TEST(Room, LoadsWithoutWarnings) {
+    const TemporaryDirectory directory;
+    for (const char* name : {"room.pbrt", "room-night.pbrt"}) {
+        const Outcome outcome = RunLull(directory, "info " + (kRoom / name).string());
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        EXPECT_EQ(NumberOf(outcome.out, "warnings"), 0) << outcome.out;
+        EXPECT_GT(NumberOf(outcome.out, "triangles"), 100000);
+        EXPECT_LT(NumberOf(outcome.out, "triangles"), 400000);
+    }
+}
+
+TEST(Room, ScriptMakesTheFilesThatAreThere) {
+    const TemporaryDirectory directory;
+    const Outcome outcome =
+        RunShell(directory, LULL_PYTHON " -B " + (kRoom / "room.py").string() + " .");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    int count = 0;
+    for (const auto& made : fs::directory_iterator(directory.path)) {
+        const fs::path file = made.path(), committed = kRoom / file.filename();
+        ++count;
+        ASSERT_TRUE(fs::exists(committed)) << committed;
+        // Another zlib may pack the same texels otherwise.
+        if (file.extension() == ".png")
+            EXPECT_TRUE(ReadImage(file.string()).texels == ReadImage(committed.string()).texels)
+                << file;
+        else
+            EXPECT_TRUE(ReadBytes(file.string()) == ReadBytes(committed.string())) << file;
+    }
+    EXPECT_GT(count, 5);
+}
+
+// Returns the means of R, G and B of a small image.
+std::vector<double> MeanOf(const TemporaryDirectory& directory, const std::string& scene) {
+    const Outcome outcome =
+        RunLull(directory, "render " + (kRoom / scene).string() +
+                               " --resolution 64x36 --spp 128 --quiet -o a.exr");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const ExrImage image = ReadExr(directory.File("a.exr"));
+    std::vector<double> means;
+    for (const char* channel : {"R", "G", "B"}) {
+        const auto& values = image.Find(channel)->values;
+        means.push_back(std::accumulate(values.begin(), values.end(), 0.0) / values.size());
+    }
+    return means;
+}
+
+void ExpectNear(const std::vector<double>& means, const std::vector<double>& expected) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(means[c], expected[c], 0.04 * expected[c]);
+}
+
+// Seeds differ by about 1 % at 128 spp.
+TEST(Room, IsAsBrightAsItWas) {
+    const TemporaryDirectory directory;
+    ExpectNear(MeanOf(directory, "room.pbrt"), {0.4264, 0.3906, 0.3122});
+    ExpectNear(MeanOf(directory, "room-night.pbrt"), {0.2795, 0.1778, 0.0929});
+}
+
+}  // namespace
+}  // namespace lull::room_test
