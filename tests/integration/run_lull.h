@@ -32,7 +32,7 @@ inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& a
 
 // Expects that the program, run, reported no failure; returns its outcome.
 inline Outcome ExpectSuccess(Outcome outcome) {
-    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.out << outcome.err;
     return outcome;
 }
 inline Outcome ExpectSuccess(const TemporaryDirectory& directory, const std::string& arguments) {
