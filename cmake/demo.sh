@@ -1,7 +1,7 @@
 #!/bin/bash
-# Installs what is missing, builds lull and renders one of its own scenes, textured, until each block
-# has stopped by itself. To be done in minutes on two cores, the picture is 400x400 pixels with
-# blocks of 100x100, and no block gets more than 1,000 samples per pixel.
+# Installs what is missing, builds lull and renders one of its own scenes, a room by day, denoised: each block
+# until it is clean, or until 110 seconds have passed. To be done in minutes on two cores, the picture is
+# 640x360 pixels with blocks of 120x120.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . cmake/packages.sh
@@ -13,9 +13,13 @@ cmake --preset release -DCMAKE_UNITY_BUILD=ON -DBUILD_TESTING=OFF
 cmake --build --preset release --target lull
 
 mkdir -p out
-echo "== scenes/textured, 400x400, blocks of 100x100, at most 1000 samples per pixel"
-build/release/renderer/lull render scenes/textured/scene.pbrt -o out/textured.exr \
-    --resolution 400x400 --block 100 --cap 1000 --report out/textured.json
-echo "The picture is in $PWD/out/textured.png and, linear, in $PWD/out/textured.exr;"
-echo "$PWD/out/textured.spp.png shows how many samples each block took."
+echo "== scenes/room by day, 640x360, denoised, at most 110 seconds"
+build/release/renderer/lull render scenes/room/room.pbrt -o out/room.exr --resolution 640x360 --block 120 \
+    --denoise --time 110s --report out/room.html
+echo
+echo "Open $PWD/out/room.png        the picture"
+echo "     $PWD/out/room.html       every block's samples and decisions"
+echo "     $PWD/out/room.spp.png    the samples of each block, dark: few, bright: many"
+echo "     $PWD/out/room.exr        the picture, linear, with the samples before they were denoised"
+echo "The same room by night: build/release/renderer/lull render scenes/room/room-night.pbrt --denoise --time 10m"
 echo "To call the program by its name, type: export PATH=\"$PWD/build/release/renderer:\$PATH\""

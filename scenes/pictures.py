@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Renders many-lights until every block has stopped, and makes the pictures of the README.
+"""Renders scenes until every block has stopped, and makes the pictures of the README.
 
-pictures.py LULL: writes scenes/pictures/render.png, spp.png and decision.svg. The last is drawn from
-the report: what the rule computed of the block that stopped last, pass by pass.
+pictures.py LULL [many-lights|room]: of many-lights, scenes/pictures/render.png, spp.png and decision.svg, drawn from
+the report: what the rule computed of the block that stopped last, pass by pass. Of the room, denoised, by day and by
+night, room-day.jpg, room-night.jpg, and by day room-spp.png. Both by default. JPEG files need oiiotool (Debian:
+openimageio-tools).
 """
 import json
 import math
@@ -13,7 +15,8 @@ import sys
 import tempfile
 
 SCENES = pathlib.Path(__file__).resolve().parent
-SIDE = 200
+SIDE = 200        # of many-lights, in pixels
+ROOM_CAP = "200"  # samples per pixel
 
 
 def curve(decisions, width, height):
@@ -49,22 +52,35 @@ def curve(decisions, width, height):
 """
 
 
+def many_lights(lull, out, pictures):
+    subprocess.run([lull, "render", SCENES / "many-lights/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "--block", "50",
+                    "--cap", "1000", "-o", out / "r.exr", "--report", out / "r.json"], check=True)
+    shutil.copy(out / "r.spp.png", pictures / "spp.png")
+    shutil.copy(out / "r.png", pictures / "render.png")
+    blocks = json.loads((out / "r.json").read_text())["blocks"]
+    stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
+    last = max(stopped, key=lambda b: b["spp"])
+    (pictures / "decision.svg").write_text(curve(last["decisions"], 300, 300))
+
+
+def room(lull, out, pictures):
+    for name, scene in (("day", "room"), ("night", "room-night")):
+        subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", "--block", "120", "--cap", ROOM_CAP,
+                        "-o", out / f"{name}.exr"], check=True)
+        subprocess.run(["oiiotool", out / f"{name}.png", "--compression", "jpeg:92", "-o", pictures / f"room-{name}.jpg"],
+                       check=True)
+    shutil.copy(out / "day.spp.png", pictures / "room-spp.png")
+
+
 def main():
-    if len(sys.argv) != 2:
+    makers = {"many-lights": many_lights, "room": room}
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] and sys.argv[2] not in makers:
         raise SystemExit(__doc__)
     pictures = SCENES / "pictures"
     pictures.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder)
-        subprocess.run([sys.argv[1], "render", SCENES / "many-lights/scene.pbrt", "--resolution",
-                        f"{SIDE}x{SIDE}", "--block", "50", "--cap", "1000", "-o", out / "r.exr", "--report", out / "r.json"],
-                       check=True)
-        shutil.copy(out / "r.spp.png", pictures / "spp.png")
-        shutil.copy(out / "r.png", pictures / "render.png")
-        blocks = json.loads((out / "r.json").read_text())["blocks"]
-        stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
-        last = max(stopped, key=lambda b: b["spp"])
-        (pictures / "decision.svg").write_text(curve(last["decisions"], 300, 300))
+    for name in sys.argv[2:] or makers:
+        with tempfile.TemporaryDirectory() as folder:
+            makers[name](sys.argv[1], pathlib.Path(folder), pictures)
 
 
 if __name__ == "__main__":

@@ -70,8 +70,8 @@ void ExpectNear(const std::vector<double>& means, const std::vector<double>& exp
 // Seeds differ by about 1 % at 128 spp.
 TEST(Room, IsAsBrightAsItWas) {
     const TemporaryDirectory directory;
-    ExpectNear(MeanOf(directory, "room.pbrt"), {0.4264, 0.3906, 0.3122});
-    ExpectNear(MeanOf(directory, "room-night.pbrt"), {0.2795, 0.1778, 0.0929});
+    ExpectNear(MeanOf(directory, "room.pbrt"), {0.422, 0.377, 0.309});
+    ExpectNear(MeanOf(directory, "room-night.pbrt"), {0.278, 0.1766, 0.0926});
 }
 
 }  // namespace
