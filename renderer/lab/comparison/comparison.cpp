@@ -15,7 +15,7 @@ namespace lull {
 
 namespace {
 
-std::vector<float> LightnessError(const RgbImage& image, const RgbImage& reference) {
+std::vector<float> LightnessErrorMap(const RgbImage& image, const RgbImage& reference) {
     const std::vector<double> a = LightnessOf(image.values), b = LightnessOf(reference.values);
     std::vector<float> error(a.size());
     for (size_t i = 0; i < a.size(); ++i) error[i] = float(a[i] - b[i]);
@@ -158,7 +158,7 @@ void Measure(Comparison* comparison) {
             if (image.isDisplay || comparison->images.back().isDisplay) ForgetLinear(&image);
             image.flip = maps.flip;
             image.visibleDifference = VisibleMap(maps.visibleDifference);
-            if (image.noise.empty()) image.noise = LightnessError(image.image, *reference);
+            if (image.noise.empty()) image.noise = LightnessErrorMap(image.image, *reference);
         }
         if (!image.noise.empty())
             image.seams = MeasureSeams(image.noise, image.image.width, blocks);
