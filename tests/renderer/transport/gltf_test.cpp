@@ -29,6 +29,13 @@ std::unique_ptr<const Scene> Compiled(const std::string& text, int size) {
     return scene;
 }
 
+std::unique_ptr<const Scene> Compiled(const Description& description, int size) {
+    Warnings warnings;
+    auto scene = Compile(description, ImageOf(size), warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return scene;
+}
+
 // Compiles a file with its first camera, or with one 3 above the origin that sees from -1 to 1.
 std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
     if (!file.root.contains("cameras")) {
@@ -40,9 +47,8 @@ std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
     const GltfFolder folder;
     Warnings warnings;
     const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
-    auto scene = Compile(d, ImageOf(size), warnings);
     EXPECT_EQ(warnings.Total(), 0);
-    return scene;
+    return Compiled(d, size);
 }
 
 struct Total {

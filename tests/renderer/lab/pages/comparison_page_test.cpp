@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-ComparisonReport TwoImages() {
+ComparisonReport TwoRows() {
     ComparisonReport report;
     report.title = "two";
     Comparison& comparison = report.comparison;
@@ -33,7 +33,7 @@ ComparisonReport TwoImages() {
 }
 
 TEST(ComparisonJson, SaysWhatWasSaved) {
-    const Json json = ComparisonJson(TwoImages());
+    const Json json = ComparisonJson(TwoRows());
     EXPECT_EQ(json["reference"], "reference");
     EXPECT_EQ(json["atCap"]["samples"], 40 * 40 * 100);
     EXPECT_EQ(json["atCap"]["seconds"], 30);
@@ -54,7 +54,7 @@ TEST(ComparisonJson, SaysWhatWasSaved) {
 
 // The saving in seconds, 1 - 7 / (30 / 2), over that in samples, 0.65.
 TEST(ComparisonJson, SaysHowMuchOfTheSavingIsKept) {
-    const Json v = ComparisonJson(TwoImages())["verifications"][0];
+    const Json v = ComparisonJson(TwoRows())["verifications"][0];
     EXPECT_DOUBLE_EQ(v["wallSecondsToCap"], 15);
     EXPECT_NEAR(v["savedWall"], 1 - 7. / 15, 1e-12);
     EXPECT_NEAR(v["kept"], (1 - 7. / 15) / 0.65, 1e-12);
@@ -62,7 +62,7 @@ TEST(ComparisonJson, SaysHowMuchOfTheSavingIsKept) {
 }
 
 TEST(CostAtCap, IsEstimatedWhereNothingWentThatFar) {
-    ComparisonReport report = TwoImages();
+    ComparisonReport report = TwoRows();
     report.comparison.images.pop_back();
     const TotalCost cost = CostAtCap(report.comparison);
     EXPECT_TRUE(cost.isEstimated);
@@ -70,7 +70,7 @@ TEST(CostAtCap, IsEstimatedWhereNothingWentThatFar) {
 }
 
 TEST(MakeComparisonPage, HasPicturesAndErrorMaps) {
-    const Json data = DataOf(MakeComparisonPage(TwoImages()));
+    const Json data = DataOf(MakeComparisonPage(TwoRows()));
     ASSERT_EQ(data["images"].size(), 3u);
     for (const Json& image : data["images"])
         EXPECT_TRUE(image["src"].get<std::string>().starts_with("data:image/png"));
@@ -82,7 +82,7 @@ TEST(MakeComparisonPage, HasPicturesAndErrorMaps) {
 
 // Whatever is compared, the page can be opened.
 TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
-    ComparisonReport report = TwoImages();
+    ComparisonReport report = TwoRows();
     report.notes = {"a note"};
     report.comparison.region = {{10, 20}, {10 + 2901, 20 + 1601}};
     for (ComparedImage& image : report.comparison.images) {
@@ -98,7 +98,7 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
     EXPECT_EQ(SizeOf(data["images"][0]["flipSrc"]), Vec2i(1451, 801));
     EXPECT_EQ(SizeOf(data["images"][0]["visibleDifferenceSrc"]), Vec2i(1451, 801));
     EXPECT_EQ(SizeOf(PictureUri({3, 2, std::vector<float>(18)})), Vec2i(3, 2));
-    EXPECT_EQ(DataOf(MakeComparisonPage(TwoImages()))["notes"].size(), 0u);
+    EXPECT_EQ(DataOf(MakeComparisonPage(TwoRows()))["notes"].size(), 0u);
 }
 
 TEST(MakeBenchPage, HasThePoints) {
