@@ -97,7 +97,7 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
     const std::string all = ExpectSuccess(directory, "render --help-all").out;
     for (const char* option : {"--denoise ", "-o,--output", "--spp", "--resume"})
         EXPECT_TRUE(Contains(brief, option)) << option;
-    for (const char* option : {"--png-bits", "--keep-checkpoint", "--guide-memory"}) {
+    for (const char* option : {"--png-bits", "--checkpoint-interval", "--guide-memory"}) {
         EXPECT_FALSE(Contains(brief, option)) << option;
         EXPECT_TRUE(Contains(all, option)) << option;
     }
