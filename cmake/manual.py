@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the manual page and the completion of bash from what the program says of itself.
 
-manual.py LULL FOLDER: runs `LULL --help` and `LULL COMMAND --help-all`, and writes FOLDER/lull.1 and
+manual.py LULL FOLDER: runs `LULL --help` and `LULL COMMAND --help`, and writes FOLDER/lull.1 and
 FOLDER/lull (for bash).
 """
 import pathlib
@@ -20,7 +20,6 @@ RULE = re.compile(r"  ([a-z]+)(\[?:\S+)?  ")  # how a stopping rule is written, 
 RELATION = re.compile(r" (Needs|Excludes): (.*?)(?= Needs:| Excludes:|$)")
 # How a long head goes on, where a text cannot begin.
 GOES_ON = re.compile(r"Needs:|Excludes:|REQUIRED|in \[|\[|- |\d|\.\.\.")
-GROUPS = "Options|Common options|Scene|Image|Sampling|Stopping|Progress and interruption"
 TEXT = 30  # the column where texts begin
 
 
@@ -33,7 +32,8 @@ class Option:
         relations = RELATION.findall(" " + rest)
         value = VALUE.match(RELATION.sub("", " " + rest).strip())
         check = value["check"] or ""
-        self.value = value["name"] + (value["file"] or "") + (value["repeated"] or "")
+        repeated = "" if value["name"].endswith(",...") else value["repeated"] or ""
+        self.value = value["name"] + (value["file"] or "") + repeated
         words = CHOICES.fullmatch(self.value)
         self.choices = (check[1:-1].split(",") if check.startswith("{") else
                         words[1].split("|") if words else [])
@@ -58,12 +58,11 @@ class Help:
         self.usage, _, rest = rest.partition("\n")
         self.entries, self.notes = {}, ""
         while True:
-            section = re.match(rf"\s*^(Positionals|Subcommands|{GROUPS}):\n", rest, re.M)
+            section = re.match(r"\s*^(Positionals|Options|Subcommands):\n", rest, re.M)
             if not section:
                 break
             body, _, rest = rest[section.end():].partition("\n\n")
-            name = "Options" if re.fullmatch(GROUPS, section[1]) else section[1]
-            self.entries.setdefault(name, []).extend(Option(h, t) for h, t in entries(body))
+            self.entries[section[1]] = [Option(h, t) for h, t in entries(body)]
         self.notes = rest.strip("\n")
 
 
@@ -83,7 +82,7 @@ def entries(body):
 
 
 def help_of(lull, *command):
-    return Help(subprocess.run([lull, *command, "--help-all" if command else "--help"], check=True, text=True,
+    return Help(subprocess.run([lull, *command, "--help"], check=True, text=True,
                                stdout=subprocess.PIPE).stdout)
 
 

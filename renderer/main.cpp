@@ -14,7 +14,6 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/help_groups.h"
 #include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
@@ -131,7 +130,6 @@ ExitCode Main(Job* job, int argc, char** argv) {
     AddCompareCommand(app, &command, job);
     AddBenchCommand(app, &command, job);
     AddJudgeCommand(app, &command);
-    for (CLI::App* each : app.get_subcommands({})) GroupOptions(each);
     if (const std::string problem = argc > 1 ? ProblemOfCommand(app, argv[1]) : "";
         !problem.empty())
         return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });

@@ -90,22 +90,6 @@ TEST(CommandLine, HelpsAndTellsItsVersion) {
     }
 }
 
-// Whoever renders for the first time reads a page.
-TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
-    const TemporaryDirectory directory;
-    const std::string brief = ExpectSuccess(directory, "render --help").out;
-    const std::string all = ExpectSuccess(directory, "render --help-all").out;
-    for (const char* option : {"--denoise ", "-o,--output", "--spp", "--resume"})
-        EXPECT_TRUE(Contains(brief, option)) << option;
-    for (const char* option : {"--png-bits", "--checkpoint-interval", "--guide-memory"}) {
-        EXPECT_FALSE(Contains(brief, option)) << option;
-        EXPECT_TRUE(Contains(all, option)) << option;
-    }
-    EXPECT_TRUE(Contains(brief, "--help-all lists all"));
-    for (const char* group : {"\nScene:\n", "\nImage:\n", "\nSampling:\n", "\nStopping:\n"})
-        EXPECT_TRUE(Contains(all, group)) << group;
-}
-
 // Choices are named once, with what is chosen where nothing is said.
 TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
@@ -113,7 +97,7 @@ TEST(CommandLine, HelpNamesChoices) {
                                           {"render", "--png-bits 8|16=8 "},
                                           {"evaluate", "--choose-by error|critical=error"},
                                           {"train", "--m 4|25|100|400=100 "}}) {
-        const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");
+        const Outcome outcome = RunLull(directory, std::string(command) + " --help");
         EXPECT_TRUE(Contains(outcome.out, option)) << outcome.out;
     }
     const Outcome wrong = RunLull(directory, "render scene.pbrt --png-bits 12");

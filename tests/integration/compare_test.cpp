@@ -325,7 +325,7 @@ TEST(Bench, DenoisesToo) {
         ruleSeconds[name] = std::stod(fields[6]);
     }
     // Two looks, at 20 and at 40 spp.
-    ASSERT_TRUE(errors.contains("denoised:20") && errors.contains("denoised:0.64"));
+    ASSERT_TRUE(errors.contains("denoised:20") && errors.contains("denoised:3.1"));
     EXPECT_NE(errors["denoised:20"], errors["fixed:40"]);
     EXPECT_GT(ruleSeconds["denoised:20"], 0);
     const Outcome without = RunLull(directory, "bench scene.pbrt --rule denoised --cap 20 -o b");
