@@ -118,8 +118,7 @@ TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
         ExpectSuccess(RunShell(directory,
                                "LULL render scene.pbrt --spp 20 --denoise --resolution 8x8 "
                                "-o a.exr --report a.json"));
-    EXPECT_NE(small.err.find("unknown: blocks have less than 10 pixels a side"),
-              std::string::npos)
+    EXPECT_NE(small.err.find("unknown: blocks have less than 10 pixels a side"), std::string::npos)
         << small.err;
     EXPECT_EQ(RunShell(directory, "grep visibleDifference a.json").exitCode, 1);
 }
