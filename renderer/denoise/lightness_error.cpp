@@ -54,7 +54,7 @@ struct Sums {
     }
 };
 
-// Holds mean squares of errors, with the variance of the first.
+// Mean squares of errors, with the variance of the first.
 struct Squares {
     double estimate = 0, variance = 0, least = 0;
 };
@@ -64,7 +64,7 @@ Squares SquaresOf(const Sums& sums) {
     return {seen * sums.squared, seen * seen * sums.variance, seen * sums.least};
 }
 
-// Holds what is known of the square of the mean of roots.
+// An estimate of the square of the mean of roots.
 struct Belief {
     double mean = 0, variance = 0;
 

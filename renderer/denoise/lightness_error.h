@@ -6,14 +6,14 @@
 
 namespace lull {
 
-// Holds what is known, pixel by pixel, of the squared error in lightness L (0 to 100) of a denoised
-// picture as a display shows it.
+// Estimates, pixel by pixel, of the squared error in lightness L (0 to 100) of a denoised picture
+// as a display shows it.
 struct EstimatedError {
     Planes lightness;  // of the picture
     Planes squared;    // an estimate of it without bias (see candidates.h), and very noisy
     Planes deviation;  // the standard deviation of that noise
-    Planes least;      // what the halves of the denoised picture differ by: what still changes
-    Planes structure;  // what the samples have and the picture has not (structure.h); not squared
+    Planes least;      // half the difference of the denoised halves: the part that still changes
+    Planes structure;  // structure of the samples that the picture lacks (structure.h); not squared
 };
 // Measures it as it is seen (AsSeen).
 EstimatedError MeasureError(const DenoisedPicture&);
@@ -28,7 +28,7 @@ Planes AsSeen(Planes difference);
 struct LightnessError {
     double estimate = 0;
     double upper = 0;  // not exceeded in 95 of 100 blocks
-    double least = 0;  // what of it still changes; the others are not below
+    double least = 0;  // the part that still changes; the others are not below
 };
 
 // Measures a block of at least 10 pixels a side.

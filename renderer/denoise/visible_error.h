@@ -13,9 +13,9 @@ struct VisibleError {
     double upper = 0;  // seldom exceeded
 };
 
-// Measures a block of at least 10 pixels a side. What still changes, half the difference of the
-// denoised halves, has the pattern that the error has, and is made as large as the error in
-// lightness is (MeasureLightnessError). Structure that is missing is added to it.
+// Measures a block of at least 10 pixels a side. Half the difference of the denoised halves has the
+// pattern of the error; it is scaled to the error in lightness (MeasureLightnessError), and
+// structure that is missing is added to it.
 VisibleError MeasureVisibleError(const DenoisedPicture&, const EstimatedError&, const PixelRect&,
                                  const DisplayModel& = {});
 

@@ -10,7 +10,7 @@
  *     lull_denoised_picture clean = {pixels, NULL, &block, 1};
  *     const char* wrong = lull_denoise(&noisy, &clean);
  *     if (wrong) puts(wrong);
- *     else if (block.upper < 3.1) ...            // people would hardly see what is still wrong
+ *     else if (block.upper < 3.1) ...            // people would hardly see the error
  *
  * Nothing throws, prints or ends the program. All functions can be called from any thread; the work
  * is shared between the threads that oneTBB has for the caller. The same pictures give the same
