@@ -90,7 +90,7 @@ class AddOn(unittest.TestCase):
 
     def test_factory_scene(self):
         passes, said = self.render("factory")
-        # Blender's base below the interface is lighter: tests/measurements/cycles.md.
+        # Blender's base below the interface is lighter: tests/measurements/renderer.md.
         self.assert_close("factory", passes, 0.05, 0.05)
         cycles = self.read("factory.cycles", None)
         seen = cycles["Depth.Z"] < 1e9
