@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the manual page and the completion of bash from what the program says of itself.
+"""Writes the manual page and the completion of bash from the help of the program.
 
-manual.py LULL FOLDER: runs `LULL --help` and `LULL COMMAND --help`, and writes FOLDER/lull.1 and
+manual.py LULL FOLDER: runs `LULL --help` and `LULL COMMAND --help-all`, and writes FOLDER/lull.1 and
 FOLDER/lull (for bash).
 """
 import pathlib
@@ -58,12 +58,19 @@ class Help:
         self.usage, _, rest = rest.partition("\n")
         self.entries, self.notes = {}, ""
         while True:
-            section = re.match(r"\s*^(Positionals|Options|Subcommands):\n", rest, re.M)
+            section = re.match(r"\s*^(Positionals:\n|Subcommands:\n|[A-Z]\w+:\n(?=  -))", rest, re.M)
             if not section:
                 break
             body, _, rest = rest[section.end():].partition("\n\n")
-            self.entries[section[1]] = [Option(h, t) for h, t in entries(body)]
+            self.entries[section[1][:-2]] = [Option(h, t) for h, t in entries(body)]
         self.notes = rest.strip("\n")
+
+    def groups(self):
+        """Returns the lists of options by title."""
+        return {k: v for k, v in self.entries.items() if k not in ("Positionals", "Subcommands")}
+
+    def options(self):
+        return [option for group in self.groups().values() for option in group]
 
 
 def entries(body):
@@ -82,7 +89,7 @@ def entries(body):
 
 
 def help_of(lull, *command):
-    return Help(subprocess.run([lull, *command, "--help"], check=True, text=True,
+    return Help(subprocess.run([lull, *command, "--help-all"], check=True, text=True,
                                stdout=subprocess.PIPE).stdout)
 
 
@@ -105,16 +112,18 @@ def manual(version, main, commands):
     lines = [f'.TH LULL 1 "" "lull {version}" "User Commands"', ".SH NAME",
              "lull \\- path tracer that knows when to stop", ".SH SYNOPSIS",
              ".B lull", "\\fICOMMAND\\fR [\\fIOPTIONS\\fR]", ".SH DESCRIPTION", roff(main.about)]
-    lines += roff_options(main.entries["Options"])
+    lines += roff_options(main.options())
     lines.append(".SH COMMANDS")
     for name, page in commands.items():
         lines += [f".SS {roff(page.usage)}", roff(page.about)]
-        lines += roff_options(page.entries.get("Positionals", []) + page.entries["Options"])
+        lines += roff_options(page.entries.get("Positionals", []))
+        for title, options in page.groups().items():
+            lines += [".PP", "\\fI" + roff(title) + "\\fR"] + roff_options(options)
         if page.notes:
             lines += [".PP", ".nf", roff(page.notes), ".fi"]
     lines += [".SH ENVIRONMENT", ".TP", "\\fBLULL_MODELS\\fR",
               "The folder of installed models, for programs that use the library (lull/stopping.h).",
-              ".SH EXIT STATUS", "0 done, 1 the input or the environment is at fault, 2 wrong usage, "
+              ".SH EXIT STATUS", "0 success, 1 input or environment error, 2 usage error, "
               "130 interrupted."]
     return "\n".join(lines) + "\n"
 
@@ -134,7 +143,7 @@ def completion(main, commands):
     """Words are looked up by command; behind an option with choices these, else files. Where more
     may follow a word, no blank does."""
     def names(page):
-        return [n for o in page.entries["Options"] for n in o.names]
+        return [n for o in page.options() for n in o.names]
 
     rules = rules_of(commands["render"])
     lines = ["# Completion of bash for lull.", "_lull() {",
@@ -143,7 +152,7 @@ def completion(main, commands):
              "    COMPREPLY=()",
              '    case "$command $last" in']
     for name, page in commands.items():
-        for option in page.entries["Options"]:
+        for option in page.options():
             patterns = "|".join(f'"{name} {n}"' for n in option.names)
             if option.choices and option.is_list:
                 lines.append(f"    {patterns}) words={quoted(option.choices)}")

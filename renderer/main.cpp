@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/help_groups.h"
 #include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
@@ -21,8 +23,12 @@ namespace lull {
 
 namespace {
 
-// The subcommands that render for long.
-constexpr std::array kSharedCommands = {"render", "compare", "bench", "dataset"};
+// The subcommands that several ranks can share.
+constexpr std::array kSharedCommands = {"render", "compare", "bench", "record"};
+
+// Former names of subcommands, which no help lists.
+constexpr std::pair<std::string_view, const char*> kFormerNames[] = {{"dataset", "record"},
+                                                                     {"judge", "study"}};
 
 ExitCode Run(Job* job, const Command& command) {
     std::string message;
@@ -112,12 +118,15 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 ExitCode Main(Job* job, int argc, char** argv) {
-    CLI::App app("lull renders pbrt-v3 scenes and stops each part of the image by itself.", "lull");
+    CLI::App app(
+        "Path tracer for pbrt-v3 and glTF 2.0 that stops each block of the image once no noise is "
+        "visible.",
+        "lull");
     app.set_version_flag("--version", "lull " LULL_VERSION);
     app.require_subcommand(1);
     app.footer(
         "Example: lull render scene.pbrt -o image.exr\n"
-        "Each subcommand has its own --help.");
+        "lull COMMAND --help lists the options of a command.");
 
     Command command;
     AddRenderCommand(app, &command, job);
@@ -130,11 +139,15 @@ ExitCode Main(Job* job, int argc, char** argv) {
     AddCompareCommand(app, &command, job);
     AddBenchCommand(app, &command, job);
     AddJudgeCommand(app, &command);
-    if (const std::string problem = argc > 1 ? ProblemOfCommand(app, argv[1]) : "";
+    for (CLI::App* each : app.get_subcommands({})) GroupOptions(each);
+    std::vector<const char*> words(argv, argv + argc);
+    for (const auto& [former, name] : kFormerNames)
+        if (argc > 1 && former == words[1]) words[1] = name;
+    if (const std::string problem = argc > 1 ? ProblemOfCommand(app, words[1]) : "";
         !problem.empty())
         return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
-        app.parse(argc, argv);
+        app.parse(argc, words.data());
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) {
             app.exit(e);
@@ -146,8 +159,9 @@ ExitCode Main(Job* job, int argc, char** argv) {
     if (job->Count() > 1 && std::ranges::none_of(kSharedCommands, isShared))
         command = []() -> ExitCode {
             throw Error(
-                "only render, compare, bench and dataset run on several ranks; start this one by "
-                "itself");
+                "only render, compare, bench and record run on several ranks; start this one "
+                "without "
+                "mpirun");
         };
     return Run(job, command);
 }

@@ -23,12 +23,12 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                        throw CLI::ValidationError("--aov", e.what());
                    }
                },
-               "Layers of the EXR, of what is seen first; noise is that of each pixel")
+               "Write these AOVs of the first hits to the EXR")
             ->delimiter(',')
             ->allow_extra_args(false)
             ->type_name("albedo|normal|depth|position|object|material|alpha|cryptomatte|noise,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
-                 "Of what is seen in mirrors and through glass, instead of these")
+                 "Take AOVs from the reflected or refracted surface, not from mirrors and glass")
         ->needs(aov);
 }
 

@@ -30,18 +30,19 @@ std::string ForShell(const std::string& word) {
 
 CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options) {
     return app
-        .add_option("--checkpoint-interval", options->interval, "Seconds between checkpoints")
+        .add_option("--checkpoint-interval", options->interval,
+                    "Save the checkpoint every S seconds")
         ->check(CLI::Range(0.1, 1e6))
         ->type_name("S")
         ->capture_default_str();
 }
 
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options) {
-    auto* file = app.add_option("--checkpoint", options->file,
-                                "Keep what is needed to go on after an interruption")
-                     ->type_name("F.h5");
+    auto* file =
+        app.add_option("--checkpoint", options->file, "Save the state of the render, to resume it")
+            ->type_name("F.h5");
     AddCheckpointInterval(app, options)->needs(file);
-    app.add_flag("--resume", options->resume, "Go on from the checkpoint, if it is there")
+    app.add_flag("--resume", options->resume, "Resume from the checkpoint, if it exists")
         ->needs(file);
 }
 
@@ -55,9 +56,10 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
 FileLock LockCheckpoint(const std::string& file) {
     std::optional<FileLock> lock = FileLock::Try(file);
     if (!lock)
-        throw Error(file +
-                    ": another process that runs now writes this checkpoint; wait for its end, or "
-                    "name another file");
+        throw Error(
+            file +
+            ": another process is writing this checkpoint; wait for its end, or name another "
+            "file");
     return std::move(*lock);
 }
 
@@ -65,12 +67,11 @@ void CheckCheckpoint(const CheckpointOptions& options) {
     if (options.file.empty()) return;
     CheckWritable(options.file);
     if (!options.resume && std::filesystem::exists(options.file))
-        throw Error(options.file +
-                    ": is there already; give --resume to go on from it, or remove it");
+        throw Error(options.file + ": already exists; give --resume to continue, or remove it");
 }
 
 std::string HowToGoOn(const CheckpointOptions& checkpoint) {
-    if (checkpoint.file.empty()) return "with --checkpoint F.h5 it could go on from here";
+    if (checkpoint.file.empty()) return "with --checkpoint F.h5, it could be resumed";
     std::ifstream file("/proc/self/cmdline");
     std::string command;
     bool resumes = checkpoint.isImplied;
@@ -78,7 +79,7 @@ std::string HowToGoOn(const CheckpointOptions& checkpoint) {
         command += (command.empty() ? "" : " ") + ForShell(word);
         resumes |= word == "--resume";
     }
-    return "to go on: " + command + (resumes ? "" : " --resume");
+    return "to resume: " + command + (resumes ? "" : " --resume");
 }
 
 }  // namespace lull

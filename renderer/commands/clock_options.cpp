@@ -33,13 +33,11 @@ std::string ClockOptions::Text() const {
 }
 
 void AddClockOptions(CLI::App& app, ClockOptions* options) {
-    auto* time =
-        app.add_option("--time", options->time,
-                       "End after this time, such as 90 (seconds), 10m or 1h30m, with files "
-                       "written; until then the noisiest block continues")
-            ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
-            ->type_name("TIME");
-    app.add_option("--until", options->until, "The same, when the clock here shows this")
+    auto* time = app.add_option("--time", options->time,
+                                "End after this wall-clock time, e.g. 90s, 10m or 1h30m")
+                     ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
+                     ->type_name("TIME");
+    app.add_option("--until", options->until, "End at this local time")
         ->check(CheckBy([](const std::string& text) { NextTimeOfDay(text, 0); }))
         ->type_name("HH:MM")
         ->excludes(time);
@@ -71,8 +69,8 @@ ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressLi
         if (needed < 1.1 * left || needed < left + 1) return;
         hasWarned = true;
         talk.Warn(fmt::format(
-            "the first sample of each pixel, which is always taken, takes about {} more, of {} "
-            "that are left; a smaller --resolution takes less",
+            "the first sample of every pixel ends in about {}, but {} are left; a smaller "
+            "--resolution takes less",
             FormatDuration(needed), FormatDuration(left)));
     };
 }

@@ -25,21 +25,19 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(IN.exr holds what `lull render --denoise-layers` has kept: both halves of the samples with their
-features. Pictures of other renderers can be denoised too: two renders of the same with different
-seeds, each of half of the samples, with R, G, B and, for sharp results, albedo.R .G .B, N.X .Y .Z
-and Z.
+    R"(IN.exr is an image of `lull render --denoise-layers`, with both half buffers and their features. For
+images of other renderers, give two renders with different seeds and equal sample counts, with R, G, B
+and, for sharp results, albedo.R .G .B, N.X .Y .Z and Z.
 
 OUT.exr has R, G, B denoised, the mean of the samples as noisy.R .G .B, the estimated standard error
-of each pixel in lightness (0 to 100) as error, and the other channels of IN.exr; OUT.png is written
-beside it.
+of each pixel in L* as error, and the other channels of IN.exr. OUT.png is the same image for displays.
 
 Examples:
   lull render scene.pbrt --spp 128 --denoise-layers -o image.exr
   lull denoise image.exr                                  # writes image.denoised.exr and .png
   lull denoise a.exr --half b.exr -o clean.exr
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 // Returns whether a channel is one that the denoised picture does without or has anew.
 bool IsReplaced(const std::string& name) {
@@ -74,8 +72,8 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
     const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
     if (spp && std::ranges::min(spp->values) < float(kLeastDenoisedSpp))
         throw Error(
-            fmt::format("{}: some pixels have fewer than {} samples, too few to know what "
-                        "is noise; render more",
+            fmt::format("{}: some pixels have fewer than {} samples, too few to "
+                        "estimate the noise; render more",
                         options.input, kLeastDenoisedSpp));
 }
 
@@ -88,7 +86,7 @@ ExitCode RunDenoise(Options options) {
                  std::vector<NamedFile>{{"IN", options.input}, {"--half", options.half}});
     std::error_code missing;
     if (std::filesystem::equivalent(options.input, options.half, missing))
-        throw Error("--half " + options.half + ": it is the same file as " + options.input +
+        throw Error("--half " + options.half + ": the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
     NoisyPicture picture =
@@ -124,24 +122,24 @@ ExitCode RunDenoise(Options options) {
 }  // namespace
 
 void AddDenoiseCommand(CLI::App& app, Command* command) {
-    CLI::App* denoise = app.add_subcommand(
-        "denoise", "Takes the noise out of a picture, and says how wrong it may still be.");
+    CLI::App* denoise =
+        app.add_subcommand("denoise", "Denoises an image and estimates the remaining error.");
     auto options = std::make_shared<Options>();
-    denoise->add_option("IN", options->input, "The picture, an EXR")->required();
-    denoise->add_option("--half", options->half, "An EXR of other samples of the same picture")
+    denoise->add_option("IN", options->input, "Image to denoise, an EXR")->required();
+    denoise->add_option("--half", options->half, "Add an EXR with other samples of the same image")
         ->type_name("B.exr");
-    denoise->add_option("-o,--output", options->output, "Image to write [IN.denoised.exr]")
+    denoise->add_option("-o,--output", options->output, "Write OUT.exr [IN.denoised.exr]")
         ->check([](const std::string& file) {
             return file.ends_with(".exr") ? "" : file + " does not end in .exr";
         })
         ->type_name("OUT.exr");
     denoise
         ->add_option("--block", options->blockSize,
-                     "Pixels a side of the blocks whose error is told")
+                     "Set the side of the blocks with an error each, in pixels")
         ->check(CLI::Range(10, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
-    denoise->add_flag("--quiet", options->quiet, "Print only errors and the files written");
+    denoise->add_flag("--quiet", options->quiet, "Print only errors and the names of files");
     denoise->footer(kFooter);
     denoise->callback([=] { *command = [=] { return RunDenoise(*options); }; });
 }

@@ -12,9 +12,9 @@ namespace lull {
 void AddGuideOptions(CLI::App& app, GuideOptions* options) {
     auto* guide = AddChoiceOption(
         app, "--guide", &options->mode,
-        "Learn from the image's samples where light comes from and send paths there;\n"
-        "auto: blocks that go on for long try it, and keep to it where it pays");
-    app.add_option("--guide-memory", options->megabytes, "MB that what is learned may take")
+        "Guide paths by learned incident light; auto: in blocks where it saves time");
+    app.add_option("--guide-memory", options->megabytes,
+                   "Limit the memory of the guiding distribution, in MB")
         ->check(CLI::Range(2, 1 << 16))
         ->type_name("MB")
         ->needs(guide)
@@ -25,7 +25,7 @@ void CheckGuide(const GuideOptions& options, const Scene& scene, Estimator estim
     if (options.mode != GuideMode::On) return;
     if (const auto why = WhyNotGuided(scene, estimator))
         throw Error(fmt::format(
-            "--guide on: {}, and paths are not guided there; give --guide auto or off", *why));
+            "--guide on: {}, where paths cannot be guided; give --guide auto or off", *why));
 }
 
 }  // namespace lull

@@ -158,8 +158,7 @@ ExitCode RunInfo(const SceneOptions& options) {
 }  // namespace
 
 void AddInfoCommand(CLI::App& app, Command* command) {
-    CLI::App* info =
-        app.add_subcommand("info", "Says what is in a scene, as it would be rendered.");
+    CLI::App* info = app.add_subcommand("info", "Describes a scene as it would be rendered.");
     auto options = std::make_shared<SceneOptions>();
     AddSceneOptions(*info, options.get());
     info->footer("Example: lull info scene.pbrt");

@@ -74,12 +74,9 @@ void AddPathOptions(CLI::App& app, PathOfSample* options) {
                        throw CLI::ValidationError(text, "is not x,y in pixels");
                    options->pixel = p;
                },
-               "Instead of rendering, print one path, without a guide, through this pixel\n"
-               "of the whole image, counted from its upper left: what it meets, and what\n"
-               "that brings")
+               "Print one path through this pixel, vertex by vertex, instead of rendering")
             ->type_name("x,y");
-    app.add_option("--sample", options->sample,
-                   "Which of its samples, from 0; it is always the same")
+    app.add_option("--sample", options->sample, "Choose the sample of --pixel, from 0")
         ->needs(pixel)
         ->check(CLI::Range(0, (1 << 24) - 1))
         ->type_name("K")

@@ -18,20 +18,15 @@ struct EnumNames<ToneMap> {
 };
 
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
-    AddChoiceOption(
-        app, "--tone-map", &options->format.toneMap,
-        "Fit the PNG to the display: filmic darkens and keeps what is up to 5.6 times white;\n"
-        "rules judge the picture without it");
-    app.add_option("--png-bits", options->format.pngBits, "Bits of each colour of the PNG")
+    AddChoiceOption(app, "--tone-map", &options->format.toneMap,
+                    "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white");
+    app.add_option("--png-bits", options->format.pngBits, "Set the bits per channel of the PNG")
         ->check(OneOf(std::set{8, 16}))
         ->type_name("8|16")
         ->capture_default_str();
     app.add_flag("--exr-half", options->format.exrHalf,
-                 "Colours and normals of the EXR take 16 bits, up to 65504, instead of 32");
-    app.add_option(
-           "--display", options->display,
-           "Show the render in a viewer with tev's protocol at this address, while it runs;\n"
-           "with --denoise, blocks as they were last denoised")
+                 "Write colours and normals of the EXR with 16 bits, up to 65504");
+    app.add_option("--display", options->display, "Show the render live in tev at this address")
         ->check([](const std::string& text) -> std::string {
             try {
                 ParseDisplayAddress(text);
@@ -41,8 +36,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
             }
         })
         ->type_name("HOST:PORT");
-    app.add_option("--preview", options->preview,
-                   "Write the current image to OUT.exr and OUT.png every SECONDS")
+    app.add_option("--preview", options->preview, "Write the current image every SECONDS")
         ->check(CLI::Range(0.1, 1e6))
         ->type_name("SECONDS");
 }
@@ -51,9 +45,7 @@ std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::s
                                      const PixelRect& region, int ranks, const Talk& talk) {
     if (options.display.empty()) return nullptr;
     if (ranks > 1)
-        throw Error(
-            "--display: no rank has the whole picture before the end; render it by one "
-            "process");
+        throw Error("--display: needs one process, as no rank has the whole image before the end");
     CheckMemory(region.Area() * int64_t(5 * sizeof(float) + 1),
                 fmt::format("--display of {}x{} pixels", region.Width(), region.Height()),
                 "leave it out");

@@ -22,15 +22,15 @@ void ShareAmongRanks(Job* ranks, SessionOptions* options) {
     options->render.peers = ranks->ThePeers();
     options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
         ranks->Warn(
-            fmt::format("rank {} does not answer; if it has died, --resume continues from the "
+            fmt::format("rank {} does not respond; if it has died, --resume continues from the "
                         "last checkpoint, with any number of ranks",
                         fmt::join(silent, ", ")));
     };
     options->render.events.onGivenUp = [ranks](int rank, double seconds) {
         ranks->GiveUp(rank);
         ranks->Warn(
-            fmt::format("rank {} has given no sign of life for {}: going on without it, and taking "
-                        "its samples again",
+            fmt::format("rank {} has not responded for {}; continuing without it and taking its "
+                        "samples again",
                         rank, FormatDuration(seconds)));
     };
 }

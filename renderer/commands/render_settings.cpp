@@ -15,16 +15,13 @@
 namespace lull {
 
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
-    AddChoiceOption(
-        app, "--estimator", estimator,
-        "combined: least noise for its time; pbrt-v3: the same noise as pbrt-v3's path");
+    AddChoiceOption(app, "--estimator", estimator,
+                    "Estimate light with least noise, or with the noise of pbrt-v3");
 }
 
 void AddCautionOption(CLI::App& app, double* caution) {
     const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
-    app.add_option("--caution", *caution,
-                   "Divides the threshold of visible noise (" + rules +
-                       "): 2 stops\nlater, rarely too early, 0.5 sooner")
+    app.add_option("--caution", *caution, "Divide the noise threshold of " + rules + " by X")
         ->check(CLI::Range(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();
@@ -32,30 +29,28 @@ void AddCautionOption(CLI::App& app, double* caution) {
 
 void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     AddSceneOptions(app, &s->scene);
-    app.add_option("--cap", s->cap, "Samples per pixel that no block exceeds [10000]")
+    app.add_option("--cap", s->cap, "Stop every block at N spp at the latest [10000]")
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N");
-    app.add_option("--pass", s->schedule.passLength, "Samples per pixel between two decisions")
+    app.add_option("--pass", s->schedule.passLength, "Decide every N spp")
         ->check(CLI::Range(1, 1 << 20))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--block", s->schedule.blockSize, "Pixels a side of the blocks")
+    app.add_option("--block", s->schedule.blockSize, "Set the side of the blocks, in pixels")
         ->check(CLI::Range(1, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
 
     if (withSampler)
-        AddChoiceOption(app, "--sampler", &s->sampler,
-                        "Where sample positions come from [as the scene says]");
+        AddChoiceOption(app, "--sampler", &s->sampler, "Choose the sampler [the scene's]");
     AddEstimatorOption(app, &s->estimator);
-    app.add_option("--seed", s->seed, "Another seed gives other, equally good, samples")
+    app.add_option("--seed", s->seed, "Seed the random numbers")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the files written");
+    app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the names of files");
     app.add_flag("--json-progress", s->jsonProgress,
-                 "Print JSON on stderr and nothing else, an object a line: progress, warnings, and "
-                 "of `render`\nblocks that stop, files and, last, how it ended");
+                 "Print events as JSON, one object per line, on stderr");
 }
 
 std::unique_ptr<const Scene> CompileScene(const RenderSettings& settings, SceneInput* input) {
@@ -82,10 +77,9 @@ std::string ModelFolder() {
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
     if (rule.starts_with(kDenoisedRuleName) && measures.empty())
-        throw Error(
-            option + " " + rule +
-            ": it stops what is denoised: `lull render --denoise`; `lull compare --denoise` "
-            "and `lull bench --denoise` add such an image to theirs");
+        throw Error(option + " " + rule +
+                    ": needs --denoise of lull render; lull compare and lull bench add a denoised "
+                    "image with --denoise");
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
                               .blockCount = int(MakeBlocks(region, schedule).size()),

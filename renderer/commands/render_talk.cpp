@@ -50,7 +50,8 @@ void PrintSummary(const RenderResult& result, int cap, RuleTrend::Kind kind) {
 
 void WarnOfRejected(int64_t rejected, const Talk& talk) {
     if (rejected > 0)
-        talk.Warn(fmt::format("{} samples were not finite or negative: taken as black", rejected));
+        talk.Warn(
+            fmt::format("{} samples were not finite or negative; they count as black", rejected));
 }
 
 // Prints how much ranks of different speed had to do in the end.
@@ -68,19 +69,19 @@ void PrintCapped(const Provenance& provenance, const RenderResult& result) {
     const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
     if (capped.empty()) return;
     const bool isOdds = provenance.trend.kind == RuleTrend::Probability;
-    Say("at the cap, with {} that the rule did not stop at:\n",
-        isOdds ? "a probability of visible noise" : "a number");
+    Say("blocks at the cap, with their {}:\n",
+        isOdds ? "probability of visible noise" : "value of the rule");
     for (size_t i = 0; i < std::min(shown, capped.size()); ++i) {
         const CappedBlock& c = capped[i];
         const PixelRect& pixels = result.blocks[size_t(c.block)].block.pixels;
-        Say("  block {} at {},{}: {:.3g}, to stop below {:.3g}{}\n", c.block, pixels.min.x(),
+        Say("  block {} at {},{}: {:.3g}, threshold {:.3g}{}\n", c.block, pixels.min.x(),
             pixels.min.y(), c.value, c.threshold,
-            c.neededSpp > 0 ? fmt::format("; probably at {} spp", c.neededSpp) : "");
+            c.neededSpp > 0 ? fmt::format("; estimated stop {} spp", c.neededSpp) : "");
     }
     if (capped.size() > shown) Say("  and {} more\n", capped.size() - shown);
     const int cap = CapFor(capped, provenance.schedule.cap);
     if (cap > 0)
-        Say("--cap {} would probably be enough for all\n", cap);
+        Say("estimated sufficient --cap: {}\n", cap);
     else
         Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
 }
@@ -93,21 +94,20 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     const auto unknown =
         std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
     if (unknown > 0)
-        Say("the noise of {} block{} is not known, as no pass of {} spp was completed there\n",
-            unknown, unknown == 1 ? "" : "s", provenance.schedule.passLength);
+        Say("{} block{} without a noise estimate: no complete pass of {} spp\n", unknown,
+            unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return;
-    Say("not stopped, and the noise that is visible, in lightness of 0 to 100:\n");
+    Say("blocks not stopped, with their visible noise in L*:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
-        Say("  block {} at {},{}: {:.2f} at {} spp; probably until {} spp, {}\n", noisy[i].block,
-            block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
+        Say("  block {} at {},{}: {:.2f} at {} spp; estimated stop {} spp, after {}\n",
+            noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
             noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
     }
     if (noisy.size() > shown)
-        Say("  and {} more, of {:.2f} or less\n", noisy.size() - shown, noisy[shown].noise);
+        Say("  and {} more, at most {:.2f}\n", noisy.size() - shown, noisy[shown].noise);
     if (unknown == 0)
-        Say("about {} more would have been enough for all\n",
-            FormatDuration(NeededSeconds(noisy, result)));
+        Say("estimated missing time: {}\n", FormatDuration(NeededSeconds(noisy, result)));
 }
 
 }  // namespace

@@ -81,65 +81,55 @@ void AddFilmOptions(CLI::App& app, FilmOverrides* film) {
     app.add_option_function<std::string>(
            "--resolution",
            Checked(ParseResolution, &film->resolution, "a size in pixels such as 800x600"),
-           "Size of the whole image in pixels, WxH, instead of the scene's; glTF: 800 high, as\n"
-           "wide as its camera sees")
+           "Set the size of the image, in pixels [the scene's; glTF: 800 high]")
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--crop",
            Checked(ParseCrop, film,
                    "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y, or in pixels with px "
                    "after them"),
-           "Render only this part of the image, as fractions of its sides from the upper left,\n"
-           "or as pixels: 100,300,50,250px")
+           "Render a part: fractions from the upper left, or pixels, ending in px")
         ->type_name("x0,x1,y0,y1[px]");
 }
 
 void AddCompileOptions(CLI::App& app, CompileOptions* options) {
-    app.add_option("--max-depth", options->maxDepth,
-                   "Longest path in bounces, instead of the scene's")
+    app.add_option("--max-depth", options->maxDepth, "Limit paths to N bounces [the scene's]")
         ->check(CLI::Range(0, 1000000))
         ->type_name("N");
-    app.add_option("--threads", options->threads, "Threads; 0: one for each core")
+    app.add_option("--threads", options->threads, "Render on N threads; 0: one per core")
         ->check(CLI::Range(0, 4096))
         ->type_name("N")
         ->capture_default_str();
-    AddChoiceOption(
-        app, "--filtering", &options->filtering,
-        "Look up image textures on their finest level, or as pbrt-v3 does where the camera\n"
-        "sees them: trilinear or EWA, from smaller copies, which need memory");
+    AddChoiceOption(app, "--filtering", &options->filtering,
+                    "Filter image textures bilinearly, or as pbrt-v3, which takes memory");
 }
 
 void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("--exposure", options->exposure,
-                   "Exposure compensation in stops: multiply all values by 2^EV, also in the EXR,\n"
-                   "whose header records it [0]")
+                   "Multiply the radiance by 2^EV, in the EXR as well [0]")
         ->check(CLI::Range(-100., 100.))
         ->type_name("EV");
     auto* environment =
-        app.add_option(
-               "--environment", options->environment,
-               "Replace the environment map by this latitude-longitude image of radiance; its\n"
-               "top is glTF's +y, or the axis nearest to the camera's up vector")
+        app.add_option("--environment", options->environment,
+                       "Replace the environment map by this latitude-longitude image")
             ->type_name("FILE.exr|.hdr");
     app.add_option("--environment-rotation", options->environmentRotation,
-                   "Rotate it by DEG degrees, counterclockwise as seen from the top [0]")
+                   "Rotate the environment map, in degrees, counterclockwise from above [0]")
         ->needs(environment)
         ->check(CLI::Range(-360., 360.))
         ->type_name("DEG");
 }
 
 void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
-    auto* frame = app.add_option("--frame", view->frame,
-                                 "glTF: pose nodes, skins, morph targets and cameras as the file's "
-                                 "animation\nhas them at this time")
+    auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animation at this time")
                       ->check(CLI::Range(0., 1e9))
                       ->type_name("SECONDS");
     app.add_option("--animation", view->animation,
-                   "glTF: the animation of this name or number, from 0 [the first one]")
+                   "glTF: choose the animation, by name or number from 0 [0]")
         ->needs(frame)
         ->type_name("NAME|N");
     app.add_option("--shutter", view->shutter,
-                   "glTF: blur what moves, nodes and cameras, from then on for so long")
+                   "glTF: open the shutter at --frame for this time [0]")
         ->needs(frame)
         ->check(CLI::Range(0., 1e9))
         ->type_name("SECONDS");
@@ -147,37 +137,34 @@ void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
 
 void AddGltfOptions(CLI::App& app, GltfOptions* view) {
     auto* camera = app.add_option("--camera", view->camera,
-                                  "glTF: look through the camera of this name or number, from 0")
+                                  "glTF: choose the camera, by name or number from 0 [0]")
                        ->type_name("NAME|N");
     app.add_option_function<std::string>(
            "--orbit",
            Checked(ParseOrbit, &view->orbit,
                    "azimuth,elevation in degrees, the elevation from -90 to 90"),
-           "glTF: show the whole scene, seen from this direction [without a camera: 30,15]")
+           "glTF: view the whole scene, from degrees [without a camera: 30,15]")
         ->excludes(camera)
         ->type_name("azimuth,elevation");
     AddAnimationOptions(app, view);
     app.add_option("--variant", view->variant,
-                   "glTF: use the materials of this variant, a name or number, from 0, that `lull\n"
-                   "info` lists")
+                   "glTF: choose the material variant, by name or number; see lull info")
         ->type_name("NAME|N");
     app.add_flag("--solid-glass", view->solidGlass,
-                 "glTF: let all that transmits light be solid; without a volume's thickness it is\n"
-                 "a thin sheet, as the format says");
+                 "glTF: treat transmissive surfaces without a volume as solid");
 }
 
 }  // namespace
 
 void AddSceneOptions(CLI::App& app, SceneOptions* options) {
-    app.add_option("SCENE", options->file, "The scene: a pbrt-v3 file, or glTF 2.0 (.gltf, .glb)")
+    app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, or glTF 2.0 (.gltf, .glb)")
         ->required();
     AddFilmOptions(app, &options->compile.film);
     AddCompileOptions(app, &options->compile);
     app.add_flag("--substitute", options->substitute,
-                 "Continue with substitutes for names, files, materials, textures, shapes and\n"
-                 "lights that are missing or not modelled, each with a warning, as pbrt-v3 does");
+                 "Replace missing and unsupported parts of the scene, with warnings");
     app.add_flag("--verbose", options->isVerbose,
-                 "Print warnings that do not concern the image as well, as of zero-area triangles");
+                 "Print warnings without effect on the image, too");
     AddEnvironmentOptions(app, options);
     AddGltfOptions(app, &options->view);
 }
@@ -192,8 +179,8 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     if (!isGltf && options.view.IsGiven())
         throw Error(
             options.file +
-            ": is no glTF file; --camera, --orbit, --frame, --variant and --solid-glass are "
-            "for these, as a pbrt-v3 scene says all of that itself");
+            ": not a glTF file; --camera, --orbit, --frame, --variant and --solid-glass are for "
+            "glTF, set them in the pbrt-v3 scene");
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings);
     if (options.exposure != 0) SetExposure(options.exposure, &description);

@@ -137,22 +137,21 @@ ExitCode RunSelftest(const SelftestOptions& options) {
 }  // namespace
 
 void AddSelftestCommand(CLI::App& app, Command* command) {
-    CLI::App* selftest = app.add_subcommand(
-        "selftest", "Checks that lull computes what is known, on inputs that are hard.");
+    CLI::App* selftest = app.add_subcommand("selftest", "Checks this build against known answers.");
     auto options = std::make_shared<SelftestOptions>();
-    selftest->add_option("--only", options->only, "Run the checks that have this in their name")
+    selftest->add_option("--only", options->only, "Run only the checks with TEXT in their name")
         ->type_name("TEXT");
     selftest
         ->add_option("--seed", options->cases.seed,
-                     "Seed of everything random; a failure names one")
+                     "Seed the random numbers; a failure names its seed")
         ->capture_default_str();
     selftest->add_flag("--long", options->cases.isLong,
-                       "Take 10 to 250 times as many rays and samples, which takes hours");
+                       "Take 10 to 250 times as many samples, which takes hours");
     selftest->add_flag("--markdown", options->markdown,
-                       "Write the table as Markdown, and one of the bias of stopping rules");
+                       "Print Markdown, with a table of the bias of stopping rules");
     selftest
         ->add_option("--model", options->model,
-                     "The model of `learned` for that table [the one that comes with lull]")
+                     "Use this model of `learned` for that table [the bundled one]")
         ->type_name("MODEL.h5");
     selftest->footer(
         "A check passes if what lull computes is at most the tolerance from the answer. What is\n"

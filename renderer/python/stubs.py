@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the types of the functions that run commands from what the program says of itself.
 
-stubs.py LULL FILE: reads `LULL COMMAND --help` and writes FILE, commands.pyi of the module `lull`.
+stubs.py LULL FILE: reads `LULL COMMAND --help-all` and writes FILE, commands.pyi of the module `lull`.
 """
 import pathlib
 import re
@@ -63,7 +63,7 @@ def main():
         raise SystemExit(__doc__)
     text = HEAD
     for command, (inputs, result) in FUNCTIONS.items():
-        helped = subprocess.run([sys.argv[1], command, "--help"], check=True, text=True,
+        helped = subprocess.run([sys.argv[1], command, "--help-all"], check=True, text=True,
                                 stdout=subprocess.PIPE).stdout
         lines = [f"    {name}: {type_of(option)} | None = None,"
                  for name, option in options.read(helped).items()]

@@ -53,8 +53,8 @@ std::set<std::string> OptionsIn(const std::string& help) {
     return options;
 }
 
-const char* const kCommands[] = {"render",   "info",    "dataset", "train", "evaluate",
-                                 "selftest", "compare", "bench",   "judge"};
+const char* const kCommands[] = {"render",   "info",    "record", "train", "evaluate",
+                                 "selftest", "compare", "bench",  "study"};
 
 TEST(Install, RunsWhereItIsMoved) {
     const InstalledTree tree;
@@ -87,7 +87,7 @@ TEST(Install, ManualAndCompletionNameEveryOption) {
     if (!tree.Has("share/man/man1/lull.1")) GTEST_SKIP() << "built without Python";
     const std::string page = ReadBytes(tree.File("moved tree/share/man/man1/lull.1"));
     for (const std::string command : kCommands) {
-        const std::string help = RunLull(tree, command + " --help").out;
+        const std::string help = RunLull(tree, command + " --help-all").out;
         const std::set<std::string> options = OptionsIn(help);
         EXPECT_GE(options.size(), command == "info" ? 2u : 4u);
         const size_t begin = page.find(".SS lull " + command);
@@ -107,7 +107,7 @@ TEST(Install, ManualAndCompletionNameEveryOption) {
 TEST(Install, CompletionKnowsCommandsAndValues) {
     const InstalledTree tree;
     if (!tree.Has("share/bash-completion/completions/lull")) GTEST_SKIP() << "built without Python";
-    EXPECT_EQ(Complete(tree, "lull re", 1), "render\n");
+    EXPECT_EQ(Complete(tree, "lull ren", 1), "render\n");
     for (const char* command : kCommands)
         EXPECT_TRUE(Contains(Complete(tree, "lull ''", 1), command)) << command;
     EXPECT_EQ(Complete(tree, "lull render --sampler ''", 3), "random sobol\n");

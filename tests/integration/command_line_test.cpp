@@ -90,14 +90,42 @@ TEST(CommandLine, HelpsAndTellsItsVersion) {
     }
 }
 
-// Choices are named once, with what is chosen where nothing is said.
+// A first render needs a page of help; every option has a subject.
+TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
+    const TemporaryDirectory directory;
+    const std::string brief = ExpectSuccess(directory, "render --help").out;
+    const std::string all = ExpectSuccess(directory, "render --help-all").out;
+    for (const char* option : {"--denoise ", "-o,--output", "--spp", "--resume"})
+        EXPECT_TRUE(Contains(brief, option) && Contains(all, option)) << option;
+    for (const char* option : {"--png-bits", "--keep-checkpoint", "--guide-memory"})
+        EXPECT_TRUE(!Contains(brief, option) && Contains(all, option)) << option;
+    EXPECT_TRUE(Contains(brief, "lull render --help-all lists all options."));
+    for (const char* group : {"Scene", "Image", "Sampling", "Stopping", "Denoising", "Guiding",
+                              "Output", "Interruption", "Advanced"})
+        EXPECT_TRUE(Contains(all, "\n" + std::string(group) + ":\n  -")) << group;
+    EXPECT_FALSE(Contains(all, "\nOptions:\n"));
+    // The options of one command alone come first.
+    EXPECT_TRUE(Contains(ExpectSuccess(directory, "compare --help").out, "--snapshots"));
+    EXPECT_EQ(RunLull(directory, "train --help").out, RunLull(directory, "train --help-all").out);
+}
+
+TEST(CommandLine, TakesFormerNamesOfCommandsAndListsThemNowhere) {
+    const TemporaryDirectory directory;
+    EXPECT_TRUE(Contains(ExpectSuccess(directory, "dataset --help").out, "lull record "));
+    EXPECT_TRUE(Contains(ExpectSuccess(directory, "judge --help").out, "lull study "));
+    const std::string help = ExpectSuccess(directory, "--help").out;
+    EXPECT_TRUE(Contains(help, "  record ") && Contains(help, "  study "));
+    EXPECT_FALSE(Contains(help, "dataset") || Contains(help, "judge"));
+}
+
+// Choices are named once, with the default.
 TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
     for (const auto& [command, option] : {std::pair("render", "--guide off|auto|on=off "),
                                           {"render", "--png-bits 8|16=8 "},
                                           {"evaluate", "--choose-by error|critical=error"},
                                           {"train", "--m 4|25|100|400=100 "}}) {
-        const Outcome outcome = RunLull(directory, std::string(command) + " --help");
+        const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");
         EXPECT_TRUE(Contains(outcome.out, option)) << outcome.out;
     }
     const Outcome wrong = RunLull(directory, "render scene.pbrt --png-bits 12");
@@ -313,7 +341,7 @@ TEST(CommandLine, TellsStoppedFromCapped) {
     const Outcome capped =
         ExpectSuccess(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
     for (const char* part : {"0 of 4 blocks stopped, 4 at the cap and not stopped",
-                             "to stop below 0.01;", "would probably be enough for all"})
+                             "threshold 0.01;", "estimated sufficient --cap: "})
         EXPECT_TRUE(Contains(capped.err, part)) << part << "\n" << capped.err;
     EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
     const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));

@@ -173,10 +173,10 @@ TEST(Interruption, SaysHowToGoOn) {
                          "-o 'the parts.exr' --checkpoint c.h5 "
                          "--checkpoint-interval 0.1 --resume\n"))
         << interrupted.err;
-    const size_t at = interrupted.err.find("to go on: ");
+    const size_t at = interrupted.err.find("to resume: ");
     ASSERT_NE(at, std::string::npos);
     const std::string command =
-        interrupted.err.substr(at + 10, interrupted.err.find('\n', at) - at - 10);
+        interrupted.err.substr(at + 11, interrupted.err.find('\n', at) - at - 11);
     const Outcome resumed = ExpectSuccess(RunShell(directory, command + " --time 1s"));
     EXPECT_TRUE(Contains(resumed.err, "going on from c.h5")) << resumed.err;
 }

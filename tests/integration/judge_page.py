@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lets observers whose thresholds are known work through studies of `lull judge` in a headless browser.
+"""Lets observers whose thresholds are known work through studies of `lull study` in a headless browser.
 
 judge_page.py LULL CHROMIUM SCENES: exits with 0 if what is collected is what they see, within a step
 of the ladder, by mouse and by keys, over a reload, with repeats that differ as theirs do.
@@ -195,7 +195,7 @@ def check_collected(lull, folder, files):
     outcome = subprocess.run(
         [lull, "judge", "--collect", *sorted(map(str, (folder / "answers").glob("*.json"))), "-o", "human.csv",
          "--study", "study.html", "--report", "collected.html"], cwd=folder, check=True, capture_output=True, text=True)
-    for name in ("cut.json: is no JSON", "z-copy.json: is a copy", "foreign.json: is no file", "cy failed"):
+    for name in ("cut.json: is not JSON", "z-copy.json: is a copy", "foreign.json: is not a file", "cy failed"):
         check(name in outcome.stderr, "named and left out: " + name)
     human = [int(t) for t in (folder / "human.csv").read_text().strip().split(";")[1:-1]]
     print("rule", RULE, "collected", human)

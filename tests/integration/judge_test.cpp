@@ -48,7 +48,7 @@ TEST(Judge, GoesOnWhereItWasInterrupted) {
     const Outcome interrupted =
         RunAndSignal(directory, command + "a.html", SIGINT, "a.html.checkpoint");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    EXPECT_TRUE(Contains(interrupted.err, "interrupted; to go on: ")) << interrupted.err;
+    EXPECT_TRUE(Contains(interrupted.err, "interrupted; to resume: ")) << interrupted.err;
     EXPECT_FALSE(Contains(interrupted.err, "--resume")) << interrupted.err;
     EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
     ExpectSuccess(RunShell(directory, command + "a.html"));
@@ -94,12 +94,12 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     EXPECT_EQ(outcome.out,
               "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
     EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));
-    EXPECT_TRUE(Contains(outcome.err, "d.json: is no JSON, or cut short; left out"));
+    EXPECT_TRUE(Contains(outcome.err, "d.json: is not JSON, or cut short; left out"));
     EXPECT_EQ(ReadBytes(directory.File("human.csv")), "room;100;80;160;320;\n");
     const std::string observers = ReadBytes(directory.File("human.observers.csv"));
     EXPECT_TRUE(Contains(observers, "a.json,room,\"a, \"\"b\"\"\",yes,"));
     EXPECT_TRUE(Contains(observers, "c.json,room,c,no,failed 3 of 4 checks,"));
-    EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is no JSON, or cut short\","));
+    EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is not JSON, or cut short\","));
     const std::string details = ReadBytes(directory.File("human.details.csv"));
     EXPECT_TRUE(Contains(details, "room,0,2,100,20,320,40,160,84.85,1.414,,2\n"));
     EXPECT_TRUE(Contains(details, "room,all,2,"));
@@ -115,7 +115,7 @@ TEST(Judge, RefusesWhatDoesNotFit) {
     directory.Write("bad.json", "{}");
     ExpectFailure(directory, "judge --collect bad.json -o human.csv", {"none of 1 files"});
     ExpectFailure(directory, "judge --collect bad.json -o human.csv --study bad.json",
-                  {"bad.json: is no page made by lull judge"});
+                  {"bad.json: not a page made by lull study"});
     ExpectFailure(directory, "judge scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
     ExpectFailure(directory, "judge scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
     ExpectFailure(directory, "judge --images nowhere -o s.html", {"--images nowhere"});

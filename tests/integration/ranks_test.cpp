@@ -154,9 +154,10 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     EXPECT_NE(killed.exitCode, 0) << killed.err;
     // Of rank 2, or of rank 0 where mpirun was the first to end that.
     const auto names = [&](int rank) {
-        return Contains(killed.err, fmt::format("lull: warning: rank {} does not answer; if it has "
-                                                "died, --resume",
-                                                rank));
+        return Contains(killed.err,
+                        fmt::format("lull: warning: rank {} does not respond; if it has "
+                                    "died, --resume",
+                                    rank));
     };
     EXPECT_TRUE(names(2) || names(0)) << killed.err;
     ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
@@ -179,7 +180,7 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
             "mpi=$(echo $(cat /proc/$p/task/$p/children)); "
             "for child in $(cat /proc/$mpi/task/$mpi/children); do last=$child; done; "
             "kill -STOP $last; wait $p"));
-    const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
+    const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
     ExpectSuccess(Run(std::string(kRender) +
@@ -194,7 +195,7 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStoppedWhileItLoadsTheScene) {
         Run(fmt::format("timeout -s KILL 120 {}{}: -n 1 env LD_PRELOAD='{}' OPENED_FILE=scene.pbrt "
                         "OPENED_SIGNAL={} {}",
                         Ranks(2), render, SIGNAL_AT_OPEN, SIGSTOP, render)));
-    const std::string line = "lull: warning: rank 2 has given no sign of life for 5.0s";
+    const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     ExpectSuccess(Run(std::string(kRender) +
                       "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Works through a study of `lull judge` in a headless browser, as an observer who sees noise by a rule.
+"""Works through a study of `lull study` in a headless browser, as an observer who sees noise by a rule.
 
 simulated_observer.py CHROMIUM STUDY.html THRESHOLDS.csv ANSWERS_DIR NAME [--scatter OCTAVES] [--keys]
 

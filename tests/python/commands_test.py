@@ -28,10 +28,10 @@ class Options(unittest.TestCase):
                               ("compare", {"snapshots", "reference"}), ("evaluate", {"human", "stop"})):
             known = program.options(command)
             self.assertLessEqual(some, known.keys())
-            text = subprocess.run([program.find(), command, "--help"], capture_output=True,
+            text = subprocess.run([program.find(), command, "--help-all"], capture_output=True,
                                   text=True).stdout
             self.assertEqual(set(re.findall(r"^  (?:-\w,)?--([a-z-]+)", text, re.M)) -
-                             {"help", "json-progress", "quiet"}, {o.name for o in known.values()})
+                             {"help", "help-all", "json-progress", "quiet"}, {o.name for o in known.values()})
 
     def test_become_arguments(self):
         def words(command, **given):
@@ -45,7 +45,7 @@ class Options(unittest.TestCase):
                          ["--aov-through-specular", "--pass", "5"])
         self.assertEqual(words("evaluate", stop=["paper", "noise"], margins=[2, 5]),
                          ["--stop", "paper", "--stop", "noise", "--margins", "2,5"])
-        for message, given in (("is denoise meant", {"denoised": True}), ("True or False", {"denoise": 3}),
+        for message, given in (("did you mean denoise", {"denoised": True}), ("True or False", {"denoise": 3}),
                                ("is WxH", {"resolution": True})):
             with self.assertRaisesRegex(TypeError, message):
                 words("render", **given)
@@ -77,7 +77,7 @@ class Render(unittest.TestCase):
             lull.render("nowhere.pbrt", progress=False)
         with self.assertRaisesRegex(ValueError, "0x5.*is not a size"):
             lull.render(CORNELL, resolution=(0, 5))
-        with self.assertRaisesRegex(TypeError, "no option sppp; is spp meant"):
+        with self.assertRaisesRegex(TypeError, "no option sppp; did you mean spp"):
             lull.render(CORNELL, sppp=3)
 
     def test_ends_early_with_what_there_is(self):

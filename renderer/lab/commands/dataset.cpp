@@ -1,4 +1,4 @@
-// `lull dataset`: records what stopping rules can learn from.
+// `lull record`: records what stopping rules can learn from.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -32,9 +32,9 @@ Blocks that the file has already are left out, so the same command can be given 
 it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
 
 Examples:
-  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
-  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
-  lull dataset scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
+  lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
+  lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
+  lull record scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -132,7 +132,7 @@ ExitCode RunDataset(Options options, Job* ranks) {
 
 void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* dataset = app.add_subcommand(
-        "dataset", "Records what stopping rules can learn from, viewpoint by viewpoint.");
+        "record", "Records block histories of a viewpoint, to train stopping rules.");
     auto options = std::make_shared<Options>();
     // What people judged is pbrt-v3's own noise.
     options->render.sampler = SamplerKind::Random;

@@ -38,7 +38,7 @@ struct Options {
 
 constexpr const char* kFooter =
     R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
-have. With data sets (see lull dataset), everything is judged on the blocks that these hold, and
+have. With data sets (see lull record), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
 
 --stop takes the rules of lull render. --rivals runs those that have one setting, each with the one

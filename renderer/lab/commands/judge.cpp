@@ -1,4 +1,4 @@
-// `lull judge`: people say where they still see noise.
+// `lull study`: people say where they still see noise.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -133,7 +133,7 @@ ExitCode RunJudge(JudgeSettings settings) {
 
 void AddJudgeCommand(CLI::App& app, Command* command) {
     CLI::App* judge = app.add_subcommand(
-        "judge", "Lets people say where they see noise: makes a page for it, collects answers.");
+        "study", "Makes a page on which observers mark visible noise, and collects their answers.");
     auto settings = std::make_shared<JudgeSettings>();
     AddJudgeOptions(*judge, settings.get());
     judge->callback([=] {

@@ -37,10 +37,10 @@ both sides, to find out who does not look.
 Files that are damaged, foreign or contradict each other are named and left out.
 
 Examples:
-  lull judge scene.pbrt -o study.html --record data.h5
-  lull judge scene.pbrt -o study.html --resolution 800x800 --cap 2000 --procedure staircase
-  lull judge --images pictures/ --name kitchen-view0 -o study.html
-  lull judge --collect answers/*.json -o human.csv --study study.html --report collected.html
+  lull study scene.pbrt -o study.html --record data.h5
+  lull study scene.pbrt -o study.html --resolution 800x800 --cap 2000 --procedure staircase
+  lull study --images pictures/ --name kitchen-view0 -o study.html
+  lull study --collect answers/*.json -o human.csv --study study.html --report collected.html
   lull train data.h5 --human human.csv -o model.h5
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
@@ -63,7 +63,7 @@ void AddStudyOptions(CLI::App& app, StudySettings* s) {
 }
 
 [[noreturn]] void Refuse(const std::string& message) {
-    throw CLI::ValidationError("judge", message);
+    throw CLI::ValidationError("study", message);
 }
 
 }  // namespace

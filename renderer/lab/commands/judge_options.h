@@ -1,4 +1,4 @@
-// The options of `lull judge`.
+// The options of `lull study`.
 #pragma once
 
 #include "renderer/commands/render_settings.h"

@@ -16,7 +16,7 @@ namespace lull {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Learns from recordings (see lull dataset) and the thresholds of people when these stop to see
+    R"(Learns from recordings (see lull record) and the thresholds of people when these stop to see
 noise. The defaults are those of the model `entropy`: a small LSTM network on the noise that falls of
 SVD-entropies make visible, a number for the block. --preset paper takes the configuration of Buisine
 et al. 2021, a large one on windows of 8 SVD-entropies of 100 sub-blocks; other options change either.

@@ -81,7 +81,7 @@ std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
 
 std::string ReadStudyText(const std::string& path) {
     std::string text = ReadWholeFile(path);
-    if (text.empty()) throw Error(path + ": is no text, or empty");
+    if (text.empty()) throw Error(path + ": is not a text, or empty");
     if (text.size() > kLongestText)
         throw Error(fmt::format("{}: has {} bytes; a text that observers read has at most {}", path,
                                 text.size(), kLongestText));
@@ -105,7 +105,7 @@ Json ReadStudyPage(const std::string& path) try {
     }
     return study;
 } catch (const Json::exception&) {
-    throw Error(path + ": is no page made by lull judge, or is damaged");
+    throw Error(path + ": not a page made by lull study, or damaged");
 }
 
 }  // namespace lull

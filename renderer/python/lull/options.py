@@ -1,4 +1,4 @@
-"""Makes arguments of keywords: what a command takes is read from its own help."""
+"""Converts keyword arguments into command-line arguments, by the help of the command."""
 import difflib
 import keyword
 import os
@@ -6,17 +6,17 @@ import re
 
 # An entry of a help text: its long name, and its value if it has one.
 _ENTRY = re.compile(r"^  (?:-\w,)?--([a-z0-9-]+)(?: (?!Needs:|Excludes:)(\S+))?")
-_OURS = {"help", "json-progress", "quiet"}  # what this module sets
+_OURS = {"help", "help-all", "json-progress", "quiet"}  # what this module sets
 
 
 class Option:
-    """`value` is None of a flag, else how the help writes its value."""
+    """An option of a command; `value` is its form in the help, None for a flag."""
 
     def __init__(self, name, value):
         self.name, self.value, self.text = name, value, ""
 
     def arguments(self, given):
-        """Returns what stands on the command line for a value of Python."""
+        """Returns the command-line arguments for a Python value."""
         if given is None or given is False:
             return []
         flag = "--" + self.name
@@ -42,9 +42,11 @@ def _text(value):
 
 
 def read(help_text):
-    """Returns the options that a help text describes, by their keywords."""
+    """Returns the options in the text of --help-all, by their keywords."""
     options, last = {}, None
-    for line in help_text.split("\nOptions:\n", 1)[-1].split("\n\n")[0].split("\n"):
+    for line in help_text.split("\n"):
+        if not line:  # the end of a group
+            last = None
         if entry := _ENTRY.match(line):
             last = Option(*entry.groups())
             if last.name not in _OURS:
@@ -55,12 +57,15 @@ def read(help_text):
 
 
 def arguments(command, options, given):
-    """Returns the arguments for keywords. Raises TypeError for what the command does not have."""
+    """Returns command-line arguments for keywords.
+
+    Raises: TypeError for unknown options and for values of a wrong type.
+    """
     words = []
     for name, value in given.items():
         if name not in options:
             like = difflib.get_close_matches(name, options, 1)
-            raise TypeError("%s() has no option %s%s" % (command, name, "; is %s meant?" % like[0]
+            raise TypeError("%s() has no option %s%s" % (command, name, "; did you mean %s?" % like[0]
                                                          if like else ""))
         words += options[name].arguments(value)
     return words

@@ -15,39 +15,45 @@ _INTERRUPTED = 130
 
 
 class Error(RuntimeError):
-    """What the program says is wrong with the input or the environment."""
+    """An input or environment error, with the message of the program."""
 
 
 def find():
-    """Returns the program: what $LULL_PROGRAM names, the one that this module was installed with, or
-    the one on the path. Raises FileNotFoundError."""
+    """Returns the path of the program: $LULL_PROGRAM, that of this installation, or that on the PATH.
+
+    Raises: FileNotFoundError.
+    """
     prefix = pathlib.Path(__file__).resolve().parents[4]
     for path in (os.environ.get("LULL_PROGRAM"), prefix / "bin" / "lull", prefix / "renderer" / "lull",
                  "lull"):
         if path and (found := shutil.which(path)):
             return found
-    raise FileNotFoundError("the program lull is not on the path; $LULL_PROGRAM can name it")
+    raise FileNotFoundError("lull is not on the PATH; set LULL_PROGRAM to the program")
 
 
 @functools.lru_cache
 def _help(program, command):
-    return subprocess.run([program, command, "--help"], check=True, text=True,
+    return subprocess.run([program, command, "--help-all"], check=True, text=True,
                           stdout=subprocess.PIPE).stdout
 
 
 def options(command):
-    """Returns the options of a command by their keywords, as its help has them."""
+    """Returns the options of a command by their keywords."""
     return _options.read(_help(find(), command))
 
 
 def run(command, inputs, given, progress=None):
-    """Runs a command on files, with options as keywords. `progress` is called with each event that
-    it tells, where it tells any; None: a line in a terminal or a notebook, False: nothing. Returns
-    its last event, or {}. A KeyboardInterrupt tells it to end with what it has, which is no error;
-    another ends it at once.
+    """Runs a command. A KeyboardInterrupt ends it with its current results, a second one at once.
 
-    Raises TypeError for options that the command does not have, ValueError for values that it does
-    not take, and Error for all else that it says is wrong."""
+    Args:
+        command: its name.
+        inputs: paths of input files.
+        given: options by keyword.
+        progress: called with each event; None: a line in a terminal or a notebook; False: nothing.
+
+    Returns: the last event, or {}.
+    Raises: TypeError for unknown options, ValueError for invalid values, Error otherwise.
+    """
     known = options(command)
     words = [find(), command, *map(_file, inputs), *_options.arguments(command, known, given)]
     if "--json-progress" in _help(find(), command):
@@ -89,7 +95,7 @@ def run(command, inputs, given, progress=None):
 
 
 def _file(path):
-    """Returns the path of a file as a word that is not taken for an option."""
+    """Returns the path of a file as an argument that cannot be an option."""
     path = os.fspath(path)
     return os.path.join(os.curdir, path) if path.startswith("-") else path
 
@@ -105,7 +111,7 @@ def _event(line):
 
 
 class _Line:
-    """Shows progress as a line that is written again and again."""
+    """Shows progress in one line, rewritten in place."""
 
     def __init__(self):
         self.shows = sys.stderr.isatty() or "ipykernel" in sys.modules

@@ -57,7 +57,7 @@ std::optional<double> GetOptional(const Json& object, const char* key) {
 
 std::string GetText(const Json& object, const char* key) {
     const Json& value = Get(object, key);
-    if (!value.is_string()) Refuse(std::string("'") + key + "' is no text");
+    if (!value.is_string()) Refuse(std::string("'") + key + "' is not a text");
     const std::string text = value.get<std::string>();
     const auto isControl = [](char c) { return uint8_t(c) < 0x20 || c == 0x7f; };
     if (text.empty() || text.size() > kLongestText || std::ranges::any_of(text, isControl))
@@ -68,7 +68,7 @@ std::string GetText(const Json& object, const char* key) {
 const Json& GetArray(const Json& object, const char* key, size_t most) {
     const Json& value = Get(object, key);
     if (!value.is_array() || value.size() > most)
-        Refuse(std::string("'") + key + "' is no list, or too long");
+        Refuse(std::string("'") + key + "' is not a list, or too long");
     return value;
 }
 
@@ -145,7 +145,7 @@ void ReadStudy(const Json& study, ObserverAnswers* result) {
 
 ObserverAnswers Read(const Json& json) {
     if (!json.is_object() || !json.contains("format") || json.at("format") != kAnswersFormat)
-        Refuse("is no file of answers saved by the page of lull judge");
+        Refuse("is not a file of answers saved by the page of lull study");
     if (GetInt(json, "version", 0, 1 << 20) != kVersion)
         Refuse("was saved by another version of the page");
     ObserverAnswers result;
@@ -196,7 +196,7 @@ bool ObserverAnswers::operator==(const ObserverAnswers& other) const {
 ObserverAnswers ParseAnswers(std::string_view text) try {
     return Read(Json::parse(text));
 } catch (const Json::parse_error&) {
-    Refuse("is no JSON, or cut short");
+    Refuse("is not JSON, or cut short");
 } catch (const Json::exception& e) {
     Refuse(e.what());
 }
