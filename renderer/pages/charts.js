@@ -70,7 +70,7 @@ function drawChart(parent, series, options) {
   const isLogY = options.logY && series.some(s => (s.mark != null || s.line) && s.y.some(v => v > 0));
   const logs = series.map(s => ({...s, log: isLogY}));
   const data = joinSeries(logs);
-  if (!data[0].length) { box.append(make("p", {class: "small"}, "Nothing was recorded.")); return null; }
+  if (!data[0].length) { box.append(make("p", {class: "small"}, "No data.")); return null; }
   // A logarithmic axis needs two different ends.
   const widen = (min, max) => min === max ? [min / 1.5, max * 1.5] : [min / 1.08, max * 1.08];
   const number = v => show(v, 3), lines = (options.lines || []).filter(l => isNumber(l.x));

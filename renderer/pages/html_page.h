@@ -19,7 +19,7 @@ std::string Base64(std::span<const std::byte>);
 std::string MakePage(const Json& data);
 
 // Return pictures as data URIs: an image as a display shows it; values in [0, 1] in false colours.
-// What is larger than PagePictureScale() allows is averaged down.
+// Images larger than PagePictureScale() allows are averaged down.
 std::string PictureUri(const RgbImage&);
 std::string MapUri(std::span<const float> values, int width, int height);
 

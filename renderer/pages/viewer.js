@@ -14,7 +14,7 @@ const flickerMs = 500;
 function makeLayers(data) {
   for (const image of data.images) if (image.src) layers.push({label: image.label, src: image.src});
   for (const image of data.images)
-    if (image.flipSrc) layers.push({label: "FLIP error of " + image.name, src: image.flipSrc, ends: ["0", "FLIP: difference that people see", "1"]});
+    if (image.flipSrc) layers.push({label: "FLIP error of " + image.name, src: image.flipSrc, ends: ["0", "FLIP: visible difference, 0 to 1", "1"]});
   for (const image of data.images)
     if (image.visibleDifferenceSrc) layers.push({label: "Visible difference of " + image.name, src: image.visibleDifferenceSrc,
       ends: ["0", `visible difference; visibility threshold ${show(data.viewing.threshold)} in the middle`, "\u221e"]});
