@@ -34,18 +34,20 @@ install(FILES renderer/pages/uPlot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
         RENAME copyright.uPlot) # it is part of the program
 install(DIRECTORY stopping/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# The manual page and the completion of bash, made of what the program says of itself. (Python runs
-# the program; a sanitized one is slow, and nobody installs it.)
+# The manual page, the completion of bash and the reference, from the help and docstrings. (Python runs
+# the program; a sanitized one is slow and never installed.)
 find_package(Python3 QUIET COMPONENTS Interpreter)
 if(Python3_Interpreter_FOUND AND NOT LULL_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
   set(manual ${PROJECT_BINARY_DIR}/manual)
   add_custom_command(
-    OUTPUT ${manual}/lull.1 ${manual}/lull
+    OUTPUT ${manual}/lull.1 ${manual}/lull ${manual}/reference.md
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/cmake/manual.py $<TARGET_FILE:lull> ${manual}
-    DEPENDS lull ${PROJECT_SOURCE_DIR}/cmake/manual.py
+    COMMAND Python3::Interpreter -B ${PROJECT_SOURCE_DIR}/cmake/reference.py $<TARGET_FILE:lull> ${manual}/reference.md
+    DEPENDS lull ${PROJECT_SOURCE_DIR}/cmake/manual.py ${PROJECT_SOURCE_DIR}/cmake/reference.py
     VERBATIM)
-  add_custom_target(manual ALL DEPENDS ${manual}/lull.1 ${manual}/lull)
+  add_custom_target(manual ALL DEPENDS ${manual}/lull.1 ${manual}/lull ${manual}/reference.md)
   install(FILES ${manual}/lull.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${manual}/reference.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
   install(FILES ${manual}/lull DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 else()
   message(STATUS "No manual page and no completion: they need Python")

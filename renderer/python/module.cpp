@@ -152,31 +152,36 @@ PYBIND11_MODULE(lull_denoising, module) {
     using namespace lull;
     using namespace py::literals;
     module.doc() =
-        "Takes the noise out of pictures of any renderer, and says how wrong they may still be.\n\n"
+        "Denoises images of any renderer and estimates the remaining error.\n\n"
         "    clean = lull_denoising.denoise(first, second, albedo=albedo, normal=normal)\n"
         "    clean.picture, clean.upper.max()\n";
 
-    py::class_<Denoised>(module, "Denoised", "A denoised picture, and what is known of its error.")
+    py::class_<Denoised>(module, "Denoised", "A denoised image and its estimated error.")
         .def_readonly("picture", &Denoised::picture, "H x W x 3, float32, linear.")
         .def_readonly("error", &Denoised::error,
-                      "H x W: the estimated standard error of each pixel in lightness, 0 to 100.")
+                      "H x W: the estimated standard error of each pixel in L*.")
         .def_property_readonly("blocks", &Denoised::Rects,
-                               "Where the blocks lie: (x, y, width, height), row by row.")
+                               "Rectangles of the blocks: (x, y, width, height), row by row.")
         .def_property_readonly(
             "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
-            "The visible difference of each block from the true picture; people just accept 3.1. "
-            "An array of rows x columns.")
+            "Visible difference of each block from the true image, an array of rows x columns; "
+            "observers just accept 3.1.")
         .def_property_readonly(
             "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
-            "What that hardly exceeds: meant to, in 5 of 100 blocks.")
+            "Upper bound of the visible difference, exceeded in 5 of 100 blocks.")
         .def("__repr__", [](const Denoised& d) { return ReprOf(d); });
 
-    module.def(
-        "denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),
-        "normal"_a = py::none(), "depth"_a = py::none(), "block"_a = 200,
-        "Denoises a picture, given as two halves of its samples: linear arrays of H x W x 3,\n"
-        "two renders with other seeds for instance. `albedo` (H x W x 3, 0 to 1), `normal`\n"
-        "(H x W x 3, -1 to 1) and `depth` (H x W) are of what paths meet first: an array, or\n"
-        "a pair of those that belong to a and b. `block` is the pixels a side of the blocks\n"
-        "whose errors are told, which lie as those of lull.Stopper. Returns a Denoised.");
+    module.def("denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),
+               "normal"_a = py::none(), "depth"_a = py::none(), "block"_a = 200,
+               "Denoises an image, given as two half buffers.\n\n"
+               "Args:\n"
+               "    a, b: means of independent samples, H x W x 3, linear; e.g. renders with other "
+               "seeds.\n"
+               "    albedo: of first hits, H x W x 3, 0 to 1: an array, or a pair for a and b.\n"
+               "    normal: of first hits, H x W x 3, -1 to 1; likewise.\n"
+               "    depth: of first hits, H x W, above 0; likewise.\n"
+               "    block: side of the blocks of the error estimate, in pixels.\n\n"
+               "Returns: a Denoised.\n"
+               "Raises: ValueError for arrays of another shape, type or range, and for dependent a "
+               "and b.");
 }

@@ -1,10 +1,15 @@
-"""The types of what the module `lull` has of stopping."""
+"""Types of the stopping part of the module `lull`."""
 import numpy as np
 
 __version__: str
 
 
 class BlockAnswer:
+    """State of one block.
+
+    `value` is compared with `threshold`; `probability` (models) is that of an observer seeing noise;
+    `visible_noise` is in L*. `people_low` and `people_high` are spp, 0 if unknown.
+    """
     stop: bool
     checked: bool
     spp: int
@@ -20,6 +25,11 @@ class BlockAnswer:
 
 
 class Answer:
+    """State of all blocks: arrays of rows x columns, with the fields of BlockAnswer.
+
+    `stop` is True if all blocks have stopped. `probability` is None for rules without one,
+    `visible_noise` without half buffers.
+    """
     stop: bool
     stopped: np.ndarray
     checked: np.ndarray
@@ -35,6 +45,11 @@ class Answer:
 
 
 class Stopper:
+    """Decides which blocks of one image need more samples, from its first samples to its last.
+
+    `blocks` are (x, y, width, height), row by row. `active` is a height x width array, True where more
+    samples are needed. `done` is True if all blocks have stopped, `needs_half` if the rule reads `half`.
+    """
     width: int
     height: int
     blocks: list[tuple[int, int, int, int]]
@@ -44,10 +59,41 @@ class Stopper:
 
     def __init__(self, width: int, height: int, model: str | None = None, *, rule: str | None = None,
                  models: str | None = None, block: int = 200, pass_spp: int = 0, cap: int = 0,
-                 caution: float = 1.0) -> None: ...
-    def observe(self, image: np.ndarray, spp: int, half: np.ndarray | None = None) -> Answer: ...
+                 caution: float = 1.0) -> None:
+        """Creates a stopper.
+
+        Args:
+            width, height: pixels of the image, 40 to 65,536.
+            model: an installed model ("entropy", the default, "noise", "paper") or a file.
+            rule: any other rule of `lull render --stop`, instead of a model.
+            models: folder of installed models.
+            block: side of the blocks in pixels.
+            pass_spp: spp between two images; 0: any.
+            cap: maximum spp, if above 10,000.
+            caution: divisor of the visible-noise threshold.
+
+        Raises: ValueError for invalid arguments, OSError for a model that cannot be read.
+        """
+    def observe(self, image: np.ndarray, spp: int, half: np.ndarray | None = None) -> Answer:
+        """Checks all active blocks.
+
+        Args:
+            image: height x width x 3, float32 (linear) or uint8 (sRGB), with any strides.
+            spp: sample count of the active blocks, larger than at the last call.
+            half: mean of a fixed half of the samples, like `image`.
+
+        Returns: the state of all blocks.
+        Raises: ValueError for images of another shape, type or range.
+        """
     def observe_block(self, block: int, image: np.ndarray, spp: int,
-                      half: np.ndarray | None = None) -> BlockAnswer: ...
-    def answer(self) -> Answer: ...
-    def save(self) -> bytes: ...
-    def restore(self, state: bytes) -> None: ...
+                      half: np.ndarray | None = None) -> BlockAnswer:
+        """Checks one block, with an image of its size. See observe()."""
+    def answer(self) -> Answer:
+        """Returns the state of all blocks."""
+    def save(self) -> bytes:
+        """Serialises the state of the stopper."""
+    def restore(self, state: bytes) -> None:
+        """Restores the state of save() into a stopper with equal arguments.
+
+        Raises: OSError for damaged states, and states of other arguments.
+        """

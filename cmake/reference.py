@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Writes the reference of commands, C and Python in Markdown, from the help, headers and docstrings.
+
+reference.py LULL FILE: runs `LULL COMMAND --help-all`, reads the sources, and writes FILE.
+"""
+import ast
+import inspect
+import pathlib
+import re
+import sys
+
+import manual
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+HEADERS = ("stopping/embedding/include/lull/stopping.h", "renderer/denoise/embedding/include/lull/denoising.h")
+MODULES = {"lull": ("renderer/python/lull/commands.py", "renderer/python/lull/program.py",
+                    "stopping/python/_stopping.pyi"),
+           "lull_denoising": ("renderer/python/lull_denoising.pyi",)}
+PUBLIC = {"render", "compare", "evaluate", "Rendering", "Comparison", "Error"}  # of the .py files
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def commands(lull):
+    top = manual.help_of(lull)
+    for command in top.entries["Subcommands"]:
+        page = manual.help_of(lull, command.names[0])
+        yield f"### lull {command.names[0]}\n\n{page.about}\n\n    {page.usage.strip()}\n"
+        for title, options in page.groups().items():
+            rows = "".join(f"| `{cell(', '.join(o.names) + ' ' * bool(o.value) + o.value)}` | {cell(o.text)} |\n"
+                           for o in options)
+            yield f"| {title} | |\n|---|---|\n{rows}"
+        if page.notes:
+            yield f"```\n{page.notes}\n```\n"
+
+
+def c_interface(header):
+    """Yields each declaration behind its comment; a blank line ends it."""
+    text = (ROOT / header).read_text()
+    comment = re.compile(r"\s*/\*(.*?)\*/\s*", re.S)
+    yield "```\n" + re.sub(r"(?m)^ \* ?", "", comment.match(text)[1]).strip() + "\n```\n"
+    for part in re.split(r"\n\s*\n", text):
+        names = re.findall(r"\b(lull_\w+)(?=\()|^} (lull_\w+);|^typedef struct (lull_\w+) \w+;", part, re.M)
+        declared = [n for found in names for n in found if n]
+        if "LULL_API " in part or part.startswith(("typedef", "/*")) and declared:
+            about, code = "", part
+            if begin := comment.match(part):
+                about = re.sub(r"\s*\n \* ", " ", begin[1]).strip()
+                code = part[begin.end():]
+            yield f"#### {', '.join(f'`{n}`' for n in dict.fromkeys(re.findall(r'lull_[a-z_]+', ' '.join(declared))))}\n"
+            yield (about + "\n\n" if about else "") + f"```c\n{code.strip()}\n```\n"
+
+
+def python_interface(file):
+    is_stub = file.endswith(".pyi")
+
+    def signature(node):
+        return f"{node.name}({ast.unparse(node.args)})" + (f" -> {ast.unparse(node.returns)}" if node.returns else "")
+
+    def text(node):
+        return inspect.cleandoc(ast.get_docstring(node) or "")
+
+    for node in ast.parse((ROOT / file).read_text()).body:
+        if isinstance(node, ast.FunctionDef) and (is_stub or node.name in PUBLIC):
+            yield f"#### `{signature(node)}`\n\n```\n{text(node)}\n```\n"
+        elif isinstance(node, ast.ClassDef) and (is_stub or node.name in PUBLIC):
+            members = [f"{ast.unparse(n.target)}: {ast.unparse(n.annotation)}" for n in node.body
+                       if isinstance(n, ast.AnnAssign)]
+            functions = [n for n in node.body if isinstance(n, ast.FunctionDef) and n.name != "__repr__"]
+            yield f"#### `class {node.name}`\n\n```\n{text(node)}\n```\n"
+            if members:
+                yield "```python\n" + "\n".join(members) + "\n```\n"
+            for function in functions:
+                yield f"##### `{signature(function)}`\n\n" + (f"```\n{text(function)}\n```\n" if text(function) else "")
+
+
+def main():
+    if len(sys.argv) != 3:
+        raise SystemExit(__doc__)
+    parts = ["# Reference\n", "## Commands\n", *commands(sys.argv[1])]
+    for header in HEADERS:
+        parts += [f"## C: `lull/{pathlib.Path(header).name}`\n", *c_interface(header)]
+    for module, files in MODULES.items():
+        parts.append(f"## Python: `{module}`\n")
+        for file in files:
+            parts += python_interface(file)
+    pathlib.Path(sys.argv[2]).write_text("\n".join(parts))
+
+
+if __name__ == "__main__":
+    main()
