@@ -1,4 +1,4 @@
-// Converts between linear RGB, luminance and what a display shows.
+// Converts between linear RGB, luminance and display values.
 #pragma once
 
 #include "renderer/base/math.h"

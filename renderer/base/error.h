@@ -1,4 +1,4 @@
-// Reports what is wrong with a scene and where: locations, errors, counted warnings.
+// Errors of a scene with their locations, and counted warnings.
 #pragma once
 
 #include <cstddef>
@@ -47,9 +47,9 @@ class Errors : public Error {
     using Error::Error;
 };
 
-// Collects what is said of a scene: warnings, and errors after which the rest of the scene can
+// Collects the messages on a scene: warnings, and errors after which the rest of the scene can
 // still be checked. Of each kind of warning the first is passed on at once, and all are counted.
-// Kinds that differ only in what they quote are alike, and at most kMostAlike of them are passed
+// Kinds that differ only in quoted names are alike, and at most kMostAlike of them are passed
 // on. Thread-safe.
 class Warnings {
   public:
@@ -66,7 +66,7 @@ class Warnings {
     // `detail` describes this one and is shown for the first of its kind only.
     void Add(const FileLoc& loc, const std::string& kind, const std::string& detail = "");
 
-    // Counts a warning of what does not change the image; it is passed on only with `isVerbose`.
+    // Counts a warning without effect on the image; it is passed on only with `isVerbose`.
     void AddMinor(const FileLoc& loc, const std::string& kind);
 
     // Reports something that a scene asks for and cannot have, such as a missing file. The caller

@@ -20,7 +20,7 @@ int64_t AvailableMemory();
 void CheckMemory(int64_t bytes, const std::string& what, const std::string& remedy,
                  const FileLoc& loc = {});
 
-// Starts to load what is at p. The empty asm statement counts as a side effect for GCC, which
+// Prefetches the data at p. The empty asm statement counts as a side effect for GCC, which
 // otherwise drops calls of functions that do nothing but prefetch.
 inline void Prefetch(const void* p) {
     __builtin_prefetch(p);

@@ -1,4 +1,4 @@
-// Prints what is said beside the results: progress, warnings, summaries.
+// Prints messages to stderr: progress, warnings, summaries.
 #pragma once
 
 #include <fmt/format.h>

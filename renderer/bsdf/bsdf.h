@@ -8,12 +8,12 @@
 
 namespace lull {
 
-// Selects what Bsdf::Evaluate and Sample see. Next-event estimation with its own BSDF sample
+// Selects the lobes of Bsdf::Evaluate and Sample. Next-event estimation with its own BSDF sample
 // leaves perfectly specular lobes out, path continuation takes all.
 enum class LobeSet { All, NonSpecular };
 
 struct BsdfSample {
-    Rgb f;      // 1/sr; for specular lobes f / pdf is what counts
+    Rgb f;      // 1/sr; for specular lobes, only f / pdf is meaningful
     float pdf;  // 1/sr; of the whole set, or the discrete probability of a specular choice
     Vec3f wi;   // world, unit
     bool isSpecular, isTransmission;

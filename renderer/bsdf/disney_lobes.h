@@ -1,5 +1,5 @@
 // The lobes of Disney's principled material (Burley 2012 and 2015) as pbrt-v3 has them. See
-// lobes.h for what a lobe is.
+// lobes.h for the interface.
 #pragma once
 
 #include "renderer/bsdf/microfacet_lobes.h"

@@ -1,5 +1,5 @@
 // Tabulated isotropic scattering: splines over both cosines and a Fourier series over the
-// azimuth between the directions (Jakob et al. 2014). See lobes.h for what a lobe is.
+// azimuth between the directions (Jakob et al. 2014). See lobes.h for the interface.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 // The scattering of a hair (Marschner et al. 2003; d'Eon et al. 2011; Chiang et al. 2016, as
-// pbrt-v3 has it). See lobes.h for what a lobe is.
+// pbrt-v3 has it). See lobes.h for the interface.
 #pragma once
 
 #include "renderer/bsdf/lobe_basics.h"

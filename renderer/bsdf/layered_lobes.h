@@ -1,6 +1,6 @@
 // The lobes of glTF's material: a base under a rough dielectric interface, metal, anything in
 // between, and thin sheets. (glTF 2.0, appendix B; KHR_materials_specular, _ior, _transmission and
-// _clearcoat.) See lobes.h for what a lobe is.
+// _clearcoat.) See lobes.h for the interface.
 #pragma once
 
 #include "renderer/bsdf/ggx_albedo.h"
@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Computes what an interface with Schlick's reflectance leaves for the layer below, as in
+// Computes the light that an interface with Schlick's reflectance leaves for the layer below, as in
 // KHR_materials_specular: by its largest channel, so that nothing is tinted twice.
 struct InterfaceAbove {
     float f0 = 0, f90 = 0;
@@ -28,8 +28,8 @@ class StoredInterface {
     uint16_t f0, f90;
 };
 
-// Returns what a clear coat of weight `coat`, with an index of 1.5, leaves of light that goes
-// through it on its way in and out, by the cosines of both directions.
+// Returns the fraction that a clear coat of weight `coat`, with an index of 1.5, leaves of light
+// that goes through it on its way in and out, by the cosines of both directions.
 inline float ThroughCoat(float coat, float cosO, float cosI) {
     if (coat == 0) return 1;
     const InterfaceAbove above{0.04f * coat, coat};

@@ -1,5 +1,5 @@
-// Estimates what share of uniform light a lobe scatters to wo (z != 0), ignoring roughness. See
-// EstimatedAlbedo() and AlbedoOf().
+// Estimates the fraction of uniform light that a lobe scatters to wo (z != 0), ignoring roughness.
+// See EstimatedAlbedo() and AlbedoOf().
 #pragma once
 
 #include "renderer/base/color.h"
@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// What the estimates below make of a colour: its luminance, or the colour itself.
+// The value of a colour in the estimates below: its luminance, or the colour itself.
 struct ToLuminance {
     using Value = float;
     float operator()(const Rgb& c) const { return Luminance(c); }

@@ -1,4 +1,4 @@
-// What every kind of lobe uses: its values and how directions are compared and chosen.
+// Shared code of lobes: their values, and comparison and sampling of directions.
 #pragma once
 
 #include "renderer/base/sampling.h"

@@ -1,4 +1,4 @@
-// The lobes of rough interfaces. See lobes.h for what a lobe is.
+// The lobes of rough interfaces. See lobes.h for the interface.
 #pragma once
 
 #include "renderer/bsdf/lobe_basics.h"

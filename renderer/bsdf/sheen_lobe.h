@@ -1,5 +1,5 @@
-// The lobe of cloth whose fibres stand out of it (KHR_materials_sheen). See lobes.h for what
-// a lobe is.
+// The lobe of cloth whose fibres stand out of it (KHR_materials_sheen). See lobes.h for the
+// interface.
 #pragma once
 
 #include "renderer/bsdf/lobe_basics.h"

@@ -31,7 +31,7 @@ std::string ChoiceText() {
 }
 
 // Adds an option that sets *value, which must outlive the parsing, to the value of an enum that is
-// named (EnumNames). What *value is before is the default that the help shows; a value that may be
+// named (EnumNames). The previous *value is the default in the help; a value that may be
 // missing shows none.
 template <typename T>
 CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, std::optional<T>* value,

@@ -21,7 +21,7 @@ struct ClockOptions {
 // Adds --time and --until, of which there can be one.
 void AddClockOptions(CLI::App& app, ClockOptions* options);
 
-// Starts the clock: returns what says how many seconds are left; empty where none is set.
+// Starts the clock: returns a function of the seconds left; empty without a limit.
 std::function<double()> StartClock(const ClockOptions&);
 
 using ProgressListener = std::function<void(const RenderProgress&)>;

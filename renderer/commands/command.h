@@ -1,5 +1,5 @@
-// Lists the subcommands. Each adds its options to the command line and, when it is the one that
-// was given, sets what is to be run.
+// Lists the subcommands. Each adds its options to the command line and, if it was given, sets the
+// function to run.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -11,8 +11,7 @@ namespace lull {
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
 
-// Is thrown for what the command line asks for that is never right, whatever the files:
-// kWrongUsage.
+// An invalid command line, whatever the files: kWrongUsage.
 class UsageError : public Error {
   public:
     using Error::Error;
@@ -20,7 +19,7 @@ class UsageError : public Error {
 
 class Job;
 
-// Does the work of a subcommand and returns the exit code. Throws what went wrong.
+// Does the work of a subcommand and returns the exit code. Throws on errors.
 using Command = std::function<ExitCode()>;
 
 // Those that several ranks can share get the job.

@@ -1,4 +1,4 @@
-// Prints what happens to the path of one sample.
+// Prints the path of one sample.
 #pragma once
 
 #include <CLI/App.hpp>

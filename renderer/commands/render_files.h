@@ -25,7 +25,7 @@ bool HasImageExtension(const std::string& output);
 // Returns all files that may be written or removed, for CheckOutputs().
 std::vector<NamedFile> OutputsOf(const RenderFiles&);
 
-// What there is to write of a render; `histories` have the curves for a page.
+// A finished render; `histories` have the curves for a page.
 struct FinishedRender {
     PictureOrigin origin;
     const Film& film;
@@ -34,7 +34,7 @@ struct FinishedRender {
     Warnings& warnings;  // for the report; clamped values are added
     CollectedLayers layers;
     const DenoisedImage* denoised;          // null: the image is the means of the film
-    const std::vector<ExrChannel>& halves;  // what can be denoised later
+    const std::vector<ExrChannel>& halves;  // inputs of `lull denoise`
     const Description& description;
     const PictureFormat& pictures;
 };

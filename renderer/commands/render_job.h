@@ -39,13 +39,13 @@ class RenderJob {
     // Takes that of the settings, which have changed, instead. Throws Error if another process has
     // it.
     void LockCheckpoint();
-    // Lets rules look at what the denoiser makes of blocks while the render goes on.
+    // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
     // Reads a stopping rule that was given with `option`. Throws Error.
     Rule ReadRule(const std::string& option, const std::string& rule) const;
     // Compiles the scene, and sets the provenance; the rule is left to be filled in.
     void Compile();
-    // Returns what checkpoints and ranks have to agree on, by the provenance as it is.
+    // Returns the identity that checkpoints and ranks must share, from the provenance.
     RenderIdentity Identity() const;
     // Returns the options of a session with the checkpoint of the settings, without a rule, that
     // can be interrupted and that the ranks share. `adaptive`: blocks stop by themselves, as the

@@ -1,4 +1,4 @@
-// What `lull render` is asked for.
+// Options of `lull render`.
 #pragma once
 
 #include "renderer/commands/clock_options.h"
@@ -20,11 +20,11 @@ struct RenderRequest {
     PictureOptions pictures;
     PathOfSample path;  // to print, instead
 
-    // Returns what --stop, --spp and --denoise come to.
+    // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;
     // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
-    // Returns whether what a denoiser is shown is collected.
+    // Returns whether the inputs of the denoiser are collected.
     bool CollectsFeatures() const { return denoise || denoiseLayers; }
 };
 

@@ -1,4 +1,4 @@
-// What all commands that render by stopping rules have in common.
+// Options of all commands that render by stopping rules.
 #pragma once
 
 #include "renderer/commands/checkpoint_options.h"
@@ -45,13 +45,13 @@ std::string ModelFolder();
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
 
-// Returns from what an image is made; the rule is left to be filled in.
+// Returns the provenance of an image, without the rule.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
 // Returns how to say things beside that.
 inline Talk TalkOf(const RenderSettings& settings) { return {.isJson = settings.jsonProgress}; }
 
-// Makes what shows the progress on stderr; `adaptive` says whether blocks stop by themselves.
+// Creates the printer of progress on stderr; `adaptive` says whether blocks stop by themselves.
 ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
 
 }  // namespace lull

@@ -9,10 +9,10 @@
 
 namespace lull {
 
-// Prints what came of a render, as far as it is to be said; of its samples so many were `rejected`.
+// Prints the summary of a render, of whose samples `rejected` were rejected.
 void PrintResult(const RenderSettings&, const Provenance&, const RenderResult&, int64_t rejected);
 
-// Returns what says of a block that it has stopped, as JSON.
+// Returns a callback that prints the stop of a block, as JSON.
 std::function<void(int index, const Block&)> StopEvents(RuleTrend::Kind);
 
 // Prints as JSON which files there are and, as the last object, how the render ended.

@@ -1,4 +1,4 @@
-// What all commands that load a scene have in common.
+// Options of all commands that load a scene.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -13,7 +13,7 @@ namespace lull {
 
 struct SceneOptions {
     std::string file;
-    bool substitute = false;  // continue without what is missing or not supported
+    bool substitute = false;  // continue without missing and unsupported parts
     bool isVerbose = false;   // print warnings that do not concern the image
     CompileOptions compile;
     GltfOptions view;

@@ -1,4 +1,4 @@
-// What commands lend to those who do not know the terminal, or how files are written.
+// Terminal and file output of commands, for modules that know neither.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace lull {
 // no file of results takes its place.
 void PrepareStreams();
 
-// Writes out what was printed to stdout. Throws Error where it, or anything before, could not be.
+// Flushes stdout. Throws Error where it, or anything before, could not be.
 void FinishResults();
 // Returns whether something that was printed to stdout is lost.
 bool HasLostResults();

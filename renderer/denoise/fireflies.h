@@ -1,4 +1,4 @@
-// Takes out of pixels what one rare path has brought, and gives it back to the region as a whole.
+// Removes the excess of rare paths from pixels, and returns it to their region.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Holds what was taken out of the mean of both halves of the samples.
+// The energy removed from the mean of both half buffers.
 struct Firefly {
     size_t pixel;  // may be that of others too
     Rgb excess;    // not negative

@@ -1,4 +1,4 @@
-// Holds images as planes, one a channel, as vector instructions want them.
+// Images as planes, one per channel, for vector instructions.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Holds `count` channels of width x height values, channel by channel, row by row from the top.
+// `count` channels of width x height values, channel by channel, row by row from the top.
 struct Planes {
     int width = 0, height = 0, count = 0;
     std::vector<float> values;
@@ -27,7 +27,7 @@ struct Planes {
 
 inline constexpr int kColours = 3;  // R, G, B
 
-// Holds two pictures of the same, each made from one half of the samples.
+// Two half buffers.
 struct Halves {
     Planes a, b;
 };

@@ -15,7 +15,7 @@ using Lanes = Eigen::Array<float, kLanes, 1>;
 using LanesIn = Eigen::Map<const Lanes>;
 inline void Store(const Lanes& values, float* to) { Eigen::Map<Lanes>{to} = values; }
 
-// Holds the pixels [x0, x1) x [y0, y1).
+// The pixels [x0, x1) x [y0, y1).
 struct ImageTile {
     int x0, y0, x1, y1;
 

@@ -1,4 +1,4 @@
-// Keeps results from replacing each other, or what they are made from.
+// Keeps results from replacing each other, or their inputs.
 #pragma once
 
 #include <span>
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// A file as a user knows it: `role` says what it is, "--report" or "a file of the scene".
+// A file as a user knows it: `role` is its purpose, "--report" or "a file of the scene".
 struct NamedFile {
     std::string role, path;
 };

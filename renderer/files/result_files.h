@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// What becomes of a file that cannot be written: it goes elsewhere, or is done without.
+// Treatment of a file that cannot be written: it goes elsewhere, or is left out.
 enum class Rescue { Elsewhere, None };
 
 class ResultFiles {

@@ -15,7 +15,7 @@ namespace lull {
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
          material = false, noise = false, alpha = false, cryptomatte = false;
-    // Look through surfaces that have only perfectly specular lobes, to what is seen in them.
+    // Follow surfaces with only perfectly specular lobes to the next surface.
     bool throughSpecular = false;
 
     bool Any() const { return FirstHits() || noise; }

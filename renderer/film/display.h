@@ -18,14 +18,15 @@ struct DisplayAddress {
 // Reads HOST:PORT or [HOST]:PORT. Throws Error for anything else.
 DisplayAddress ParseDisplayAddress(const std::string& text);
 
-// Sends what has changed, from a thread of its own: the mean of each pixel in channels R, G, B, its
-// samples in `spp`, and in `stop` 1 where a block has stopped. What is sent is always the latest
-// state, so that nothing piles up for a slow viewer, and the thread rests 200 times as long as it
-// has worked. If there is no viewer, or it goes away, there is one warning; the thread retries
-// every few seconds, and sends everything to a viewer that appears later.
+// Sends the changed parts, from a thread of its own: the mean of each pixel in channels R, G, B,
+// its samples in `spp`, and in `stop` 1 where a block has stopped. The sent state is always the
+// latest state, so that nothing piles up for a slow viewer, and the thread rests 200 times as long
+// as it has worked. If there is no viewer, or it goes away, there is one warning; the thread
+// retries every few seconds, and sends everything to a viewer that appears later.
 class Display {
   public:
-    // `name` is what the viewer calls the image; `warn` is called at most once, from any thread.
+    // `name` is the name of the image in the viewer; `warn` is called at most once, from any
+    // thread.
     Display(const DisplayAddress&, const std::string& name, const PixelRect& region,
             std::function<void(const std::string&)> warn);
     // Ends without waiting for the viewer.
@@ -40,7 +41,7 @@ class Display {
     void ShowDenoised(const PixelRect& pixels, std::span<const float> rgb);
     void ShowStop(const PixelRect& block);
 
-    // Sends what has not been sent yet, if there is a viewer, for at most this many seconds.
+    // Sends the remaining parts, if there is a viewer, for at most this many seconds.
     void Finish(double seconds = 2);
 
   private:

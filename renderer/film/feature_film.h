@@ -1,4 +1,4 @@
-// Sums up what a denoiser fits colours to: features of what paths meet first, by halves of the
+// Accumulates the features of first hits that a denoiser fits colours to, by halves of the
 // samples.
 #pragma once
 

@@ -142,7 +142,7 @@ class FilmTile {
 
     // Returns a pixel, with the count that it had when the tile was opened.
     FilmPixel At(const Vec2i& p) const { return film->At(p); }
-    // Sets its sums, and adds what was rejected since then to the tile's.
+    // Sets its sums, and adds the samples rejected since then to the tile's.
     void Set(const Vec2i& p, const FilmPixel&);
 
   private:

@@ -1,4 +1,4 @@
-// What a render collects of its samples beside the film.
+// Data of the samples that a render collects in addition to the film.
 #pragma once
 
 #include "renderer/film/aov_film.h"
@@ -12,7 +12,7 @@ namespace lull {
 struct Layers {
     // Of the film's region; null: not collected.
     AovFilm* aovs = nullptr;
-    FeatureFilm* features = nullptr;  // what a denoiser is shown
+    FeatureFilm* features = nullptr;  // for the denoiser
     MatteFilm* mattes = nullptr;
 
     explicit operator bool() const { return aovs || features || mattes; }

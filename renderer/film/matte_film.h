@@ -1,4 +1,4 @@
-// Sums up what covers each pixel, for compositing: how much of it the scene does, and which objects
+// Accumulates the coverage of each pixel, for compositing: by the scene, and by which objects
 // and materials how much.
 #pragma once
 

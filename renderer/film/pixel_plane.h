@@ -29,7 +29,7 @@ class PixelPlane {
     }
     // Returns how many bytes that takes.
     static int64_t Bytes(const PixelRect& rect) { return rect.Area() * int64_t(sizeof(Pixel)); }
-    // Sets them to what Put() has appended. Throws std::runtime_error where the bytes end too
+    // Restores the data of Put(). Throws std::runtime_error where the bytes end too
     // early.
     void Get(const PixelRect& rect, StateReader* reader) {
         for (int y = rect.min.y(); y < rect.max.y(); ++y)

@@ -1,4 +1,4 @@
-// What readers of all image formats have in common. This header is all that the module of other
+// Common part of the readers of image formats. This header is all that the module of other
 // formats, which is loaded at run time, shares with the program.
 #pragma once
 
@@ -12,7 +12,7 @@ constexpr size_t SizeOf(TexelType type) {
     return type == TexelType::Byte ? 1 : type == TexelType::Half ? 2 : 4;
 }
 
-// What Read() returns: 8-bit, half and float texels as they are in the file, everything else
+// Result of Read(): 8-bit, half and float texels as they are in the file, everything else
 // as float (16-bit integers: 0 to 1).
 struct ImageShape {
     int width = 0, height = 0;  // as the file says, however absurd

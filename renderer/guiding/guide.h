@@ -16,8 +16,8 @@ namespace lull {
 Vec2f SquareFromDirection(const Vec3f& w);
 Vec3f DirectionFromSquare(const Vec2f& s);
 
-// Cuts a square into quadrants: 0 and 1 below in y, 2 and 3 above. Small, as what a walk down a
-// tree costs is what it has to fetch.
+// Cuts a square into quadrants: 0 and 1 below in y, 2 and 3 above. Small, as the cost of a walk
+// down a tree is its memory traffic.
 struct QuadNode {
     static constexpr int kWhole = 1 << 16;
 
@@ -87,7 +87,7 @@ class Guide {
     static constexpr int kIndexBits = 4;  // of each coordinate
 
     float cellsPerUnit = 1;  // of the 2^16 of a side
-    // What a walk through the nodes comes to after its first 3 * kIndexBits steps, or where it ends
+    // The node that a walk reaches after its first 3 * kIndexBits steps, or where it ends
     // before, cell by cell: most of the way to a leaf.
     std::vector<uint32_t> entries;
 };

@@ -1,17 +1,18 @@
-// Sums up what paths have found, for the next guide.
+// Accumulates the vertices of paths, for the next guide.
 #pragma once
 
 #include "renderer/guiding/guide.h"
 
 namespace lull {
 
-// What a path did at one vertex, and what came of it.
+// One vertex of a path: its sampled direction and the light that arrived from there.
 struct GuideVertex {
     Vec3f p, w;                    // where, and the unit direction in which it went on
     uint32_t leaf;                 // Guide::Find(p)
     float pdf, bsdfPdf, guidePdf;  // of w, 1/sr: as it was sampled, and of the two parts
     // Luminance that the rest of the path brought to the image, light sampled at the vertex itself
-    // left out, over what a path usually brings. Any value; not positive (or NaN) counts as 0.
+    // left out, relative to the mean contribution of a path. Any value; not positive (or NaN)
+    // counts as 0.
     float found;
 };
 
@@ -19,7 +20,7 @@ struct GuideVertex {
 // order, so that any number of threads may add at the same time.
 class GuideRecord {
   public:
-    // What GuideLeaf::fraction is chosen from.
+    // Statistics from which GuideLeaf::fraction is chosen.
     static constexpr std::array<float, 6> kFractions = {0, 0.15f, 0.3f, 0.5f, 0.7f, 0.85f};
 
     struct LeafSums {

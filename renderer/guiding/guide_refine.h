@@ -1,4 +1,4 @@
-// Makes the next guide of what has been recorded.
+// Builds the next guide from a record.
 #pragma once
 
 #include "renderer/guiding/guide_record.h"
@@ -22,7 +22,7 @@ struct GuideState {
 // to; its costs are not, which are the old guide's.
 GuideState Refine(const GuideState& state, const RefineOptions& options);
 
-// Returns the guide alone, with trees no finer than what has been recorded.
+// Returns the guide alone, with trees no finer than the record.
 Guide FreezeGuide(const GuideState& state, const RefineOptions& options);
 
 }  // namespace lull

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// What all ranks have reported together.
+// Combined reports of all ranks.
 struct Agreement {
     int failed = -1;      // the first rank that has failed; -1: none
     int different = -1;   // the first whose value is not that of rank 0; -1: none

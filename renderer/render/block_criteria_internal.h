@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// What is said of a block after a pass.
+// The decision on a block after a pass.
 struct BlockCheck {
     BlockAnswer answer;
     Decision decision;                     // of the criterion, which may not have checked the block
@@ -24,7 +24,7 @@ class BlockCriteria {
     // context must outlive it.
     BlockCriteria(const RenderContext&, const RenderOptions&, std::span<const Block> blocks);
 
-    // Returns what criterion and clock have to see of a block.
+    // Returns the inputs of criterion and clock for a block.
     ViewNeed NeedAt(int block, int spp) const;
     // Checks a block whose pass has come to `spp`, and whose samples took so many seconds so far.
     // `complete`, if any, fills in the pixels of the view that other ranks have rendered.

@@ -1,4 +1,4 @@
-// Measures, while a render goes on, what is still wrong with a block once it is denoised.
+// Measures the error of denoised blocks during a render.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@
 
 namespace lull {
 
-// Denoises blocks by themselves, so that what is said of one does not depend on what others have
-// had. Can be asked by several threads, of different blocks, whose pixels then must not change.
+// Denoises blocks by themselves, so that the result for one does not depend on others. Can be asked
+// by several threads, of different blocks, whose pixels then must not change.
 class BlockDenoiser {
   public:
     explicit BlockDenoiser(std::vector<Block> blocks) : blocks(std::move(blocks)) {}
@@ -23,7 +23,7 @@ class BlockDenoiser {
         featureFilm = features;
     }
 
-    // Has it show what it makes of blocks: their pixels, and R, G, B of each, row by row.
+    // Shows denoised blocks to a callback: their pixels, and R, G, B of each, row by row.
     void ShowPictures(std::function<void(const PixelRect&, std::span<const float> rgb)> show) {
         showPicture = std::move(show);
     }
@@ -38,7 +38,7 @@ class BlockDenoiser {
     std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 
-// Returns what the rule `denoised` looks at: the upper bound.
+// Returns the value of the rule `denoised`: the upper bound.
 SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser>);
 
 }  // namespace lull

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// What is different for one of several ranks. All are called from tasks; empty: as for a
+// Overrides for one of several ranks. All are called from tasks; empty: as for a
 // process that is alone.
 struct RankHooks {
     std::function<void(int block)> onPassEnd;                      // instead of the decision

@@ -1,4 +1,4 @@
-// Shows the denoiser what a film has of a picture.
+// Converts a film to the inputs of the denoiser.
 #pragma once
 
 #include "renderer/denoise/denoise.h"

@@ -19,7 +19,7 @@ class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
-    // Notes what the criterion said when it checked the block at `spp` > 0, which increases.
+    // Adds a decision of the criterion at `spp` > 0, which increases.
     // `variance` is what the criterion was told (BlockView); once it is another, what went before
     // is forgotten. `noise` is Criterion::NoiseTold(): where that is followed, a decision without
     // it (one from a checkpoint) says nothing.

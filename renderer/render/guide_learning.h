@@ -34,7 +34,7 @@ struct EnumNames<GuideMode> {
         {GuideMode::Off, "off"}, {GuideMode::Auto, "auto"}, {GuideMode::On, "on"}};
 };
 
-// What was learned and decided, for reports.
+// Results and decisions of learning, for reports.
 struct GuideFigures {
     bool isUsed = false;
     std::string why;             // it is used, or not
@@ -47,7 +47,7 @@ struct GuideFigures {
     GuideComparison comparison;  // of auto
 };
 
-// What a render is asked for.
+// Options of path guiding.
 struct GuideOptions {
     GuideMode mode = GuideMode::Off;
     int megabytes = 64;  // that trees and sums may take, > 0
@@ -80,7 +80,7 @@ struct Learning {
 // Returns whether paths of the scene can be guided; if not, why.
 std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
 
-// Returns what came of learning, in a line.
+// Returns a summary of learning, in one line.
 std::string TextOf(const GuideFigures&, GuideMode);
 
 // Learns in the course of a render (RenderOptions::learner), and says how its paths are traced.

@@ -16,7 +16,7 @@ struct SampleSpread {
     int64_t samples = 0;
 };
 
-// What guided samples are over unguided ones.
+// Guided relative to unguided samples.
 struct GuideComparison {
     double variance = 1;  // of a sample: the square of the ratio of noise, see below
     double error = 0;     // standard error of that

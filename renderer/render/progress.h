@@ -1,4 +1,4 @@
-// Tells how far a render is: a line on a terminal, plain lines in a log, or JSON for programs.
+// Progress of a render: a line on a terminal, plain lines in a log, or JSON for programs.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ class RateMeter {
 // Returns the share of all samples, in [0, 1], that have been taken, so far as it can be predicted.
 double ShareDone(const RenderProgress&);
 
-// What reports of progress say. If blocks stop by themselves (`adaptive`) the time left is a
+// Contents of a progress report. If blocks stop by themselves (`adaptive`) the time left is a
 // prediction or, while there is none, an upper bound, which the text says.
 struct ProgressState {
     RenderProgress progress;
@@ -50,8 +50,8 @@ struct ProgressState {
     bool adaptive = false;
 };
 
-// Formats a report of progress. With `columns` > 0 it fits into so many; what matters least is then
-// shortened or left out.
+// Formats a report of progress. With `columns` > 0 it fits into so many; the least important parts
+// are then shortened or left out.
 std::string ProgressText(const ProgressState&, int columns = 0);
 std::string ProgressJson(const ProgressState&);
 
@@ -64,7 +64,7 @@ enum class ProgressStyle {
     Silent,
     Line,   // one line, rewritten in place; for terminals
     Plain,  // a line about every 30 seconds
-    Json    // an object a line
+    Json    // one object per line
 };
 
 class ProgressPrinter {
@@ -73,7 +73,7 @@ class ProgressPrinter {
     ProgressPrinter(ProgressStyle style, bool adaptive, std::FILE* stream)
         : style(style), adaptive(adaptive), stream(stream) {}
 
-    // The share done never falls, though what is predicted may.
+    // The completed fraction never decreases, although predictions may.
     void Print(const RenderProgress&);
     // Prints the last state, unless that was printed, and ends the line.
     void Finish(const RenderProgress&);

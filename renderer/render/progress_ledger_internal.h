@@ -1,4 +1,4 @@
-// Keeps the books of a render: what blocks have cost, what was said of them, and how far it is.
+// Accounts of a render: cost and decisions of blocks, and progress.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What tiles took: samples, and seconds as clocks have it.
+// Cost of tiles: samples and wall-clock seconds.
 struct TileEffort {
     int64_t samples = 0;
     double seconds = 0;
@@ -25,14 +25,13 @@ class ProgressLedger {
     // Returns the seconds since the start, of the runs before this one as well.
     double Seconds() const;
 
-    // Notes a tile that was rendered here, with its seconds of processors, and what another rank
-    // has rendered of a block.
+    // Notes a tile that was rendered here, with its CPU time, and the part of a block that
+    // another rank has rendered.
     void AddTile(int block, double processorSeconds, const TileEffort&);
     void AddPart(int block, double processorSeconds, int64_t samples);
     void AddCheck(int block, int spp, const BlockCheck&);
 
-    // Return what was noted here since the last call: of all tiles; of a block's seconds of
-    // processors.
+    // Return the accounts since the last call: of all tiles; the CPU time of a block.
     TileEffort TakeEffort();
     double TakeSeconds(int block);
 

@@ -1,4 +1,4 @@
-// From what an image was made, as checkpoints, headers and reports tell it.
+// Provenance of an image, in checkpoints, headers and reports.
 #pragma once
 
 #include <map>
@@ -34,7 +34,7 @@ struct Provenance {
     std::string clock = {};  // that ends the render, in words; empty: none
     GuideMode guide = GuideMode::Off;
     int guideMegabytes = 0;
-    GuideFigures guideFigures = {};  // of what was learned; not part of the identity
+    GuideFigures guideFigures = {};  // of learning; not part of the identity
 };
 
 // Names a scene in thresholds files: the file without folder and extension, or the folder where
@@ -56,7 +56,7 @@ std::vector<NamedProvenance> PartsOf(const Provenance&);
 // Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".
 std::string TextOf(const NamedProvenance&);
 
-// What decides the pixels and what the criteria see, beside the samples themselves: scene, seed,
+// Settings that decide the pixels and the inputs of criteria, beside the samples: scene, seed,
 // rule, ... A render goes on only if all of it is the same.
 using RenderIdentity = std::map<std::string, std::string>;
 

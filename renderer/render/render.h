@@ -13,7 +13,7 @@
 
 namespace lull {
 
-// Records what a criterion said of a block.
+// A decision of a criterion on a block.
 struct DecisionRecord {
     int spp;
     Decision decision;
@@ -78,11 +78,11 @@ struct RenderResult {
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
-// A FirstHit, where one is given, receives what the sample has met first, and changes nothing else.
+// A FirstHit, if given, receives the first hit of the sample, and changes nothing else.
 using SampleSource =
     std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
 
-// Keeps the state of a render, to go on from after an interruption.
+// Saves the state of a render, to resume it after an interruption.
 struct Checkpointing {
     // Is shown the state, with no thread at work, every `interval` seconds and when the render is
     // cancelled. Can be empty.
@@ -91,11 +91,11 @@ struct Checkpointing {
     bool atEnd = false;  // also when every block has stopped
 };
 
-// What a render works on and is steered by; a Session makes it.
+// Inputs and controls of a render; a Session makes them.
 struct RenderContext {
     SampleSource source = {};
     Film* film = nullptr;
-    // What is collected beside the film, from the same samples; they are the same bits with it.
+    // Data collected in addition to the film, from the same samples, which keep their bits.
     Layers layers = {};
     // Where an interrupted render left film, layers and state; null: from the start. A block whose
     // `stopped` is set in a state without samples is left out.

@@ -1,4 +1,4 @@
-// What there is to hear of a render while it goes on.
+// Callbacks of a running render.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // Runs a render as a user asks for it: about Render() there are a film, layers, checkpoints, paths
-// that are guided, a clock, a viewer and other ranks. What there is to say goes to callbacks.
+// that are guided, a clock, a viewer and other ranks. Messages go to callbacks.
 //
 //     Session session(scene, region, options);
 //     session.Resume();
@@ -11,7 +11,7 @@
 
 namespace lull {
 
-// Where a render keeps what it takes to go on after an interruption.
+// Location of the checkpoint of a render.
 struct CheckpointOptions {
     std::string file;        // empty: none
     double interval = 60;    // seconds
@@ -30,7 +30,7 @@ struct SessionOptions {
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
     AovSet aovs;            // layers beside the film
-    bool features = false;  // what a denoiser is shown; the film has to keep its half
+    bool features = false;  // inputs of the denoiser; the film has to keep its half buffer
     GuideOptions guide;
     CheckpointOptions checkpoint;
     // What decides the pixels, for checkpoints and for ranks, which have to agree on it; the
@@ -43,7 +43,7 @@ struct SessionOptions {
     std::function<void(const std::string& what)> agree;
 };
 
-// As Render(), or what prepares it and calls it.
+// Render(), or a function that prepares and calls it.
 using RenderFunction = std::function<RenderResult(const RenderContext&, const RenderOptions&)>;
 
 class Session {
@@ -53,7 +53,7 @@ class Session {
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    // Takes up what the checkpoint has, where it is to be resumed from. Throws as ReadCheckpoint().
+    // Restores the checkpoint, if it is to be resumed. Throws as ReadCheckpoint().
     void Resume();
     // Before that: lets `show` look at the film and how far things are, every so many seconds, with
     // no thread at work; called at all ranks, of which the first is shown.
@@ -69,9 +69,9 @@ class Session {
     const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
     // Frees them, once the render is done and nobody asks for them.
     void DropFeatures();
-    // Returns what was learned so far, or why nothing is; nothing where no guide was asked for.
+    // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;
-    // Return what was rendered, and how.
+    // Return the image and its provenance.
     const RenderContext& Context() const { return context; }
     const RenderOptions& Options() const { return options.render; }
 

@@ -1,4 +1,4 @@
-// Keeps what a block was before its pass, for passes that the time does not suffice for.
+// Saves the state of a block before a pass, to undo passes that exceed the time limit.
 #pragma once
 
 #include <map>

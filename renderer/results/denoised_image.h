@@ -23,7 +23,7 @@ DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vec
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);
 
-// What the header of an EXR says of R, G, B.
+// Description of R, G, B in the header of an EXR.
 inline constexpr const char* kDenoisedNote =
     "R, G, B; noisy.R, .G, .B are the means of the samples";
 

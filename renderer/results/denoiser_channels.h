@@ -1,4 +1,4 @@
-// Files what the denoiser needs of a picture, and reads it from files.
+// Writes and reads the inputs of the denoiser as channels of an EXR.
 #pragma once
 
 #include <string>

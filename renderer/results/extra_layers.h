@@ -1,4 +1,4 @@
-// Turns the layers of a render into what its EXR is given beside the image.
+// Converts the layers of a render to channels and attributes of its EXR.
 #pragma once
 
 #include "renderer/film/aov_channels.h"
@@ -7,13 +7,13 @@
 
 namespace lull {
 
-// What an EXR is given beside its image.
+// Channels and attributes of an EXR in addition to its image.
 struct ExtraLayers {
     std::vector<ExrChannel> channels;
     std::map<std::string, ExrAttribute> attributes;
 };
 
-// What a render has collected besides its image; null: nothing.
+// Data that a render has collected in addition to its image; null: none.
 struct CollectedLayers {
     const AovSet& wanted;
     const AovFilm* aovs;

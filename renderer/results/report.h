@@ -1,4 +1,4 @@
-// Reports what a render did and what that cost.
+// Reports the decisions and the cost of a render.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Compares what a render took with what it would have taken with every block at the cap.
+// Compares the cost of a render with the cost of every block at the cap.
 struct Savings {
     int64_t samples = 0, samplesAtCap = 0;
     double seconds = 0;           // of processors, the criteria's included

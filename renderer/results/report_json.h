@@ -1,4 +1,4 @@
-// Puts what reports have in common into JSON; for those .cpp files that write reports.
+// JSON that reports have in common; for those .cpp files that write reports.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ Json RectJson(const PixelRect&);
 Json ProvenanceJson(const Provenance&);
 // Lists decisions by column, which takes a tenth of the size of an object for each.
 Json DecisionsJson(const std::vector<DecisionRecord>&);
-// Returns what MakeReport() writes.
+// Returns the report as JSON; MakeReport() writes it.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                 const std::map<std::string, int>& warnings, const DenoisedImage*);
 

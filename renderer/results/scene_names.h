@@ -1,4 +1,4 @@
-// Names what paths meet, for people.
+// Readable names of the objects and materials of a scene.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Estimates what a render still lacks whose time was up, or whose blocks went to the cap.
+// Estimates the missing samples of a render out of time, or with blocks at the cap.
 #pragma once
 
 #include "renderer/render/provenance.h"
@@ -23,7 +23,7 @@ std::vector<NoisyBlock> FindShortfall(const Provenance&, const RenderResult&);
 // A block that its rule has not stopped before the cap.
 struct CappedBlock {
     int block;                // its index in the list of all
-    double value, threshold;  // what the rule compared last, and with what
+    double value, threshold;  // last value of the rule, and its threshold
     int neededSpp;            // at which it would probably stop; 0: not to be told
 };
 

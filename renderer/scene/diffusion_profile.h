@@ -51,7 +51,7 @@ class DiffusionProfile {
 // Scattering", fits to measured and simulated profiles.
 class BurleyProfile {
   public:
-    // `albedo` is what the profile integrates to, `distance` >= 0 the mean free path, both 1 per
+    // `albedo` is the integral of the profile, `distance` >= 0 the mean free path, both 1 per
     // channel; a channel whose distance is 0 scatters nothing.
     BurleyProfile(const Rgb& albedo, const Rgb& distance)
         : albedo(albedo), distance(0.2f * distance) {}

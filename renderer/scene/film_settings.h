@@ -21,7 +21,7 @@ struct FilmSettings {
     Vec2i Size() const { return cropMax - cropMin; }
 };
 
-// Overrides what the scene's Film directive says; from the command line.
+// Overrides of the scene's Film directive, from the command line.
 struct FilmOverrides {
     std::optional<Vec2i> resolution;
     std::optional<std::array<float, 4>> crop;        // x0, x1, y0, y1 in [0, 1]

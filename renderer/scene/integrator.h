@@ -29,7 +29,7 @@ std::string TextOf(const Integrator&);  // its parameters in words
 int MaxDepth(const Integrator&);
 bool CanBeGuided(const Integrator&);
 
-// Reads a scene's directive, with a warning where another kind stands in for what it names.
+// Reads a scene's directive, with a warning if it substitutes another kind.
 // `maxDepth`, unless negative, replaces that of the scene, which may be `isVolumetric`. Throws
 // Error for bad parameters.
 Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, Warnings&);

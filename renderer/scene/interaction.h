@@ -1,17 +1,17 @@
-// Describes what a ray has hit, and the point on that surface.
+// The surface point that a ray has hit.
 #pragma once
 
 #include "renderer/base/math.h"
 
 namespace lull {
 
-// What a material needs of a hit beyond position and normals; nothing else is computed. Bits.
+// Fields of a hit that a material needs beyond position and normals; others are not computed. Bits.
 enum SurfaceNeeds : uint8_t {
     kNeedsNothing = 0,
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
-    kNeedsFootprint = 8,          // what a camera ray's pixel covers: bump maps, noise, filters
+    kNeedsFootprint = 8,          // footprint of the camera ray's pixel: bump maps, noise, filters
     kIsInterface = 16,            // nothing at all: paths go straight on, as nothing scatters
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color
@@ -22,7 +22,7 @@ constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
     return SurfaceNeeds(uint8_t(a) | uint8_t(b));
 }
 
-// What the accelerator tells of a hit.
+// A hit as the accelerator returns it.
 struct Hit {
     float t;
     float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v
@@ -31,7 +31,7 @@ struct Hit {
     int instance;  // -1: the shape stands in the world itself
 };
 
-// What a shape of several primitives tells of a hit: the place on the ray and on the primitive.
+// A hit of a shape of several primitives: the place on the ray and on the primitive.
 struct ShapeHit {
     float t, u, v;
 };

@@ -1,4 +1,4 @@
-// Tables of kinds: what a scene file can name, and what makes it.
+// Tables of kinds: their names in scene files, and the functions that read them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What lights a scene: all kinds of light, and what each of them does.
+// All kinds of light, and the functions of each.
 //
 // A kind is a struct L, in a file of lights/, with
 //
@@ -51,7 +51,7 @@ inline bool IsVisible(const Light& light) {
     return area ? !area->isHidden : !IsDelta(TypeOf(light));
 }
 
-// Do what the kinds of type Area do; those of other types give none and are not found.
+// The functions of kinds of type Area; those of other types give none and are not found.
 inline Rgb Le(const Light& light, const Vec3f& n, const Vec3f& w, const Hit& hit) {
     return Visit(light, [&]<typename L>(const L& l) -> Rgb {
         if constexpr (L::kType == LightType::Area) return l.Le(n, w, hit);
@@ -65,7 +65,7 @@ inline float Pdf(const Light& light, const Vec3f& from, const Vec3f& p, const Ve
     });
 }
 
-// Do what the kinds of type Infinite do.
+// The functions of kinds of type Infinite.
 inline Rgb Le(const Light& light, const Vec3f& w) {
     return Visit(light, [&]<typename L>(const L& l) -> Rgb {
         if constexpr (L::kType == LightType::Infinite) return l.Le(w);

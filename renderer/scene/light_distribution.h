@@ -1,4 +1,4 @@
-// Chooses a light for a point: uniformly, by power, or by what each contributes near the point.
+// Chooses a light for a point: uniformly, by power, or by its contribution near the point.
 #pragma once
 
 #include <atomic>
@@ -60,8 +60,8 @@ class LightDistribution {
 
     // Returns the choice for p, which stays valid as long as this object. The table of a voxel is
     // made when first needed; it depends on the voxel alone, so that the order of threads cannot
-    // change it. contribution(light, p, u) estimates what a light contributes at p: luminance over
-    // density of its sample u, without visibility.
+    // change it. contribution(light, p, u) estimates the contribution of a light at p: luminance
+    // over density of its sample u, without visibility.
     template <typename Contribution>
     LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
         const size_t voxel = VoxelOf(p);

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What decides which lights reach a point, of a surface or a medium.
+// Inputs of light selection at a point of a surface or a medium.
 struct Receiver {
     Vec3f p = Vec3f::Zero();
     // Geometric, unit, on the visible side; zero if light from anywhere counts.

@@ -1,4 +1,4 @@
-// Owns the lights of a scene: what they emit, how they are sampled, and which is chosen.
+// Owns the lights of a scene: their emission, sampling and selection.
 #pragma once
 
 #include "renderer/base/color.h"
@@ -52,7 +52,7 @@ class LightTable {
         });
     }
 
-    // Starts to load what Choice(p) reads, so that the wait overlaps with other work.
+    // Prefetches the data of Choice(p), so that the wait overlaps with other work.
     void Prefetch(const Vec3f& p) const {
         if (distribution) distribution->Prefetch(p);
     }

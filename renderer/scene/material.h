@@ -15,7 +15,7 @@ class SubsurfaceProfile;
 // Owns the materials of a scene, one for each of Description::materials. Immutable once made.
 class MaterialTable {
   public:
-    // pbrt-v3's default matte substitutes what cannot be rendered. Errors are kept in the warnings.
+    // pbrt-v3's default matte replaces unsupported materials. Errors are kept in the warnings.
     // `textures` must outlive the table.
     MaterialTable(const Description&, const TextureTable& textures, Warnings&);
     MaterialTable();

@@ -1,4 +1,4 @@
-// Owns the participating media of a scene, and knows what lies on which side of which shape.
+// Owns the participating media of a scene, and which lies on either side of each shape.
 #pragma once
 
 #include <variant>

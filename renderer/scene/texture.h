@@ -14,7 +14,7 @@ namespace lull {
 // samples need, or as in pbrt-v3, from smaller copies where camera rays hit.
 enum class TextureFiltering { Bilinear, PbrtV3 };
 
-// What a texture may depend on. As in pbrt-v3, noise leaves out octaves finer than the
+// Inputs of a texture. As in pbrt-v3, noise leaves out octaves finer than the
 // distance between samples, which is 0, for full detail, if it is not known.
 struct TextureContext {
     Vec3f p;  // world
@@ -64,7 +64,7 @@ class TextureTable {
         return t.IsConstant() ? t.constant : EvaluateSpectrum(t.index, c);
     }
 
-    // Return what a texture reads beyond p, in terms of kNeedsUv and kNeedsFootprint.
+    // Return the inputs of a texture beyond p, in terms of kNeedsUv and kNeedsFootprint.
     SurfaceNeeds Needs(const FloatTexture&) const;
     SurfaceNeeds Needs(const SpectrumTexture&) const;
 
@@ -77,7 +77,7 @@ class TextureTable {
 
     std::vector<FloatTextureNode> floats;
     std::vector<SpectrumTextureNode> spectra;
-    // What each texture of the description became, by its index there.
+    // The texture of each index in the description.
     std::vector<FloatTexture> madeFloats;
     std::vector<SpectrumTexture> madeSpectra;
     size_t imageBytes = 0;

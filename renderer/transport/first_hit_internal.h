@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Returns the number of what was hit, as FirstHit has it.
+// Returns the number of the hit object, as in FirstHit.
 inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
     return 1 + uint32_t(found.instance < 0 ? found.shape
                                            : scene.shapes.worldShapeCount + found.instance);

@@ -1,4 +1,4 @@
-// What the loop over a path does at each vertex with a guide, and without.
+// Steps of the path loop at each vertex, with and without a guide.
 #pragma once
 
 #include "renderer/guiding/guide_record.h"
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Without a guide: what there is anyhow, at no cost.
+// Without a guide, at no cost.
 struct Unguided {
     void Enter(const SurfaceVertex&, bool) {}
     void Enter(const MediumVertex&) {}

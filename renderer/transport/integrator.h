@@ -15,7 +15,7 @@ class GuideRecord;
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
 
-// How paths are traced. What it points to must outlive it.
+// How paths are traced. Its pointees must outlive it.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
     // Lets a guide choose directions too, by Estimator::Combined. The mean is the same. In media,
@@ -24,7 +24,7 @@ struct PathOptions {
 
     Estimator estimator = Estimator::Combined;
     const Guide* guide = nullptr;
-    GuideRecord* record = nullptr;  // of the guide; gets what paths find. Null: nothing does
+    GuideRecord* record = nullptr;  // of the guide; receives the vertices of paths; or null
     float usual = 1;                // the luminance that a path usually brings, > 0, for the record
     // Lets the albedo of a FirstHit be that of what is seen times what mirrors and glass leave of
     // it, and its depth go on by the way behind them, as if they were windows.

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// The camera's ray, and what came of the dimensions before those of its path.
+// The camera's ray, and the results of the dimensions before those of its path.
 struct SampleStart {
     FilterSample filter;
     CameraSample camera;

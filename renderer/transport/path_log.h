@@ -1,4 +1,4 @@
-// Records what happens to one path, for people who want to know where a bright pixel comes from.
+// Records the vertices of one path, to find the source of a bright pixel.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// What happens where a path's ray ends.
+// The end of one ray of a path.
 struct PathStep {
     enum class Kind { Surface, Medium, Sky };
 
@@ -35,7 +35,7 @@ struct PathLog {
 };
 
 // Takes the same sample of a scene that has a PathIntegrator as RenderSample(), without a guide,
-// and tells what happens to its path.
+// and records its path.
 PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// What the loop over a path does between two vertices with participating media, and without.
+// Steps of the path loop between two vertices, with and without participating media.
 #pragma once
 
 #include "renderer/transport/path_state.h"
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// What a ray finds that looks for a light.
+// The result of a shadow ray.
 struct Sighting {
     Hit found;                // the light's surface, if it has one
     SurfaceInteraction at;    // there
@@ -131,7 +131,7 @@ class Media {
     void Leave(const SurfaceVertex& v, const Vec3f& wi) { medium = Towards(v, wi); }
 
   private:
-    // What a ray can meet beside area lights.
+    // Hits of a ray other than area lights.
     static constexpr int kNothing = -2, kNoLight = -1;
 
     // Return the medium on the side of a vertex that a direction points to.

@@ -46,7 +46,7 @@ class PathRecorder : public NoRecorder {
         step.throughput = path.beta;
         return step;
     }
-    // Adds what the path has found since the last time.
+    // Adds the radiance of the path since the last call.
     void Gain(const Path& path, Rgb PathStep::*part) {
         steps->back().*part += path.L - before;
         before = path.L;

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// What stays the same all along a path, and, in `media`, what lies about its next ray: a
+// Constants of a path and, in `media`, the medium about its next ray: a
 // policy (path_media.h).
 template <typename Media>
 struct PathContext {

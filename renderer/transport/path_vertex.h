@@ -25,7 +25,7 @@ struct SurfaceVertex {
     std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet set) const {
         return bsdf.Sample(hit.wo, u, set);
     }
-    // Returns what f is multiplied by.
+    // Returns the factor of f.
     float Cosine(const Vec3f& wi) const { return std::abs(wi.dot(hit.ns)); }
 
     // Returns the point where a ray of direction d, of any length, starts.
@@ -33,7 +33,7 @@ struct SurfaceVertex {
         return OffsetRayOrigin(hit.p, hit.pError, hit.n, d);
     }
     Ray SpawnRay(const Vec3f& d) const { return hit.SpawnRay(d); }
-    // Returns what radiance is scaled by when it is refracted from wo's side to the other.
+    // Returns the factor of radiance that is refracted from wo's side to the other.
     float EtaScale() const {
         const float eta2 = Sqr(bsdf.Eta());
         return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;

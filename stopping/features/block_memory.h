@@ -1,4 +1,4 @@
-// Remembers what the later windows of a block are made of.
+// Keeps the measurements of a block for later windows.
 #pragma once
 
 #include <optional>

@@ -26,7 +26,7 @@ struct BlockMeasures {
     const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
 };
 
-// Returns what MeasureBlock() reads.
+// Returns the inputs of MeasureBlock().
 ViewNeed NeedOf(const ModelSettings& settings);
 
 // Measures what the settings ask for; for drops, which BlockMemory completes, the entropies and the

@@ -71,7 +71,7 @@ enum class Spacing { Fixed, Geometric };
 std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
 Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument
 
-// What a model was trained on and how its answers count; the defaults are the paper's.
+// Inputs and votes of a model; the defaults are the paper's.
 struct ModelSettings {
     int k = 8;    // steps in a window
     int n = 40;   // spp between them; with geometric spacing between those that are looked at

@@ -1,4 +1,4 @@
-// Reads what a network is given from recordings, where renders measure it (model_inputs.h).
+// Reads the inputs of a network from block histories; renders measure them (model_inputs.h).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What is said of numpy arrays that hold pictures.
+// Messages on numpy arrays of images.
 #pragma once
 
 #include <pybind11/numpy.h>

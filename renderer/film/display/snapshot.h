@@ -1,4 +1,4 @@
-// The latest state of an image and what of it has not been sent yet.
+// The latest state of an image, and its parts that have not been sent yet.
 #pragma once
 
 #include <mutex>

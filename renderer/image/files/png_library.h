@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// What libpng says when it gives up.
+// The last error message of libpng.
 struct PngError {
     char message[128] = "";
 };

@@ -1,4 +1,4 @@
-// Lets people choose among what a glTF file holds.
+// Selects entries of a glTF file by name or number.
 #pragma once
 
 #include <string>

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Removes from a file's JSON what its reader does not understand: the indices of primitives
+// Removes unsupported parts from a file's JSON: the indices of primitives
 // compressed by Draco, which have no data, and buffers that only stand for data compressed by
 // meshopt. Returns whether anything has changed.
 bool HideCompressed(nlohmann::json* root);

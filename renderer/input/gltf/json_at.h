@@ -144,7 +144,7 @@ struct JsonAt {
         extension.Object();
         f(extension);
     }
-    // Calls f with what the object has for lull alone.
+    // Calls f with the extras of the object for lull.
     template <typename F>
     void Extras(const F& f) const {
         if (!Has("extras") || !value.at("extras").contains("lull")) return;

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What a material means for a shape.
+// Properties of a shape that its material defines.
 struct GltfMaterial {
     int index = -1;                  // into Description::materials
     std::optional<Entity> emission;  // an area light

@@ -27,7 +27,7 @@ GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::str
 GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
                               const std::string& path);
 
-// What a texture takes from an image: its colours, sRGB-encoded or not, or one channel as it
+// The part of an image that a texture reads: its colours, sRGB-encoded or not, or one channel as it
 // is.
 enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
 

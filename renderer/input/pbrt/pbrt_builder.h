@@ -24,7 +24,7 @@ class PbrtBuilder {
 
     PbrtBuilder(const std::string& file, Warnings& warnings);
 
-    // Each reads what follows its name and acts on it; `loc` is the place of that name.
+    // Each reads the arguments of its directive and applies it; `loc` is the place of its name.
     void Accelerator();
     void ActiveTransform();
     void AreaLightSource();

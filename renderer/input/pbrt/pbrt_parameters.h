@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// What a parameter's meaning depends on: the textures named so far, spectrum files.
+// Context of a parameter: the textures named so far, spectrum files.
 struct ParameterContext {
     ScopedNames floatTextures, spectrumTextures;
     std::string directory;               // where the names of spectrum files start

@@ -38,7 +38,7 @@ class ScopedNames {
 // Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// What AttributeBegin saves and AttributeEnd restores.
+// State that AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
     TransformPair ctm;
     int active = kAllTimes;

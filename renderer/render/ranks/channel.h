@@ -1,4 +1,4 @@
-// Carries what the ranks of a render say to each other (peers.h).
+// Transports the messages of the ranks of a render (peers.h).
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class RankChannel {
   private:
     using Clock = std::chrono::steady_clock;
 
-    // What is known of another rank.
+    // State of another rank.
     struct Life {
         Clock::time_point heard = Clock::now();
         std::optional<Clock::time_point> asked;  // since it was heard

@@ -14,7 +14,7 @@ std::vector<int> EvenDeal(int ranks);
 // evenly spread. Speeds are > 0, in any unit.
 std::vector<int> DealBySpeed(const std::vector<double>& speeds);
 
-// Notes what ranks have done since the tiles were dealt out.
+// Records the work of ranks since the tiles were distributed.
 class RankSpeeds {
   public:
     explicit RankSpeeds(int ranks) : efforts(size_t(ranks)) {}

@@ -1,4 +1,4 @@
-// Puts what ranks say to each other (peers.h) into bytes.
+// Serialises the messages of ranks (peers.h).
 #pragma once
 
 #include "renderer/film/layers.h"
@@ -12,7 +12,7 @@ enum class RankWord : uint8_t {
     // From rank 0.
     Start,    // StartMessage; then come the sums of tiles that the rank did not own
     Begin,    // all of them have been sent
-    Guide,    // what was learned, before Start
+    Guide,    // the learned state, before Start
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
@@ -45,7 +45,7 @@ struct AnswerMessage {
     ViewNeed need;  // after its next pass
 };
 
-// What a rank has of a block after a pass.
+// The part of a block that a rank has rendered, after a pass.
 struct PartMessage {
     int block;
     int64_t samples;     // taken since the last part

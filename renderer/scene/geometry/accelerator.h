@@ -1,4 +1,4 @@
-// Finds what a ray hits. With accelerator_internal.h the only place that knows Embree.
+// Intersects rays with the scene. With accelerator_internal.h the only place that knows Embree.
 #pragma once
 
 #include <memory>

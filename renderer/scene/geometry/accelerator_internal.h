@@ -23,14 +23,14 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-// What Embree's callbacks know of a shape.
+// Data of a shape for Embree's callbacks.
 struct ShapeUser {
     const ShapeTable* shapes;
     const TextureTable* textures;
     int shape;
 };
 
-// What the callbacks of a moving instance know.
+// Data of a moving instance for Embree's callbacks.
 struct MovingUser {
     const ShapeTable* shapes;
     int instance;

@@ -1,11 +1,11 @@
-// What rays hit: all kinds of shape, and what each of them does.
+// All kinds of shape, and the functions of each.
 //
 // A kind is a struct S, in a file of shapes/, that consists of one or more primitives:
 //
 //     uint32_t PrimitiveCount() const
 //     Bounds3f WorldBounds() const
 //     void Interact(const S&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*)
-//         fills in what is needed of the hit, all but wo, material and light.
+//         fills in the needed fields of the hit, except wo, material and light.
 //
 // World space is that of the object where a shape belongs to one, and so is the ray; meshes do not
 // read it. Triangles are intersected by Embree, other kinds by
@@ -19,7 +19,7 @@
 //     std::optional<ShapeHit> Intersect(const S&, uint32_t primitive, const Ray&)
 //     Bounds3f WorldBounds(uint32_t primitive) const.
 //
-// What emits light is one primitive: E is EmittingTriangle or a kind of one primitive, whose
+// An emitter is one primitive: E is EmittingTriangle or a kind of one primitive, whose
 // transform may move and turn it, but not stretch it:
 //
 //     std::optional<ShapeSample> Sample(const E&, const Vec3f& from, const Vec2f& u)
@@ -43,10 +43,10 @@ namespace lull {
 
 using Geometry = std::variant<Mesh, Sphere, Disk, Revolved, Curves>;
 
-// What emits light. Shapes belong to the shape table, and outlive this.
+// An emitter. Shapes belong to the shape table, and outlive this.
 using Emitter = std::variant<EmittingTriangle, const Sphere*, const Disk*, const Revolved*>;
 
-// Returns what emits the light of a primitive. The kind of shape must be one that can.
+// Returns the emitter of a primitive. The kind of shape must be one that can.
 Emitter EmitterOf(const Geometry&, uint32_t primitive);
 
 // Calls f with the E inside; see Visit().

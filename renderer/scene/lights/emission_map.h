@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// What all triangles of an emitting mesh share. The shape and textures are a scene's.
+// Shared data of the triangles of an emitting mesh. The shape and textures are a scene's.
 struct EmissionMap {
     const TextureTable* textures;
     const Shape* shape;

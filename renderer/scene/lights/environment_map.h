@@ -39,7 +39,7 @@ class EnvironmentMap {
     // Starts to load them.
     void Prefetch(int i, int j) const;
 
-    // Returns what the density of a cell is proportional to, apart from its solid angle. Dark cells
+    // Returns the density of a cell up to a constant, without its solid angle. Dark cells
     // keep some: directions that scatter light but are never sampled, which shading normals cause,
     // need it.
     float CellWeight(const std::array<float, 4>& corners, int u, int v) const;

@@ -1,4 +1,4 @@
-// What the makers of lights read.
+// Inputs of the functions that read lights.
 #pragma once
 
 #include "renderer/input/description.h"

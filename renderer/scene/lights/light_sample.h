@@ -1,4 +1,4 @@
-// What all kinds of light share: what sets them apart, and light as their sampling proposes it.
+// Types of all kinds of light: their traits, and samples of their light.
 #pragma once
 
 #include "renderer/base/math.h"

@@ -1,23 +1,23 @@
-// What a material is, and what all kinds of it share.
+// The interface of materials, and code that all kinds share.
 //
 // A kind is a struct K, in a file of this folder, with
 //
 //     explicit K(const MaterialReader&)
 //         reads the parameters;
 //     MaterialTraits Traits(const MaterialReader&) const
-//         returns what its lobes depend on, and how many there can be;
+//         returns the inputs of its lobes, and their maximum number;
 //     void AddLobes(const MaterialInputs&, Bsdf*) const
 //         adds the lobes at a hit, and sets eta where that is not 1,
 //
 // and, where they apply,
 //
 //     std::string Problem(const MaterialReader&) const
-//         returns what is wrong with the parameters or not modelled, "" if nothing;
+//         returns the invalid or unsupported parameters as a message, "" if none;
 //     std::optional<SubsurfaceProfile> Profile(const MaterialInputs&) const
 //         returns how light that the lobes transmit spreads below the surface; nothing where it
 //         goes on unscattered. The needs have kScattersBelow;
 //     SurfaceTilt Tilt(const MaterialReader&) const
-//         reads what tilts the shading normal, where that is not the parameter "bumpmap" alone.
+//         reads the maps of the shading normal, unless only "bumpmap" is used.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ namespace lull {
 
 struct Material;
 
-// What is known of a material before any hit.
+// Properties of a material that are independent of the hit.
 struct MaterialTraits {
     SurfaceNeeds needs = kNeedsNothing;  // of a hit, for the lobes
     int mostLobes = 0;                   // that AddLobes can add
@@ -45,7 +45,7 @@ struct MaterialTraits {
     }
 };
 
-// What tilts the shading normals of a material.
+// Maps of the shading normals of a material.
 struct SurfaceTilt {
     std::optional<FloatTexture> bump{};
     std::optional<NormalMap> normalMap{};
@@ -105,10 +105,10 @@ struct MaterialReader {
 // beyond these, and is not all reflected, would count up to 1e4 times.
 inline bool IsIndexOfRefraction(float index) { return index >= 0.01f && index <= 100; }
 
-// Returns what is wrong with an index of refraction that is the same everywhere, "" if nothing.
+// Returns the error of a constant index of refraction as a message, "" if none.
 std::string ProblemOfIndex(const MaterialReader&, const FloatTexture& index);
 
-// What lobes are made from at a hit point. `materials` is the whole table, for mixtures.
+// Inputs of lobes at a hit point. `materials` is the whole table, for mixtures.
 // `hit` is null if the lobes of a constant material are made once and for all.
 struct MaterialInputs {
     const TextureTable& textures;
@@ -132,7 +132,7 @@ inline bool IsAlwaysBlack(const SpectrumTexture& t) {
     return t.IsConstant() && (t.constant <= 0).all();
 }
 
-// What a mixture asks of the operand-th material of a table: its traits, what tilts it, and its
+// Properties of the operand-th material of a mixture: its traits, normal maps, and its
 // lobes. In material.cpp, the only file that knows every kind.
 const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material>);
 const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material>);

@@ -1,4 +1,4 @@
-// Represents a diffuse base under a glossy coat, which receives what the coat does not reflect.
+// A diffuse base under a glossy coat, which receives the light that the coat does not reflect.
 #pragma once
 
 #include "renderer/scene/materials/roughness.h"

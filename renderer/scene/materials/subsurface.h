@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// What both kinds share: the surface, below which transmitted light continues.
+// The surface of both kinds, below which transmitted light continues.
 struct TranslucentSolid {
     SpectrumTexture kr, kt;
     Roughness roughness;

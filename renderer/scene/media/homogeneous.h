@@ -22,7 +22,7 @@ struct HomogeneousMedium {
     // channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
     MediumSample Sample(const Ray& ray, Sampler& sampler) const {
         const float length = ray.tMax;
-        // What only absorbs takes its share of every path, instead of ending some.
+        // A purely absorbing medium attenuates every path, instead of ending some.
         if (IsBlack(sigmaS)) return {.weight = Transmittance(length)};
         const int channel = std::min(int(sampler.Get1D() * 3), 2);
         const float depth = -std::log1p(-sampler.Get1D());

@@ -1,4 +1,4 @@
-// What happens to a ray in a medium.
+// Interaction of a ray with a medium.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace lull {
 struct MediumSample {
     std::optional<float> t =
         {};                    // where the ray scatters, in units of its direction; none: it passes
-    Rgb weight = Rgb::Ones();  // what the path's throughput is multiplied by, either way
+    Rgb weight = Rgb::Ones();  // factor of the path's throughput, either way
 };
 
 }  // namespace lull

@@ -37,7 +37,7 @@ struct TextureImage {
     bool IsGrey() const;
 };
 
-// What to keep of an image. Luminance asks for one channel: grey images as they are, others by
+// Channels to keep of an image. Luminance asks for one channel: grey images as they are, others by
 // their luminance; as in pbrt-v3 that is the luminance of the *encoded* colours, linearised
 // afterwards. A single channel of a grey image is its grey; Alpha is 1 if there is none, and is
 // never linearised.

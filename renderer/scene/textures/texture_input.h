@@ -1,4 +1,4 @@
-// Bundles what the makers of textures read and use.
+// Inputs of the functions that read textures.
 #pragma once
 
 #include <variant>

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What sampling an emitting triangle reads, in one place.
+// Data for sampling an emitting triangle, in one place.
 struct EmittingTriangle {
     Vec3f p0, p1, p2, n;
     float areaPdf;  // 1 / area
@@ -30,7 +30,7 @@ struct Mesh {
     std::vector<Vec3f> p;
     std::vector<Vec3f> n;   // empty or one a vertex; need not be unit
     std::vector<Vec2f> uv;  // empty or one a vertex
-    // What only some materials read, each empty or one per vertex: the second texture coordinates,
+    // Read by some materials only, each empty or one per vertex: the second texture coordinates,
     // colours with alpha, and tangents along u, whose fourth number is the side of the other
     // tangent: (n x tangent) times it.
     std::vector<Vec2f> uv1;

@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// What spheres and disks have in common: a place in world space (or in their object's).
+// Common part of spheres and disks: a place in world space (or in their object's).
 struct QuadricPlacement {
     Mat4d worldFromShape = Mat4d::Identity(), shapeFromWorld = Mat4d::Identity();
     bool reverseOrientation = false;

@@ -1,4 +1,4 @@
-// Shares what sphere.cpp and disk.cpp both need.
+// Shared code of sphere.cpp and disk.cpp.
 #pragma once
 
 #include <utility>

@@ -1,4 +1,4 @@
-// What light sampling learns of an emitting shape, and how densities by area become those by solid
+// A sampled point of an emitting shape, and conversion of densities by area to those by solid
 // angle.
 #pragma once
 
