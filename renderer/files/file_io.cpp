@@ -160,7 +160,7 @@ Target FindTarget(const std::string& path) {
     if (!fs::exists(parent))
         Fail(path, fmt::format("the directory \"{}\" does not exist", directory.string()));
     if (!fs::is_directory(parent))
-        Fail(path, fmt::format("\"{}\" is no directory", directory.string()));
+        Fail(path, fmt::format("\"{}\" is not a directory", directory.string()));
     return target;
 }
 

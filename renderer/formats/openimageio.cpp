@@ -27,8 +27,8 @@ class OpenImageIoFile final : public lull::ImageFile {
         input = OIIO::ImageInput::open(path, &config);
         if (!input) throw std::runtime_error(OIIO::geterror());
         const OIIO::ImageSpec& spec = input->spec();
-        if (spec.deep) throw std::runtime_error("deep images are not modelled");
-        if (spec.depth > 1) throw std::runtime_error("volumes are not modelled");
+        if (spec.deep) throw std::runtime_error("deep images are not supported");
+        if (spec.depth > 1) throw std::runtime_error("volumes are not supported");
         shape = {spec.width, spec.height, lull::CountChannels(spec.nchannels, spec.alpha_channel),
                  spec.format == OIIO::TypeDesc::UINT8  ? TexelType::Byte
                  : spec.format == OIIO::TypeDesc::HALF ? TexelType::Half

@@ -56,7 +56,7 @@ struct FoundFile {
         const auto status = std::filesystem::status(path, error);
         if (!std::filesystem::exists(status)) FailToRead(path, "no such file");
         if (std::filesystem::is_directory(status)) FailToRead(path, "it is a directory");
-        if (!std::filesystem::is_regular_file(status)) FailToRead(path, "it is no regular file");
+        if (!std::filesystem::is_regular_file(status)) FailToRead(path, "it is not a regular file");
         size = size_t(std::filesystem::file_size(path, error));
         std::ifstream in(path, std::ios::binary);
         if (error || !in) FailToRead(path, "it cannot be opened");

@@ -106,7 +106,7 @@ void CheckFormat(const Hdf5Group& root) {
         throw Error(
             "it was written by an older lull; go on with that one, or remove the file to start "
             "again");
-    if (format != kFormat) throw Error("it is no checkpoint of this version of the program");
+    if (format != kFormat) throw Error("it is not a checkpoint of this version of lull");
 }
 
 std::vector<std::string> Lines(const RenderIdentity& identity) {

@@ -36,8 +36,8 @@ int TakeTwoDigits(std::string_view* text, int limit) {
 
 double ParseDuration(const std::string& text) {
     const auto refuse = [&] {
-        throw std::invalid_argument(fmt::format(
-            "'{}' is no time; 10 (seconds), 500ms, 90s, 10m, 2h or 1h30m are, for example", text));
+        throw std::invalid_argument(
+            fmt::format("invalid duration '{}'; use e.g. 90s, 10m or 1h30m", text));
     };
     double seconds = 0, largerUnit = INFINITY;
     for (std::string_view left = text; !left.empty();) {
@@ -69,8 +69,7 @@ std::time_t NextTimeOfDay(const std::string& text, std::time_t now) {
         second = TakeTwoDigits(&left, 60);
     }
     if (minute < 0 || second < 0 || !left.empty())
-        throw std::invalid_argument(
-            fmt::format("'{}' is no time of day; 09:00 is, for example", text));
+        throw std::invalid_argument(fmt::format("invalid time of day '{}'; use e.g. 09:00", text));
 
     std::tm today = {};
     localtime_r(&now, &today);

@@ -36,7 +36,7 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
                               Warnings& warnings) {
     const Entity& entity = description.film;
     if (entity.name != "image")
-        throw Error(entity.loc, fmt::format("Film \"{}\" is not modelled; only \"image\" is",
+        throw Error(entity.loc, fmt::format("Film \"{}\" is not supported; only \"image\" is",
                                             Printable(entity.name)));
     const Parameters& params = entity.parameters;
     FilmSettings film;

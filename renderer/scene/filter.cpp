@@ -46,7 +46,7 @@ AxisFunction MakeAxisFunction(const Entity& entity) {
         if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
         return [=](float x, float) { return Sinc(x) * Sinc(x / tau); };
     }
-    throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not modelled; box, gaussian, "
+    throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not supported; box, gaussian, "
                                         "mitchell, sinc and triangle are",
                                         Printable(entity.name)));
 }

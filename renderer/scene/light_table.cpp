@@ -49,7 +49,7 @@ std::optional<Light> MakeLight(const LightReader& in) {
     const auto* kind = FindKind(kLights, entity.name);
     if (!kind) {
         in.warnings.Substitute(entity.loc,
-                               fmt::format("LightSource \"{}\" is not modelled; {} are",
+                               fmt::format("LightSource \"{}\" is not supported; {} are",
                                            entity.name, NamesOf(kLights)),
                                "it is left out");
         return {};
@@ -75,7 +75,7 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
 
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
     if (entity.name != "diffuse" && entity.name != "area")
-        throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not modelled; only "
+        throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not supported; only "
                                             "\"diffuse\" is",
                                             entity.name));
     const Parameters& params = entity.parameters;

@@ -146,7 +146,7 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
 Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
-    std::string problem = "material \"" + entity.name + "\" is not modelled";
+    std::string problem = "material \"" + entity.name + "\" is not supported";
     if (const auto* named = FindKind(kMaterials, entity.name)) {
         const MaterialKind kind = named->make(in);
         problem = ProblemOf(kind, in);

@@ -113,7 +113,7 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
     else if (entity.name == "heterogeneous")
         made = MakeGrid(entity, sigmaA, sigmaS, g);
     else
-        throw Error(entity.loc, fmt::format("medium \"{}\": kind \"{}\" is not modelled; "
+        throw Error(entity.loc, fmt::format("medium \"{}\": kind \"{}\" is not supported; "
                                             "homogeneous and heterogeneous are",
                                             Printable(entity.mediumName), Printable(entity.name)));
     params.ReportUnused("medium \"" + Printable(entity.mediumName) + "\"", warnings);

@@ -93,7 +93,7 @@ constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
     {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},
 };
 
-// Makes one texture, or what stands for one of a kind that is not modelled.
+// Makes one texture, or what stands for one of a kind that is not supported.
 template <typename Node, size_t N>
 TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
                                         const TextureInput& input, Nodes<Node>* nodes) {
@@ -104,7 +104,7 @@ TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
                                        input.warnings);
         return handle;
     }
-    const std::string what = fmt::format("{} texture \"{}\": kind \"{}\" is not modelled",
+    const std::string what = fmt::format("{} texture \"{}\": kind \"{}\" is not supported",
                                          entity.isSpectrum ? "spectrum" : "float",
                                          Printable(entity.textureName), Printable(entity.name));
     input.warnings.Substitute(entity.loc, what, "1 stands in");

@@ -117,7 +117,7 @@ void CheckSettings(const ModelSettings& s) {
     check("vote_spacing", s.voteSpacing, 0, 1000000);
     const int side = int(std::lround(std::sqrt(s.m)));
     if (side * side != s.m)
-        throw std::invalid_argument("m = " + std::to_string(s.m) + " is no square number");
+        throw std::invalid_argument("m = " + std::to_string(s.m) + " is not a square number");
     auto checkReal = [](const char* name, double value, double least, double most) {
         if (!(value >= least && value <= most))
             throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) +

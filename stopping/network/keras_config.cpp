@@ -48,7 +48,7 @@ Activation ParseActivation(const Json& config, const char* key, const char* stan
         return activation;
     }
     Refuse(layer, std::string(key) + " " + value.dump() +
-                      " is not modelled; linear, sigmoid, hard_sigmoid and tanh are");
+                      " is not supported; linear, sigmoid, hard_sigmoid and tanh are");
 }
 
 KerasLayer ParseLayer(const Json& config, bool isLstm, const std::string& version) {
@@ -70,7 +70,7 @@ KerasLayer ParseLayer(const Json& config, bool isLstm, const std::string& versio
         ParseActivation(config, "recurrent_activation", "", layer.name, version);
     for (const char* option : {"go_backwards", "stateful", "return_state", "time_major"})
         if (config.value(option, false))
-            Refuse(layer.name, std::string(option) + " is not modelled");
+            Refuse(layer.name, std::string(option) + " is not supported");
     return layer;
 }
 
@@ -90,7 +90,7 @@ void ParseShape(const Json& config, KerasModel* model) {
 KerasModel Parse(const Json& json, const std::string& version) {
     if (json.at("class_name") != "Sequential")
         throw std::runtime_error("a model of class " + json.at("class_name").dump() +
-                                 " is not modelled; Sequential is");
+                                 " is not supported; Sequential is");
     // Before 2.2.3 the layers were the whole of the model's config.
     const Json& config = json.at("config");
     const Json& layers = config.is_array() ? config : config.at("layers");
@@ -113,9 +113,9 @@ KerasModel Parse(const Json& json, const std::string& version) {
             continue;
         }
         if (kind != "LSTM" && kind != "Dense")
-            Refuse(name, kind + " is not modelled; LSTM, Dropout, Flatten and Dense are");
+            Refuse(name, kind + " is not supported; LSTM, Dropout, Flatten and Dense are");
         if ((kind == "LSTM") != givesSequence)
-            Refuse(name, givesSequence ? "Dense on every time step is not modelled"
+            Refuse(name, givesSequence ? "Dense on every time step is not supported"
                                        : "an LSTM layer needs one with return_sequences before it");
         model.layers.push_back(ParseLayer(config, kind == "LSTM", version));
         if (kind == "LSTM") givesSequence = config.value("return_sequences", false);

@@ -37,8 +37,9 @@ ThresholdsRow ParseRow(const std::string& line) {
         int spp = 0;
         const auto [rest, error] = std::from_chars(begin, end, spp);
         if (error != std::errc() || rest != end || spp < 0)
-            throw std::invalid_argument("'" + Printable(fields[i]) +
-                                        "' is no threshold; a whole number of samples is needed");
+            throw std::invalid_argument(
+                "'" + Printable(fields[i]) +
+                "' is not a threshold; a whole number of samples is needed");
         row.spp.push_back(spp);
     }
     if (row.spp.empty())

@@ -164,7 +164,7 @@ TEST(BadInput, DirectoryAsScene) {
 
 TEST(BadInput, SceneThatIsNoText) {
     ExpectBadScene(std::string("\x7f\x45\x4c\x46\0\1\2\3", 8),
-                   {"'scene.pbrt' is no pbrt scene file: it is a binary file"});
+                   {"'scene.pbrt' is not a pbrt scene file: it is a binary file"});
 }
 
 TEST(BadInput, SceneWithoutAWorld) {

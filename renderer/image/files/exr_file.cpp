@@ -103,10 +103,10 @@ ExrFile::ExrFile(std::span<const std::byte> bytes) try {
     parts = std::make_unique<Parts>(bytes);
     const Imf::Header& header = parts->Header();
     if (header.hasType() && Imf::isDeepData(header.type()))
-        throw std::runtime_error("deep images are not modelled");
+        throw std::runtime_error("deep images are not supported");
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
         if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
-            throw std::runtime_error(std::string("subsampled channels are not modelled (") +
+            throw std::runtime_error(std::string("subsampled channels are not supported (") +
                                      c.name() + ")");
         channels.push_back(c.name());
     }

@@ -145,7 +145,7 @@ std::vector<uint32_t> ReadIndices(const GltfDocument& document, int index, size_
         (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt))
         throw Error(loc, "has to hold unsigned integers, as indices do");
     if (accessor.bufferView < 0 || accessor.sparse.isSparse)
-        throw Error(loc, "holds indices without a bufferView, or sparse ones: not modelled");
+        throw Error(loc, "holds indices without a bufferView, or sparse ones: not supported");
     const Elements elements = Find(document, loc, accessor.bufferView, accessor.byteOffset,
                                    SizeOf(type), accessor.count, false);
     std::vector<uint32_t> indices(accessor.count);

@@ -90,13 +90,13 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
     for (size_t i = 0; i < required.size(); ++i)
         if (!IsModelled(required[i]))
             throw Error(place("extensionsRequired", i), "extension \"" + Printable(required[i]) +
-                                                            "\" is required, but not modelled");
+                                                            "\" is required, but not supported");
     if (!root.contains("extensionsUsed")) return;
     const auto used = root.at("extensionsUsed").get<std::vector<std::string>>();
     for (size_t i = 0; i < used.size(); ++i)
         if (!IsModelled(used[i]))
             warnings.Add(place("extensionsUsed", i),
-                         "extension \"" + Printable(used[i]) + "\" is not modelled and left out");
+                         "extension \"" + Printable(used[i]) + "\" is not supported and left out");
 }
 
 // Reads the files that buffers lie in.

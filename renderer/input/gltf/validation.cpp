@@ -290,7 +290,7 @@ void CheckVersion(const JsonAt& root) {
     if (!root.value.contains("asset") || !root.value.at("asset").is_object() ||
         !root.value.at("asset").contains("version") ||
         !root.value.at("asset").at("version").is_string())
-        root.Fail("lacks \"asset\" with a \"version\": it is no glTF file");
+        root.Fail("lacks \"asset\" with a \"version\": it is not a glTF file");
     const std::string version = root.value.at("asset").at("version");
     if (!version.starts_with("2."))
         root.Fail("is of glTF version " + Printable(version) + "; 2.0 is modelled");
@@ -334,10 +334,10 @@ json ParseGltfJson(const std::string& file, std::string_view text) {
     };
     try {
         json root = json::parse(text, checkDepth);
-        if (!root.is_object()) throw Error(file + ": is no JSON object");
+        if (!root.is_object()) throw Error(file + ": is not a JSON object");
         return root;
     } catch (const json::exception& e) {
-        throw Error(fmt::format("{}: is no valid JSON: {}", file, Printable(e.what(), 200)));
+        throw Error(fmt::format("{}: is not valid JSON: {}", file, Printable(e.what(), 200)));
     }
 }
 

@@ -92,7 +92,8 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     std::string_view text = source.contents.View();
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte-order mark
     if (const std::string format = ForeignFormat(text); !format.empty())
-        throw Error(loc, "'" + Printable(file, 4096) + "' is no pbrt scene file: it is " + format);
+        throw Error(loc,
+                    "'" + Printable(file, 4096) + "' is not a pbrt scene file: it is " + format);
     source.pos = text.data();
     source.end = text.data() + text.size();
     sources.push_back(std::move(source));
@@ -151,7 +152,7 @@ Token PbrtLexer::Take() {
         for (const char c : word)
             if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
                 throw Error(token.loc, "control character in '" + Printable(word) +
-                                           "': this is no pbrt scene file");
+                                           "': this is not a pbrt scene file");
         s.pos += word.size();
         token.text = word;
     }

@@ -54,7 +54,7 @@ Mat4d ColumnsMatrix(std::span<const double, 16> numbers, const FileLoc& loc) {
     const Mat4d m = Eigen::Map<const Mat4d>(numbers.data());
     if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
         throw Error(loc,
-                    "the matrix is a projection, which is not modelled: its 4th, 8th, 12th and "
+                    "the matrix is a projection, which is not supported: its 4th, 8th, 12th and "
                     "16th numbers must be 0 0 0 1");
     const Eigen::Matrix3d linear = m.topLeftCorner<3, 3>();
     const double lengths =

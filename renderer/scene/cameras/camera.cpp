@@ -112,9 +112,10 @@ Projection ReadProjection(const Entity& entity) {
     if (entity.name == "orthographic") return Projection::Orthographic;
     if (entity.name == "environment") return Projection::Environment;
     if (entity.name == "realistic") return Projection::Realistic;
-    throw Error(entity.loc, fmt::format("Camera \"{}\" is not modelled; perspective, orthographic, "
-                                        "environment and realistic are",
-                                        Printable(entity.name)));
+    throw Error(entity.loc,
+                fmt::format("Camera \"{}\" is not supported; perspective, orthographic, "
+                            "environment and realistic are",
+                            Printable(entity.name)));
 }
 
 LensSystem ReadLenses(const Description& description, const FilmSettings& film,

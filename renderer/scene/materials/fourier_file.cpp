@@ -57,7 +57,7 @@ FourierTable LoadFourierTable(const std::string& path) {
     in.Take<int32_t>(4);
     if (flags != 1 || bases != 1 || (channels != 1 && channels != 3))
         in.Fail(
-            "uses extrapolation, textures or other than 1 or 3 channels, which are not modelled");
+            "uses extrapolation, textures or other than 1 or 3 channels, which are not supported");
     constexpr int kMaxNodes = 1 << 14;
     if (nodes < 2 || nodes > kMaxNodes || coefficients < 0)
         in.Fail(fmt::format("has {} nodes and {} coefficients", nodes, coefficients));

@@ -15,9 +15,9 @@ std::string Mix::Problem(const MaterialReader& in) const {
                    "\"";
     }
     const SurfaceNeeds needs = Traits(in).needs;
-    if (needs & kIsInterface) return "a mix of a material and \"none\" is not modelled";
+    if (needs & kIsInterface) return "a mix of a material and \"none\" is not supported";
     if (needs & kScattersBelow)
-        return "a mix with a material that scatters below its surface is not modelled; light that "
+        return "a mix with a material that scatters below its surface is not supported; light that "
                "goes in does not come out in pbrt-v3 either";
     return "";
 }

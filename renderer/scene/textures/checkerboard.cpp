@@ -12,7 +12,7 @@ Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input) {
                           GetTexture<T>(input, "tex2", 0)};
     if (dimension != 2 && dimension != 3) {
         input.warnings.Substitute(
-            entity.loc, fmt::format("{}-dimensional checkerboard is not modelled", dimension),
+            entity.loc, fmt::format("{}-dimensional checkerboard is not supported", dimension),
             "1 stands in");
         return ConstantTexture<T>(1);
     }

@@ -35,7 +35,7 @@ SingleAnswer ParseAnswer(const std::string& line) {
     if (!numbers)
         throw std::invalid_argument(
             "'" + Printable(line) +
-            "' is no answer; three whole numbers are needed, as in 5,640,1");
+            "' is not an answer; three whole numbers are needed, as in 5,640,1");
     const auto [block, spp, seen] = *numbers;
     if (block < 0 || block >= kMostBlocks)
         throw std::invalid_argument("there can be no block " + std::to_string(block) +

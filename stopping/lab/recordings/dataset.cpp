@@ -37,7 +37,7 @@ int BlockNumber(const std::string& name) {
     int number = -1;
     if (name.starts_with("block_"))
         std::from_chars(name.data() + 6, name.data() + name.size(), number);
-    if (number < 0) throw std::runtime_error("the group '" + name + "' is no block");
+    if (number < 0) throw std::runtime_error("the group '" + name + "' is not a block");
     return number;
 }
 
@@ -61,7 +61,7 @@ void WriteBlock(const BlockRecording& block, Hdf5Group group) {
 BlockRecording ReadBlock(const Hdf5Group& group) {
     BlockRecording block;
     const std::vector<int64_t> shape = group.Shape("spp");
-    if (shape.size() != 1) throw std::runtime_error("'spp' is no list");
+    if (shape.size() != 1) throw std::runtime_error("'spp' is not a list");
     const std::vector<int32_t> spp = group.Array<int32_t>("spp", shape);
     block.spp.assign(spp.begin(), spp.end());
     if (std::ranges::adjacent_find(spp, std::greater_equal<>()) != spp.end())
@@ -117,7 +117,7 @@ ViewpointRecording ReadViewpoint(const std::string& name, const Hdf5Group& group
 std::vector<ViewpointRecording> ReadDataset(const std::string& path) try {
     const Hdf5Group root = Hdf5Group::Open(path);
     if (!root.HasAttribute("format") || root.String("format") != kFormat)
-        throw std::runtime_error("it is no data set that this program has written");
+        throw std::runtime_error("it is not a data set of lull");
     std::vector<ViewpointRecording> viewpoints;
     for (const std::string& name : root.Groups())
         viewpoints.push_back(ReadViewpoint(name, root.Group(name)));

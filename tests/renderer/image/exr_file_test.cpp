@@ -90,7 +90,7 @@ TEST(ExrFile, RefusesDeepAndSubsampledData) {
     file.header.channels().insert("RY", Imf::Channel(Imf::HALF, 7, 5));
     { Imf::OutputFile(file.path.c_str(), file.header); }
     const std::string subsampled = ErrorOf([&] { ReadImage(file.path); });
-    EXPECT_TRUE(Contains(subsampled, "a.exr\": subsampled channels are not modelled (RY)"))
+    EXPECT_TRUE(Contains(subsampled, "a.exr\": subsampled channels are not supported (RY)"))
         << subsampled;
 
     file.header.channels() = Imf::ChannelList();
@@ -99,7 +99,7 @@ TEST(ExrFile, RefusesDeepAndSubsampledData) {
     file.header.compression() = Imf::ZIPS_COMPRESSION;
     { Imf::DeepScanLineOutputFile(file.path.c_str(), file.header); }
     const std::string deep = ErrorOf([&] { ReadExr(file.path); });
-    EXPECT_TRUE(Contains(deep, "deep images are not modelled")) << deep;
+    EXPECT_TRUE(Contains(deep, "deep images are not supported")) << deep;
 }
 
 // The library would allocate them first.

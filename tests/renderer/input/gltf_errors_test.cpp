@@ -88,7 +88,7 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/cameras/0/type", "fisheye", "/cameras/0/type: is \"fisheye\", which is not defined"},
         {"/extensionsRequired",
          {"EXT_no_such_thing"},
-         "/extensionsRequired/0: extension \"EXT_no_such_thing\" is required, but not modelled"},
+         "/extensionsRequired/0: extension \"EXT_no_such_thing\" is required, but not supported"},
     };
     for (const Case& c : cases) {
         GltfFile file = GoodFile();
@@ -175,9 +175,9 @@ TEST(GltfErrors, RefuseBadUris) {
 TEST(GltfErrors, RefuseWhatIsNoGltf) {
     const GltfFolder folder;
     EXPECT_NE(folder.ErrorOf("{"), "");
-    EXPECT_EQ(folder.ErrorOf("[1]"), "scene.gltf: is no JSON object");
+    EXPECT_EQ(folder.ErrorOf("[1]"), "scene.gltf: is not a JSON object");
     EXPECT_EQ(folder.ErrorOf("{}"),
-              "scene.gltf: /: lacks \"asset\" with a \"version\": it is no glTF file");
+              "scene.gltf: /: lacks \"asset\" with a \"version\": it is not a glTF file");
     EXPECT_EQ(folder.ErrorOf(std::string(500, '[')),
               "scene.gltf: is nested more than 100 levels deep");
     EXPECT_NE(folder.ErrorOf(""), "");

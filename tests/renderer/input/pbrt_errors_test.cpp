@@ -136,8 +136,8 @@ TEST_F(PbrtErrors, Strings) {
 
 TEST_F(PbrtErrors, BinaryFiles) {
     Expect(std::string("\x1f\x8b\x08\x00\x01", 5),
-           "'scene.pbrt' is no pbrt scene file: it is compressed (gzip)");
-    Expect(std::string("\0\0\0", 3), "'scene.pbrt' is no pbrt scene file: it is a binary file");
+           "'scene.pbrt' is not a pbrt scene file: it is compressed (gzip)");
+    Expect(std::string("\0\0\0", 3), "'scene.pbrt' is not a pbrt scene file: it is a binary file");
     Expect("a\x01", "scene.pbrt:1: control character in 'a\\x01'");
     Expect("\xff\xfe\xfd", "scene.pbrt:1: unknown directive '\\xff\\xfe\\xfd'");
     // A long word is cut in the message.

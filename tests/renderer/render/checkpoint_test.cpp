@@ -210,7 +210,7 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
     };
     const std::string path = fileOf("lull checkpoint 1"), error = errorOf(path);
     EXPECT_TRUE(Contains(error, path + ": it was written by an older lull; ")) << error;
-    EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is no checkpoint"));
+    EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is not a checkpoint"));
 }
 
 // Sizes are checked before anything is read, whoever has sealed the file.

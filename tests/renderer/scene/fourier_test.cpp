@@ -179,9 +179,9 @@ TEST(Fourier, RefusesBrokenFiles) {
         EXPECT_TRUE(Contains(e, "a.bsdf")) << e;
     };
     expect("is not a .bsdf file", [](BsdfFile* f) { f->magic = "SCATFUN\x02"; });
-    expect("not modelled", [](BsdfFile* f) { f->flags = 3; });
-    expect("not modelled", [](BsdfFile* f) { f->channels = 2; });
-    expect("not modelled", [](BsdfFile* f) { f->bases = 4; });
+    expect("not supported", [](BsdfFile* f) { f->flags = 3; });
+    expect("not supported", [](BsdfFile* f) { f->channels = 2; });
+    expect("not supported", [](BsdfFile* f) { f->bases = 4; });
     expect("order", [](BsdfFile* f) { f->order = 100000; });
     expect("index of refraction", [](BsdfFile* f) { f->eta = -1; });
     expect("1 nodes", [](BsdfFile* f) { f->mu.resize(1); });

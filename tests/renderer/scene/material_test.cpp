@@ -91,7 +91,7 @@ TEST(Materials, UnknownKindsAreRefused) {
         b.AddMaterial(kind);
         EXPECT_EQ(ErrorOf(&b),
                   "scene.pbrt:20: material \"" + std::string(kind) +
-                      "\" is not modelled; with --substitute a matte material stands in");
+                      "\" is not supported; with --substitute a matte material stands in");
     }
 }
 
@@ -104,7 +104,7 @@ TEST(Materials, SubstitutionIsCounted) {
     EXPECT_EQ(b.warnings.Total(), 3);
     ASSERT_EQ(b.messages.size(), 2u);
     EXPECT_EQ(b.messages[0],
-              "scene.pbrt:10: warning: material \"velvet\" is not modelled; a matte material "
+              "scene.pbrt:10: warning: material \"velvet\" is not supported; a matte material "
               "stands in");
     SurfaceInteraction hit = MaterialScene::Hit(0);
     ExpectGrey(LobeAt<LambertianReflection>(table.MakeBsdf(b.textures, &hit), 0).r, 0.5f);

@@ -69,7 +69,7 @@ TEST(KerasConfig, ReadsOlderAndNewerForms) {
 TEST(KerasConfig, NamesWhatIsNotModelled) {
     const std::string good = Sequential(lstmLayer + "," + denseLayer);
     ExpectError(Replace(good, "Sequential", "Functional"), "Functional");
-    ExpectError(Replace(good, "\"LSTM\"", "\"GRU\""), "layer 'l': GRU is not modelled");
+    ExpectError(Replace(good, "\"LSTM\"", "\"GRU\""), "layer 'l': GRU is not supported");
     ExpectError(Replace(good, "\"Dense\"", "\"BatchNormalization\""), "BatchNormalization");
     ExpectError(Replace(good, "\"sigmoid\"", "\"relu\""), "layer 'l': activation \"relu\"");
     ExpectError(Replace(good, "hard_sigmoid", "softsign"), "recurrent_activation \"softsign\"");

@@ -50,7 +50,7 @@ TEST(Thresholds, AreForgivingAboutTheEnds) {
 
 TEST(Thresholds, NameTheLineThatIsWrong) {
     EXPECT_EQ(ErrorOf("a;20;\nb;20;x;\n"),
-              "t.csv:2: 'x' is no threshold; a whole number of samples is needed");
+              "t.csv:2: 'x' is not a threshold; a whole number of samples is needed");
     for (const char* bad : {"-20", "20.5", " 20", "", "99999999999", "nan"})
         EXPECT_NE(ErrorOf("a;" + std::string(bad) + ";20;"), "") << bad;
     EXPECT_NE(ErrorOf("a;\n"), "");

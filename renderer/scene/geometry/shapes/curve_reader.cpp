@@ -15,7 +15,7 @@ CurveKind ReadKind(const Entity& entity) {
     if (kind == "flat") return CurveKind::Flat;
     if (kind == "cylinder") return CurveKind::Cylinder;
     if (kind == "ribbon") return CurveKind::Ribbon;
-    throw Error(entity.loc, fmt::format("curves of type \"{}\" are not modelled; flat, cylinder "
+    throw Error(entity.loc, fmt::format("curves of type \"{}\" are not supported; flat, cylinder "
                                         "and ribbon are",
                                         Printable(kind)));
 }
@@ -62,10 +62,10 @@ Basis ReadBasis(const Entity& entity) {
     const int degree = entity.parameters.GetInt("degree", 3);
     if (degree != 2 && degree != 3)
         throw Error(entity.loc,
-                    fmt::format("curves of degree {} are not modelled; 2 and 3 are", degree));
+                    fmt::format("curves of degree {} are not supported; 2 and 3 are", degree));
     const std::string basis = entity.parameters.GetString("basis", "bezier");
     if (basis != "bezier" && basis != "bspline")
-        throw Error(entity.loc, fmt::format("curves of basis \"{}\" are not modelled; bezier and "
+        throw Error(entity.loc, fmt::format("curves of basis \"{}\" are not supported; bezier and "
                                             "bspline are",
                                             Printable(basis)));
     return {basis == "bspline", degree};
@@ -169,7 +169,7 @@ void Place(const ShapeEntity& entity, Curves* curves) {
 Curves ReadCurves(const ShapeEntity& entity, Warnings& warnings) {
     if (entity.areaLight)
         throw Error(entity.loc,
-                    "a light of shape \"curve\" is not modelled; pbrt-v3 cannot sample it either");
+                    "a light of shape \"curve\" is not supported; pbrt-v3 cannot sample it either");
     Curves curves;
     curves.kind = ReadKind(entity);
     curves.splitDepth = ReadSplitDepth(entity);

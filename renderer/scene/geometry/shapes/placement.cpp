@@ -20,7 +20,7 @@ QuadricPlacement PlacementOf(const ShapeEntity& entity, float* scale) {
     const std::optional<float> taken = TakeScale(&m);
     if (!taken && entity.areaLight)
         throw Error(entity.loc, fmt::format("a light of shape \"{}\" under a transform that "
-                                            "stretches it is not modelled; a mesh is",
+                                            "stretches it is not supported; a mesh is",
                                             entity.name));
     *scale = taken.value_or(1);
     return {m, m.inverse(), entity.reverseOrientation, entity.reverseOrientation != Mirrors(m)};

@@ -175,7 +175,7 @@ Revolved MakeRevolved(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     if (entity.areaLight && entity.name != "cylinder")
         throw Error(entity.loc,
-                    fmt::format("a light of shape \"{}\" is not modelled; pbrt-v3 cannot "
+                    fmt::format("a light of shape \"{}\" is not supported; pbrt-v3 cannot "
                                 "sample it either, a mesh is",
                                 entity.name));
     float scale;
@@ -298,7 +298,7 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     } else {
         warnings.Substitute(
             entity.loc,
-            fmt::format("Shape \"{}\" is not modelled; {} are", entity.name, NamesOf(kShapes)),
+            fmt::format("Shape \"{}\" is not supported; {} are", entity.name, NamesOf(kShapes)),
             "it is left out");
     }
     shape.material = entity.material;

@@ -37,7 +37,7 @@ TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
         answers.back().file = example.session;
     }
     Collected collected = CollectObservers(std::move(answers), {});
-    collected.refused.push_back({"x.json", "is no JSON, or cut short"});
+    collected.refused.push_back({"x.json", "is not JSON, or cut short"});
     const std::string details = DetailsCsv(collected);
     EXPECT_TRUE(
         details.starts_with("viewpoint,block,observers,mean,low,high,lowest,highest,"
@@ -49,7 +49,7 @@ TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
     EXPECT_NE(observers.find("\n1,room,\"a, b\",yes,,adjust,4,0,0,,"), std::string::npos)
         << observers;
     EXPECT_NE(observers.find("\n3,room,d,no,failed 3 of 4 checks,"), std::string::npos);
-    EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is no JSON, or cut short\",,,,,,,,,,\n"));
+    EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is not JSON, or cut short\",,,,,,,,,,\n"));
 }
 
 // `lull evaluate --answers` reads what is written; who is left out says nothing.
