@@ -5,7 +5,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # A phrase a line, with the term to use.
-phrases='of a core: CPU time
+phrases='not modelled: not supported
+of a core: CPU time
 of processors: CPU time
 core minutes: CPU time
 by the clock: wall-clock time

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Renders scenes until every block has stopped, and makes the pictures of the README.
+"""Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [many-lights|room]: of many-lights, scenes/pictures/render.png, spp.png and decision.svg, drawn from
-the report: what the rule computed of the block that stopped last, pass by pass. Of the room, denoised, by day and by
-night, room-day.jpg, room-night.jpg, and by day room-spp.png. Both by default. JPEG files need oiiotool (Debian:
-openimageio-tools).
+pictures.py LULL [many-lights|room]: of many-lights, render.png, spp.png and decision.svg, the estimates for the block
+that stopped last. Of the room, denoised: room-day.jpg, room-spp.png, room-night.jpg, and report.jpg, a screenshot of
+the report. Both by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
@@ -20,34 +19,33 @@ ROOM_CAP = "200"  # samples per pixel
 
 
 def curve(decisions, width, height):
-    """Returns an SVG of the rule's number against spp, both logarithmic, and its threshold."""
-    points = [(s, v) for s, v in zip(decisions["spp"], decisions["value"]) if v > 0]
-    limit, left, bottom = decisions["threshold"], 44, 36
-    xs = [math.log(s) for s, _ in points]
-    ys = [math.log(v) for _, v in points] + [math.log(limit)]
-    low, high = min(ys) - 0.4, max(ys) + 0.1
+    """Returns an SVG of a network's probabilities against spp, on a logarithmic scale, with the threshold."""
+    points, limit, left, bottom = list(zip(decisions["spp"], decisions["value"])), decisions["threshold"], 60, 44
+    first, last = (math.log(points[k][0]) for k in (0, -1))
 
-    def place(x, y):
-        return (left + (x - xs[0]) / (xs[-1] - xs[0]) * (width - left - 24),
-                12 + (high - y) / (high - low) * (height - bottom - 12))
+    def place(spp, value):
+        return (left + (math.log(spp) - first) / (last - first) * (width - left - 24),
+                12 + (1 - value) * (height - bottom - 12))
 
-    line = " ".join("%.1f,%.1f" % place(x, math.log(v)) for x, (_, v) in zip(xs, points))
-    limit_y = place(xs[0], math.log(limit))[1]
-    end_x, end_y = place(xs[-1], math.log(points[-1][1]))
-    ticks = "".join(
-        '<text x="%.0f" y="%d" text-anchor="middle">%d</text>' % (place(x, low)[0], height - 20, round(math.exp(x)))
-        for x in (xs[0], (xs[0] + xs[-1]) / 2, xs[-1]))
+    line = " ".join("%.1f,%.1f" % place(*p) for p in points)
+    limit_y, (end_x, end_y) = place(points[0][0], limit)[1], place(*points[-1])
+    columns = [s for s in (20, 50, 100, 200, 500, 1000, 2000, 5000, 10000) if points[0][0] <= s <= points[-1][0]]
+    ticks = "".join('<path d="M%.0f 12V%d" stroke="#ddd"/><text x="%.0f" y="%d" text-anchor="middle">%s</text>' % (
+        place(s, 0)[0], height - bottom, place(s, 0)[0], height - bottom + 17, f"{s:,}") for s in columns)
+    ticks += "".join('<path d="M%d %.0fH%d" stroke="#ddd"/><text x="%d" y="%.0f" text-anchor="end">%g</text>' % (
+        left, place(points[0][0], v)[1], width - 12, left - 6, place(points[0][0], v)[1] + 4, v)
+        for v in (0, .25, .5, .75, 1))
     return f"""<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}"
- font-family="sans-serif" font-size="13" fill="#555">
+ font-family="sans-serif" font-size="13" fill="#444">
 <rect width="{width}" height="{height}" fill="#fff"/>
-<line x1="{left}" x2="{width - 12}" y1="{limit_y:.1f}" y2="{limit_y:.1f}" stroke="#c33" stroke-dasharray="5 4"/>
-<text x="{left + 6}" y="{limit_y + 16:.1f}" fill="#c33">stops below this</text>
+{ticks}
+<path d="M{left} {limit_y:.1f}H{width - 12}" stroke="#c33" stroke-dasharray="5 4"/>
+<text x="{left + 6}" y="{limit_y + 16:.1f}" fill="#c33">votes to stop below 1/2</text>
 <polyline points="{line}" fill="none" stroke="#246" stroke-width="2"/>
 <circle cx="{end_x:.1f}" cy="{end_y:.1f}" r="5" fill="#246"/>
-<text x="{width - 12}" y="{limit_y + 34:.1f}" text-anchor="end" fill="#246">stopped at {points[-1][0]} spp</text>
-{ticks}
-<text x="{(width + left) / 2:.0f}" y="{height - 4}" text-anchor="middle">samples per pixel</text>
-<text transform="translate(16 {height / 2 - 10:.0f}) rotate(-90)" text-anchor="middle">what the rule computes</text>
+<text x="{width - 12}" y="{end_y + 22:.1f}" text-anchor="end" fill="#246">stopped at {points[-1][0]:,} spp</text>
+<text x="{(width + left) / 2:.0f}" y="{height - 6}" text-anchor="middle">samples per pixel</text>
+<text transform="translate(15 {(height - bottom) / 2 + 6:.0f}) rotate(-90)" text-anchor="middle">P(observer sees noise)</text>
 </svg>
 """
 
@@ -60,16 +58,29 @@ def many_lights(lull, out, pictures):
     blocks = json.loads((out / "r.json").read_text())["blocks"]
     stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
     last = max(stopped, key=lambda b: b["spp"])
-    (pictures / "decision.svg").write_text(curve(last["decisions"], 300, 300))
+    (pictures / "decision.svg").write_text(curve(last["decisions"], 420, 300))
+
+
+def jpeg(source, target, quality=92):
+    subprocess.run(["oiiotool", source, "--compression", f"jpeg:{quality}", "-o", target], check=True)
+
+
+def screenshot(page, target, size):
+    """Shows a page in a browser without a window, and writes a picture of it."""
+    picture = page.with_suffix(".page.png")
+    subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+                    f"--window-size={size}", f"--screenshot={picture}", page.as_uri()], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    jpeg(picture, target, 85)
 
 
 def room(lull, out, pictures):
     for name, scene in (("day", "room"), ("night", "room-night")):
         subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", "--block", "120", "--cap", ROOM_CAP,
-                        "-o", out / f"{name}.exr"], check=True)
-        subprocess.run(["oiiotool", out / f"{name}.png", "--compression", "jpeg:92", "-o", pictures / f"room-{name}.jpg"],
-                       check=True)
+                        "-o", out / f"{name}.exr", "--report", out / f"{name}.html"], check=True)
+        jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
     shutil.copy(out / "day.spp.png", pictures / "room-spp.png")
+    screenshot(out / "day.html", pictures / "report.jpg", "1400,1150")
 
 
 def main():

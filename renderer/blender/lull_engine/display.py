@@ -1,4 +1,4 @@
-"""Receives pictures in the protocol of tev, which `lull render --display` speaks."""
+"""Receives images of `lull render --display`, in the protocol of tev."""
 import struct
 
 import numpy as np
@@ -12,8 +12,7 @@ def _text(message, at):
 
 
 def _decode(message):
-    """Returns where an update lies, x and y from the upper left, and its channels by name; None for
-    another message."""
+    """Returns x, y (from the upper left) and the channels by name of an update; None for other messages."""
     if message[4] != _UPDATE:
         return None
     _, at = _text(message, 6)
@@ -31,13 +30,13 @@ def _decode(message):
 
 
 class Stream:
-    """Puts the bytes of a connection together again."""
+    """Reassembles the messages of a connection."""
 
     def __init__(self):
         self.bytes = bytearray()
 
     def feed(self, data):
-        """Takes bytes as they come and yields the updates that they complete."""
+        """Appends bytes, and yields completed updates."""
         self.bytes += data
         while len(self.bytes) >= 5:
             size, = struct.unpack_from("<I", self.bytes)

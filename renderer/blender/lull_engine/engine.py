@@ -59,7 +59,7 @@ class LullEngine(bpy.types.RenderEngine):
 
 
 class _Job:
-    """One picture of one view layer."""
+    """The render of one view layer."""
 
     def __init__(self, engine, depsgraph, folder):
         self.engine, self.folder = engine, folder
@@ -70,7 +70,7 @@ class _Job:
         self._measure(depsgraph.scene.render)
 
     def _measure(self, render):
-        """Finds the size of the whole picture and, in fractions, the part that is wanted."""
+        """Sets the size of the whole image and the rendered part, in fractions."""
         scale = render.resolution_percentage / 100
         self.whole = int(render.resolution_x * scale), int(render.resolution_y * scale)
         self.crop, self.size = None, self.whole
@@ -118,8 +118,10 @@ class _Job:
             engine.end_result(result)
 
     def _export(self):
-        """Writes the scene as glTF, by a Blender of its own, so that this one's scene stays as it
-        is. Returns what export.py says of it, None where the user has ended it."""
+        """Writes the scene as glTF, in another Blender, which leaves this scene unchanged.
+
+        Returns: the result of export.py; None if the user has cancelled.
+        """
         blend = os.path.join(self.folder, "scene.blend")
         bpy.data.libraries.write(blend, {self.scene}, path_remap='ABSOLUTE')
         said = os.path.join(self.folder, "export.json")
@@ -142,7 +144,7 @@ class _Job:
             return json.load(f)
 
     def _watch(self, render, result):
-        """Shows how the render goes on, until it ends."""
+        """Shows the progress of the render until it ends."""
         view = np.zeros((self.size[1], self.size[0], 4), np.float32)
         changed, shown = False, time.monotonic()
         for kind, what in render.events(self.engine.test_break):

@@ -1,11 +1,10 @@
-"""Writes a scene as glTF. Runs in a Blender of its own, which may change what it likes: for engine.py,
-which says how it is called, its last argument is a JSON object with the file, the names of scene and
-view layer, the frame, the folder to write to, and the file that says what was written: `gltf`,
-`environment` (or null) and `warnings`.
+"""Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
-Blender's own exporter writes what glTF has. Area lights go there as meshes that shine, the world as
-an image, and as `extras` of a camera and of point lights what only lull reads: shift, depth of field
-and radius.
+The last argument is a JSON object: the file, the names of scene and view layer, the frame, the output
+folder, and the file of the result, with `gltf`, `environment` (or null) and `warnings`.
+
+Blender's own exporter writes the file. Area lights become emitting meshes, the world becomes an image.
+Shift, depth of field and the radius of point lights are `extras`, which only lull reads.
 """
 import json
 import os
@@ -46,7 +45,7 @@ def rendered_objects(layer_collection):
 
 
 def show_as_rendered(scene, layer):
-    """Makes Blender's viewport, which is what the exporter sees, show what a render would."""
+    """Sets the visibility of the viewport, which the exporter uses, to that of a render."""
     wanted = rendered_objects(layer.layer_collection)
     collections = [layer.layer_collection]
     for collection in collections:
@@ -84,7 +83,7 @@ def warn_of_film(scene, warn):
 
 
 def set_camera(scene, warn):
-    """Gives the camera, which has to be there, what glTF lacks: `extras` that lull reads."""
+    """Adds the properties that glTF lacks to the camera, as `extras`. Raises: SystemExit without a camera."""
     camera = scene.camera
     if camera is None:
         raise SystemExit("the scene has no camera")
@@ -116,7 +115,7 @@ def set_camera(scene, warn):
 
 
 def patch(path):
-    """Changes in the file what the exporter cannot be asked for."""
+    """Corrects the written file where the exporter has no option."""
     with open(path, encoding="utf-8") as f:
         root = json.load(f)
     for material in root.get("materials", []):

@@ -1,4 +1,4 @@
-"""Lamps, as glTF and lull know them."""
+"""Converts lights to those of glTF and lull."""
 import math
 
 import bpy
@@ -32,8 +32,10 @@ def prepare(scene, warn):
 
 
 def _blend_of(light):
-    """Returns the share of a cone's angle over which glTF lets as much light fade as Cycles does: that
-    is by the square of the cosine's way from the edge, Cycles' by a smooth step, over another way."""
+    """Returns the fraction of a cone's angle over which glTF fades as much light as Cycles.
+
+    glTF fades by the square of the cosine's distance from the edge, Cycles by a smooth step.
+    """
     half = light.spot_size / 2
     edge = math.cos(half)
     way = max(light.spot_blend, 1e-3) * (1 - edge) * (1 - 1 / 2) / (1 - 1 / 3)
@@ -41,7 +43,7 @@ def _blend_of(light):
 
 
 def _fold_nodes(light, warn):
-    """Takes strength and colour of plain nodes for the light's own."""
+    """Applies strength and colour of simple nodes to the light."""
     output = next((n for n in light.node_tree.nodes if n.type == 'OUTPUT_LIGHT'), None)
     links = output.inputs['Surface'].links if output else ()
     emission = links[0].from_node if links else None
@@ -58,7 +60,7 @@ def _is_in_view(scene, point):
 
 
 def _add_area(scene, o, matrix, warn):
-    """Adds a mesh that shines downwards, as the light does."""
+    """Adds a mesh that emits downwards, like the light."""
     light = o.data
     if light.spread < math.pi - 1e-4:
         warn(f"area light '{o.name}' shines to all sides: its spread is left out")
@@ -90,7 +92,7 @@ def _add_area(scene, o, matrix, warn):
 
 
 def _shining(name, color, radiance):
-    """Returns a black material that shines on its front."""
+    """Returns a black material that emits on its front."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     material.use_backface_culling = True

@@ -19,7 +19,7 @@ def _shared():
 
 
 def share(with_lull):
-    """Shows them with lull, or no longer."""
+    """Adds or removes lull among the engines of these panels."""
     for engines in _shared():
         (engines.add if with_lull else engines.discard)('LULL')
 

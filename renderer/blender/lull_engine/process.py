@@ -1,4 +1,4 @@
-"""Runs the program beside Blender: what it says and shows comes as it goes on."""
+"""Runs lull as a process, with its messages and images as events."""
 import json
 import os
 import selectors
@@ -10,12 +10,11 @@ from .display import Stream
 
 
 class Failure(Exception):
-    """Is what the user has to know; nothing more can be done."""
+    """An error to show to the user."""
 
 
 def run(command, stopped):
-    """Runs a command whose output nobody sees. Returns its exit code, all that it said, and whether
-    it ended because `stopped` returned true."""
+    """Runs a command. Returns its exit code, its output, and whether `stopped` returned true."""
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace",
                           start_new_session=True) as process:
@@ -35,10 +34,12 @@ def run(command, stopped):
 
 
 class Render:
-    """A render of lull: `for kind, what in render.events(stopped)` gives ("progress", {...}),
-    ("warning", text), ("note", text), ("show", (x, y, channels)) and ("idle", None), until the
-    program has ended; then `code` is its exit code. When `stopped` returns true it is told to end
-    with what it has."""
+    """A render of lull.
+
+    `for kind, data in render.events(stopped)` yields ("progress", {...}), ("warning", text), ("note", text),
+    ("show", (x, y, channels)) and ("idle", None) until the program ends; `code` is then its exit code.
+    If `stopped` returns true, the program ends with the current image.
+    """
 
     def __init__(self, command):
         self.server = socket.create_server(("127.0.0.1", 0))

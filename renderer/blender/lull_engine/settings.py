@@ -1,4 +1,4 @@
-"""What people can set: of a scene, and where lull is."""
+"""Settings of a scene, and the path of lull."""
 import shutil
 
 import bpy

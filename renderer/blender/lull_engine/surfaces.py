@@ -1,5 +1,4 @@
-"""Materials, as glTF knows them: the nodes that Blender's exporter follows, and a few that say the same
-in other words."""
+"""Converts materials to nodes that Blender's exporter supports."""
 import bpy
 
 # What the exporter follows upwards of a Principled BSDF.
@@ -12,7 +11,7 @@ _UNSAID = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Sheen', 'Sheen Wei
 
 
 def prepare(objects, warn):
-    """Rewrites materials for the exporter. Warns by name of what it cannot express."""
+    """Rewrites materials for the exporter, with a warning for each unsupported node."""
     _fill_slots(objects)
     materials = {slot.material for o in objects for slot in o.material_slots if slot.material}
     for material in sorted(materials, key=lambda m: m.name):
@@ -30,7 +29,7 @@ def prepare(objects, warn):
 
 
 def _plain():
-    """Returns what Blender shows where there is no material: glTF's would be a metal."""
+    """Returns Blender's default material; that of glTF is a metal."""
     material = bpy.data.materials.new("plain")
     material.use_nodes = True
     tree = material.node_tree
