@@ -64,14 +64,14 @@ void PrintHeader(const SelftestOptions& options) {
         "`lull selftest` checks the same on any machine in a minute, and the tests do. A case "
         "passes if ours is at most the\ntolerance from the answer. Radiance is rendered with both "
         "estimators and shown for the worse; its tolerance is 4.5\nstandard errors as measured, "
-        "and what the note says. Counts of failures have no tolerance at all.\n",
+        "plus that in the note. Counts of failures have no tolerance at all.\n",
         options.cases.isLong ? " --long" : "");
 }
 
 void PrintTheme(const std::string& theme, bool markdown) {
     if (markdown)
         fmt::print(
-            "\n## {}{}\n\n| case | what goes wrong elsewhere | answer | ours | tolerance |\n"
+            "\n## {}{}\n\n| case | failure elsewhere | answer | ours | tolerance |\n"
             "|---|---|---|---|---|\n",
             char(std::toupper(theme[0])), theme.substr(1));
     else
@@ -82,11 +82,13 @@ void PrintTheme(const std::string& theme, bool markdown) {
 void PrintHeavyTails(const SelftestOptions& options) {
     fmt::print(
         "\n## Bias of stopped images\n\n"
-        "A rule that looks at the samples it stops can stop just where bright ones are still "
-        "missing: the image is too dark\nthen. 100 x 100 independent pixels of mean 0.25, passes "
-        "of 20 spp, at most 10,000; the bias is that of the block's\nmean, known to 0.07 % or "
-        "better at the cap, the error the relative RMS over the pixels; unseen is the share of "
-        "the\npixels that have not seen the rare light when the block stops.\n");
+        "A rule that checks the samples it stops tends to stop while bright ones are still "
+        "missing: "
+        "the image is then too dark.\nConditions: 100 x 100 independent pixels of mean 0.25, "
+        "passes "
+        "of 20 spp, at most 10,000. Bias is that of the block's\nmean, known to 0.07 % at the cap. "
+        "Error is the relative RMS over the pixels. Unseen is the fraction of pixels without\na "
+        "sample of the rare light at the stop.\n");
     std::vector<std::string> rules = UsualRules();
     for (const char* loose : {"dammertz:0.1", "cycles:0.1", "luxtile:0.1", "lnoise:2", "entropy:2"})
         rules.push_back(loose);
