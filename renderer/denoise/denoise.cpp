@@ -8,7 +8,7 @@ namespace lull {
 
 namespace {
 
-constexpr float kFireflyLimit = 8;  // standard deviations
+constexpr float kFireflyLimit = 4;  // standard deviations
 constexpr float kLeastLuminance = 1e-3f;
 constexpr int kNoiseRadius = 10;  // pixels over which halves say how large noise is
 constexpr float kLeastVariance = 1e-10f;
