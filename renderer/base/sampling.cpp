@@ -58,17 +58,17 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf(values.size(
     }
 }
 
-Distribution2D::Distribution2D(std::span<const float> values, int nu, int nv)
-    : nu(nu), entries(DistributionTables::EntriesFor(nu)) {
-    cdfs.reserve(size_t(nv) * size_t(nu + 1));
-    guides.reserve(size_t(nv) * size_t(entries));
+Distribution2D::Distribution2D(std::span<const float> values, int columns, int rows)
+    : columns(columns), entries(DistributionTables::EntriesFor(columns)) {
+    cdfs.reserve(size_t(rows) * size_t(columns + 1));
+    guides.reserve(size_t(rows) * size_t(entries));
     std::vector<float> rowIntegrals;
-    for (int v = 0; v < nv; ++v) {
-        const Distribution1D row(values.subspan(size_t(v) * nu, nu));
-        const DistributionTables tables = row.Tables();
-        cdfs.insert(cdfs.end(), tables.cdf, tables.cdf + nu + 1);
+    for (int row = 0; row < rows; ++row) {
+        const Distribution1D across(values.subspan(size_t(row) * columns, columns));
+        const DistributionTables tables = across.Tables();
+        cdfs.insert(cdfs.end(), tables.cdf, tables.cdf + columns + 1);
         guides.insert(guides.end(), tables.guide, tables.guide + entries);
-        rowIntegrals.push_back(row.Integral());
+        rowIntegrals.push_back(across.Integral());
     }
     marginal = Distribution1D(rowIntegrals);
 }

@@ -61,11 +61,10 @@ struct DistributionTables {
         while (cdf[i + 1] <= u && i < count - 1) ++i;
         return i;
     }
-    // Returns the place of u in [0, 1), which lies in element i.
+    // Returns the place in element i of u, which lies there, both in [0, 1).
     float PlaceIn(int i, float u) const {
         const float width = Pmf(i);
-        const float t = width > 0 ? std::clamp((u - cdf[i]) / width, 0.f, kOneMinusEpsilon) : 0.5f;
-        return std::min((i + t) / count, kOneMinusEpsilon);
+        return width > 0 ? std::clamp((u - cdf[i]) / width, 0.f, kOneMinusEpsilon) : 0.5f;
     }
 };
 
@@ -94,7 +93,8 @@ class Distribution1D {
     float SampleContinuous(float u, float* pdf, int* offset) const {
         *offset = Find(u);
         *pdf = Pmf(*offset) * Count();
-        return Tables().PlaceIn(*offset, u);
+        const float place = Tables().PlaceIn(*offset, u);
+        return std::min((*offset + place) / Count(), kOneMinusEpsilon);
     }
     DistributionTables Tables() const { return {cdf.data(), guide.data(), Count()}; }
 
@@ -109,34 +109,35 @@ class Distribution1D {
     float integral = 0;
 };
 
-// Represents a piecewise-constant density over the unit square, row-major in v. The tables of all
-// rows lie one after another, so that their place follows from the row alone.
+// Represents a choice among the elements of a table, row-major. The tables of all rows lie one
+// after another, so that their place follows from the row alone.
 class Distribution2D {
   public:
     Distribution2D() = default;
-    Distribution2D(std::span<const float> values, int nu, int nv);
+    Distribution2D(std::span<const float> values, int columns, int rows);
 
-    // Chooses a place. `expect(column, row)` is called as soon as the element is roughly known, so
-    // that what is stored about it elsewhere can be prefetched; the row is exact.
-    template <typename Expect>
-    Vec2f SampleContinuous(const Vec2f& u, const Expect& expect) const {
-        const DistributionTables rows = marginal.Tables();
-        const int row = rows.FindFrom(rows.Begin(u.y()), u.y());
-        const DistributionTables columns{cdfs.data() + size_t(row) * size_t(nu + 1),
-                                         guides.data() + size_t(row) * size_t(entries), nu};
-        const int begin = columns.Begin(u.x());
-        expect(begin, row);
-        const int column = columns.FindFrom(begin, u.x());
-        return {columns.PlaceIn(column, u.x()), rows.PlaceIn(row, u.y())};
+    int Columns() const { return columns; }
+    // Chooses an element (column, row); `u` in the unit square becomes the place in it.
+    Vec2i SampleDiscrete(Vec2f* u, float* pmf) const {
+        const DistributionTables down = marginal.Tables();
+        const int row = down.FindFrom(down.Begin(u->y()), u->y());
+        const DistributionTables across = Row(row);
+        const int column = across.FindFrom(across.Begin(u->x()), u->x());
+        *pmf = down.Pmf(row) * across.Pmf(column);
+        *u = {across.PlaceIn(column, u->x()), down.PlaceIn(row, u->y())};
+        return {column, row};
     }
-    Vec2f SampleContinuous(const Vec2f& u) const {
-        return SampleContinuous(u, [](int, int) {});
-    }
+    float Pmf(const Vec2i& at) const { return marginal.Pmf(at.y()) * Row(at.y()).Pmf(at.x()); }
 
   private:
-    int nu = 0, entries = 0;  // of a row
-    std::vector<float> cdfs;  // rows of nu + 1
-    std::vector<int> guides;  // rows of `entries`
+    DistributionTables Row(int row) const {
+        return {cdfs.data() + size_t(row) * size_t(columns + 1),
+                guides.data() + size_t(row) * size_t(entries), columns};
+    }
+
+    int columns = 0, entries = 0;  // of a row
+    std::vector<float> cdfs;       // rows of columns + 1
+    std::vector<int> guides;       // rows of `entries`
     Distribution1D marginal;
 };
 

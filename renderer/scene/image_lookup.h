@@ -99,15 +99,18 @@ auto Blend(const T* texels, int stride, int width, const Footprint& f, const Dec
         return Rgb(channel(0), channel(1), channel(2));
 }
 
+// Returns a stored value, which counts as linear.
+template <typename T>
+float ToFloat(T v) {
+    return std::is_same_v<T, uint8_t> ? float(v) * (1 / 255.f) : float(v);
+}
+
 // Returns the texel of an image as linear RGB, alpha ignored. `texels` are the image's.
 template <typename T>
 Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
     const T* t = &texels[(size_t(y) * size_t(image.width) + size_t(x)) * size_t(image.channels)];
-    const auto decode = [](T v) {
-        return std::is_same_v<T, uint8_t> ? float(v) * (1 / 255.f) : float(v);
-    };
-    if (image.channels < 3) return Rgb::Constant(decode(t[0]));
-    return {decode(t[0]), decode(t[1]), decode(t[2])};
+    if (image.channels < 3) return Rgb::Constant(ToFloat(t[0]));
+    return {ToFloat(t[0]), ToFloat(t[1]), ToFloat(t[2])};
 }
 
 // Looks up an image whose first row is at st.y = 0, as environment maps are; texels count as
@@ -115,11 +118,11 @@ Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
 inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrap) {
     const Footprint f = BilinearFootprint(st, image.width, image.height, wrap);
     return std::visit(
-        [&](const auto& texels) -> Rgb {
-            return f.w00 * TexelRgb(image, texels, f.x0, f.y0) +
-                   f.w10 * TexelRgb(image, texels, f.x1, f.y0) +
-                   f.w01 * TexelRgb(image, texels, f.x0, f.y1) +
-                   f.w11 * TexelRgb(image, texels, f.x1, f.y1);
+        [&]<typename T>(const std::vector<T>& texels) -> Rgb {
+            if (image.channels < 3)
+                return Rgb::Constant(
+                    Blend<1>(texels.data(), image.channels, image.width, f, ToFloat<T>));
+            return Blend<3>(texels.data(), image.channels, image.width, f, ToFloat<T>);
         },
         image.texels);
 }

@@ -21,10 +21,9 @@
 //
 // and one of type Infinite, which rays reach when they leave the scene,
 //
-//     Rgb Le(const Vec3f& w) const
-//         returns the radiance that arrives from direction w (unit, world);
-//     float Pdf(const Vec3f& w) const
-//         returns the density, 1/sr, with which Sample finds w.
+//     Emitted LeAndPdf(const Vec3f& w) const
+//         returns the radiance that arrives from direction w (unit, world), and the density, 1/sr,
+//         with which Sample finds w.
 #pragma once
 
 #include "renderer/base/visit.h"
@@ -65,17 +64,11 @@ inline float Pdf(const Light& light, const Vec3f& from, const Vec3f& p, const Ve
     });
 }
 
-// The functions of kinds of type Infinite.
-inline Rgb Le(const Light& light, const Vec3f& w) {
-    return Visit(light, [&]<typename L>(const L& l) -> Rgb {
-        if constexpr (L::kType == LightType::Infinite) return l.Le(w);
-        return Rgb::Zero();
-    });
-}
-inline float Pdf(const Light& light, const Vec3f& w) {
-    return Visit(light, [&]<typename L>(const L& l) -> float {
-        if constexpr (L::kType == LightType::Infinite) return l.Pdf(w);
-        return 0;
+// The function of kinds of type Infinite.
+inline Emitted LeAndPdf(const Light& light, const Vec3f& w) {
+    return Visit(light, [&]<typename L>(const L& l) -> Emitted {
+        if constexpr (L::kType == LightType::Infinite) return l.LeAndPdf(w);
+        return {Rgb::Zero(), 0};
     });
 }
 

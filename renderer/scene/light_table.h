@@ -36,6 +36,12 @@ class LightTable {
     // Samples light i as seen from `from`. Returns nothing if it gives no light there.
     std::optional<LightSample> Sample(int i, const Vec3f& from, const Vec2f& u) const;
 
+    // Returns the radiance of a sample of light i.
+    Rgb Radiance(int i, const LightSample& sample) const {
+        if (!sample.isOnMap) return sample.L;
+        return std::get_if<InfiniteLight>(&lights[i])->Radiance(sample);
+    }
+
     // Returns how lights are chosen at a hit, as the scene's strategy says.
     LightChoice Choice(const SurfaceInteraction& hit, const Bsdf& bsdf) const {
         if (hierarchy) [[unlikely]]
@@ -48,7 +54,7 @@ class LightTable {
             return {*hierarchy, {p, Vec3f::Zero(), true}};
         return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
             const auto sample = Sample(i, q, u);
-            return sample ? Luminance(sample->L) / sample->pdf : 0.f;
+            return sample ? Luminance(Radiance(i, *sample)) / sample->pdf : 0.f;
         });
     }
 

@@ -31,16 +31,19 @@ template <typename Media, typename Vertex, typename Guiding>
     const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
     if constexpr (!Media::kExist) {
         if (IsBlack(L) || !context.media.Sees(context, v, *light)) return Rgb::Zero();
-        return L;
+        return light->isOnMap ? Rgb(L * context.scene.lights.Radiance(index, *light)) : L;
     } else {
         const auto sight = context.media.See(context, v, *light);
         if (IsBlack(sight.share)) return Rgb::Zero();
-        if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * sight.share;
+        const Rgb share = light->isOnMap
+                              ? Rgb(sight.share * context.scene.lights.Radiance(index, *light))
+                              : sight.share;
+        if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * share;
         // What no ray can reach keeps pbrt-v3's weight, too.
         const float evenly = PowerHeuristic(light->pdf, v.EvaluateEvenly(light->wi).pdf);
         return sight.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
-               sight.share;
+               share;
     }
 }
 
@@ -57,10 +60,11 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
     Rgb L;
     float lightPdf;
     if (TypeOf(light) == LightType::Infinite) {
-        lightPdf = Pdf(light, sample->wi);
-        if (lightPdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
+        const Emitted found = LeAndPdf(light, sample->wi);
+        if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
             return Rgb::Zero();
-        L = Le(light, sample->wi);
+        L = found.L;
+        lightPdf = found.pdf;
     } else {
         if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
         const SurfaceInteraction& at = sighting.at;

@@ -51,8 +51,8 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
             const Light& light = scene.lights[i];
-            const float pdf = path.seesLights ? 0 : Pdf(light, path.ray.d);
-            sum += Le(light, path.ray.d) * EmissionWeight(estimator, path, i, pdf);
+            const auto [L, pdf] = LeAndPdf(light, path.ray.d);
+            sum += L * EmissionWeight(estimator, path, i, pdf);
         }
     } else if (hit->areaLight >= 0) {
         const Light& light = scene.lights[hit->areaLight];

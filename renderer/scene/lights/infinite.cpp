@@ -67,10 +67,6 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
     return light;
 }
 
-Rgb InfiniteLight::Le(const Vec3f& w) const {
-    return map ? map->Radiance(CoordinatesOf((lightFromWorld * w).normalized())) : constant;
-}
-
 // A constant light is sampled as pbrt-v3 does, as a map of one texel: evenly in both coordinates.
 std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) const {
     float mapPdf = 1;
@@ -81,19 +77,24 @@ std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) c
     if (!(pdf > 0) || !std::isfinite(pdf)) return {};
     const Vec3f local(sinTheta * std::cos(phi), sinTheta * std::sin(phi), std::cos(theta));
     const Vec3f wi = (worldFromLight * local).normalized();
-    return LightSample{.L = map ? map->Radiance(st) : constant,
+    if (map) map->Prefetch(st);
+    return LightSample{.L = map ? Rgb::Ones() : constant,
                        .wi = wi,
                        .pdf = pdf,
                        .isDelta = false,
                        .isHidden = false,
-                       .isAtInfinity = true};
+                       .isOnMap = map != nullptr,
+                       .isAtInfinity = true,
+                       .p = {st.x(), st.y(), 0}};
 }
 
-float InfiniteLight::Pdf(const Vec3f& w) const {
+Emitted InfiniteLight::LeAndPdf(const Vec3f& w) const {
     const Vec3f local = (lightFromWorld * w).normalized();
     const float sinTheta = SafeSqrt(1 - Sqr(local.z()));
-    if (sinTheta == 0) return 0;
-    return (map ? map->Pdf(CoordinatesOf(local)) : 1) / (2 * kPi * kPi * sinTheta);
+    const Vec2f st = map ? CoordinatesOf(local) : Vec2f::Zero();
+    const float mapPdf = map ? map->Pdf(st) : 1;
+    return {map ? map->Radiance(st) : constant,
+            sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) : 0};
 }
 
 // Only the choice of lights by power asks for this; the mean over the map is what pbrt-v3's

@@ -19,9 +19,10 @@ class InfiniteLight {
     // finite count as black, with a counted warning.
     static InfiniteLight Make(const LightReader&);
 
-    Rgb Le(const Vec3f& w) const;
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    float Pdf(const Vec3f& w) const;
+    Emitted LeAndPdf(const Vec3f& w) const;
+    // Returns the radiance of a sample that is on the map.
+    Rgb Radiance(const LightSample& sample) const { return map->Radiance(sample.p.head<2>()); }
     std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const;
 

@@ -19,9 +19,19 @@ struct LightSample {
     float pdf;      // 1/sr; 1 for delta lights
     bool isDelta;   // no other strategy can find this direction
     bool isHidden;  // the emitter is invisible to rays; only light sampling finds it
-    // The point on the light; n is zero for point lights. A light at infinity has no point.
+    // L is 1, and that of the map is left to LightTable::Radiance(): where the light is occluded,
+    // nobody needs it.
+    bool isOnMap = false;
+    // The point on the light; n is zero for point lights. A light at infinity has no point, but for
+    // that on its map: (s, t, 0).
     bool isAtInfinity = false;
     Vec3f p = Vec3f::Zero(), pError = Vec3f::Zero(), n = Vec3f::Zero();
+};
+
+// Light that a ray finds.
+struct Emitted {
+    Rgb L;      // radiance
+    float pdf;  // 1/sr, with which sampling the light finds the same direction
 };
 
 }  // namespace lull

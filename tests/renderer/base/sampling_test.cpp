@@ -230,18 +230,19 @@ TEST(Distribution2D, SamplesInProportion) {
     std::vector<double> expected;
     for (const float value : values) expected.push_back(value / sum);
     Random random(6);
-    std::vector<int64_t> cells(expected.size());
+    std::vector<int64_t> cells(expected.size()), quarters(4);
     for (int k = 0; k < kSamples; ++k) {
-        int column = -1, row = -1;  // as told beforehand
-        const Vec2f p = d.SampleContinuous(random.Point(), [&](int c, int r) {
-            column = c;
-            row = r;
-        });
-        ASSERT_TRUE(p.minCoeff() >= 0 && p.maxCoeff() < 1);
-        ASSERT_NEAR(p.y() * kNv, row + 0.5f, 0.5001f);
-        ASSERT_TRUE(column >= 0 && float(column) < p.x() * kNu + 1e-4f);
-        ++cells[int(p.y() * kNv) * kNu + int(p.x() * kNu)];
+        Vec2f place = random.Point();
+        float pmf;
+        const Vec2i at = d.SampleDiscrete(&place, &pmf);
+        ASSERT_TRUE(place.minCoeff() >= 0 && place.maxCoeff() < 1);
+        ASSERT_GT(pmf, 0);
+        ASSERT_EQ(pmf, d.Pmf(at));
+        ASSERT_NEAR(pmf, expected[at.y() * kNu + at.x()], 1e-5);
+        ++cells[at.y() * kNu + at.x()];
+        ++quarters[(place.y() >= 0.5f) * 2 + (place.x() >= 0.5f)];
     }
+    EXPECT_GT(ChiSquarePValue(std::vector<double>(4, 0.25), quarters, kSamples), 1e-3);
     EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
 }
 
@@ -251,9 +252,10 @@ TEST(Distribution2D, FindsSpikes) {
     const Distribution2D spike(values, 100, 50);
     Random random(7);
     for (int k = 0; k < 1000; ++k) {
-        const Vec2f p = spike.SampleContinuous(random.Point());
-        EXPECT_NEAR(p.x(), 0.305f, 0.00501f);
-        EXPECT_NEAR(p.y(), 0.41f, 0.01001f);
+        Vec2f place = random.Point();
+        float pmf;
+        EXPECT_EQ(spike.SampleDiscrete(&place, &pmf), Vec2i(30, 20));
+        EXPECT_EQ(pmf, 1);
     }
 }
 

@@ -43,7 +43,8 @@ std::pair<Rgb, float> Arriving(const Scene& scene, const Vec3f& from, const Vec3
     if (!scene.accelerator.Intersect(ray, &hit)) {
         if (scene.lights.Infinite().empty()) return {Rgb::Zero(), 0};
         const auto& light = std::get<InfiniteLight>(scene.lights[scene.lights.Infinite()[0]]);
-        return {light.Le(w), light.Pdf(w)};
+        const Emitted found = light.LeAndPdf(w);
+        return {found.L, found.pdf};
     }
     const int index = scene.shapes.LightAt(hit);
     if (index < 0) return {Rgb::Zero(), 0};
@@ -98,7 +99,7 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
                     ASSERT_TRUE(s->pdf > 0 && std::isfinite(s->pdf)) << name;
                     ASSERT_NEAR(s->wi.norm(), 1, 1e-5) << name;
                     const bool isSeen = Arriving(scene, from, s->wi).first.sum() > 0;
-                    sum += s->L.sum() * weight(s->wi) / s->pdf * isSeen;
+                    sum += scene.lights.Radiance(i, *s).sum() * weight(s->wi) / s->pdf * isSeen;
                 }
                 sampled.Add(sum);
                 const Vec3f w = SampleUniformSphere(random.Point());
