@@ -41,7 +41,8 @@ class Comparison:
 '''
 FUNCTIONS = {"render": ("scene: Path, *, progress: Progress = None", "Rendering"),
              "compare": ("scene: Path | None = None, *, progress: Progress = None", "Comparison"),
-             "evaluate": ("*recordings: Path", "list[dict[str, Any]]")}
+             "evaluate": ("*recordings: Path | Sequence[Path]", "list[dict[str, Any]]"),
+             "entropy": ("*pictures: Path | Sequence[Path]", "list[dict[str, Any]]")}
 
 
 def type_of(option):

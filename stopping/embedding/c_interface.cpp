@@ -7,7 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "stopping/embedding/picture.h"
 #include "stopping/embedding/stopper.h"
+#include "stopping/signals/attributes26.h"
+#include "stopping/signals/svd_entropy.h"
 
 struct lull_stopper {
     lull::Stopper blocks;
@@ -119,6 +122,12 @@ int lull_stopper_done(const lull_stopper* stopper) {
     return done;
 }
 
+const char* lull_stopper_warning(const lull_stopper* stopper) {
+    const char* warning = "";
+    if (stopper) Guarded([&] { warning = stopper->blocks.Warning(); });
+    return warning;
+}
+
 lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes, size_t* size) {
     return Guarded([&] {
         const std::vector<std::byte> state = NotNull(stopper, "stopper")->blocks.Save();
@@ -136,6 +145,27 @@ lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_
         lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
         NotNull(bytes, "bytes");
         blocks.Restore({static_cast<const std::byte*>(bytes), size});
+    });
+}
+
+lull_status lull_svd_entropy(const lull_picture* picture, int sub_blocks, lull_entropy* entropies) {
+    return Guarded([&] {
+        NotNull(entropies, "entropies");
+        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "picture"));
+        const auto all =
+            lull::SubBlockEntropies(lightness, picture->width, picture->height, sub_blocks);
+        std::ranges::transform(all, entropies, [](const lull::SvdEntropy& e) {
+            return lull_entropy{e.h, e.h1, e.h2};
+        });
+    });
+}
+
+lull_status lull_attributes26(const lull_picture* picture, double* attributes) {
+    return Guarded([&] {
+        NotNull(attributes, "attributes");
+        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "picture"));
+        std::ranges::copy(lull::ComputeAttributes(lightness, picture->width, picture->height),
+                          attributes);
     });
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,19 @@ Strides StridesOf(const lull_picture& picture) {
     return strides;
 }
 
+// Throws std::invalid_argument where a row begins within another one. Columns may lie within rows.
+void CheckRows(const lull_picture& picture) {
+    const Strides s = StridesOf(picture);
+    const auto size = [](ptrdiff_t bytes) { return int64_t(std::abs(bytes)); };
+    const int64_t row = size(s.row), pixel = size(s.pixel);
+    if (row >= pixel * picture.width || pixel >= row * picture.height) return;
+    throw std::invalid_argument("rows of a picture overlap: row_stride is " +
+                                std::to_string(s.row) + " bytes, and a row of " +
+                                std::to_string(picture.width) + " pixels has " +
+                                std::to_string(pixel * picture.width) +
+                                "; strides are in bytes, and 0 means rows without gaps");
+}
+
 template <typename Read>
 std::vector<float> ReadWith(Read read, const Strides& strides, const std::byte* origin,
                             const lull_rect& part) {
@@ -65,6 +79,7 @@ void CheckPicture(const lull_picture& picture, int width, int height, bool needs
         throw std::invalid_argument(
             "the format of a picture must be LULL_LINEAR_FLOAT or LULL_SRGB8");
     if (!picture.mean) throw std::invalid_argument("a picture without pixels: mean is null");
+    CheckRows(picture);
     if (needsHalf && !picture.half)
         throw std::invalid_argument(
             "the stopping rule compares with a half of the samples, which the picture does not "
@@ -79,6 +94,23 @@ std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
     const Strides strides = StridesOf(picture);
     return picture.format == LULL_SRGB8 ? ReadWith(FromSrgb8, strides, bytes, part)
                                         : ReadWith(FromFloat, strides, bytes, part);
+}
+
+std::vector<double> LightnessOf(const lull_picture& picture) {
+    constexpr int kLargestSide = 1 << 16;
+    const auto isSide = [](int pixels) { return pixels > 0 && pixels <= kLargestSide; };
+    if (!isSide(picture.width) || !isSide(picture.height))
+        throw std::invalid_argument("a picture of " + std::to_string(picture.width) + "x" +
+                                    std::to_string(picture.height) +
+                                    " pixels; it must have 1 to 65536 a side");
+    CheckPicture(picture, picture.width, picture.height, false);
+    const lull_rect whole{0, 0, picture.width, picture.height};
+    return LightnessOf(ReadPixels(picture, picture.mean, whole));
+}
+
+bool HasFourthChannel(const lull_picture& picture) {
+    const Strides s = StridesOf(picture);
+    return std::abs(s.pixel) == 4 * std::abs(s.channel);
 }
 
 PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part) {

@@ -162,6 +162,7 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
         const std::string fault = FaultOfExposure(values);
         Require(fault.empty(), fault);
     }
+    NoteChannels(picture);
     // Isolated: this thread has all locks, and must not take up a task that waits for one.
     tbb::this_task_arena::isolate([&] {
         ForEachIndex(int(states.size()), [&](int i) {
@@ -185,8 +186,36 @@ lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int sp
                                                  " spp, and now at " + std::to_string(spp));
     const lull_rect whole{0, 0, rect.width, rect.height};
     CheckValues(block, picture, whole, spp);
+    NoteChannels(picture);
     Check(block, picture, whole, spp);
     return answer;
+}
+
+const char* Stopper::Warning() const {
+    const std::lock_guard lock(warningLock);
+    warning = spacingWarning + (spacingWarning.empty() || channelWarning.empty() ? "" : "; ") +
+              channelWarning;
+    return warning.c_str();
+}
+
+void Stopper::NoteChannels(const lull_picture& picture) {
+    if (!HasFourthChannel(picture)) return;
+    const std::lock_guard lock(warningLock);
+    channelWarning =
+        "pixels seem to have a fourth channel (pixel_stride), and R, G and B are looked at as they "
+        "are; show what people see, over its background";
+}
+
+void Stopper::NoteSpacing(BlockState* state) {
+    const std::string pictures = state->spacing.Note(state->answer);
+    if (pictures.empty()) return;
+    const std::lock_guard lock(warningLock);
+    if (!spacingWarning.empty()) return;  // the first is enough
+    spacingWarning =
+        "pictures at " + pictures +
+        " spp lie too far apart for this rule, which compares them: it has not looked at the last "
+        "and will never stop so; show pictures every 20 or 40 spp, or at most 1.4 times the spp of "
+        "the one before";
 }
 
 // Returns the values of a block's mean; none if no check is due.
@@ -230,6 +259,7 @@ void Stopper::Check(int block, const lull_picture& picture, const lull_rect& par
         answer.people_low = people.low;
         answer.people_high = people.high.value_or(0);
     }
+    NoteSpacing(&state);
 }
 
 // The state begins with what it belongs to and ends with a checksum.

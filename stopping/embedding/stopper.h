@@ -6,9 +6,11 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lull/stopping.h"
+#include "stopping/embedding/picture_spacing.h"
 #include "stopping/rules/block_grid.h"
 #include "stopping/rules/rule.h"
 #include "stopping/signals/picture_values.h"
@@ -32,6 +34,9 @@ class Stopper {
     std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
     lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
     lull_answer Answer(int block) const;
+    // Returns what a user should know of the pictures that were shown, valid until the next call;
+    // "" if there is nothing.
+    const char* Warning() const;
 
     std::vector<std::byte> Save() const;
     // Throws std::runtime_error if the state is damaged or belongs to other settings.
@@ -41,6 +46,7 @@ class Stopper {
     struct BlockState {
         std::unique_ptr<Criterion> criterion;  // null for a block that follows another
         lull_answer answer = {};
+        PictureSpacing spacing = {};
     };
 
     BlockState MakeState(int block) const;
@@ -48,6 +54,8 @@ class Stopper {
     PictureValues CheckValues(int block, const lull_picture& picture, const lull_rect& part,
                               int spp) const;
     void Check(int block, const lull_picture& picture, const lull_rect& part, int spp);
+    void NoteChannels(const lull_picture& picture);
+    void NoteSpacing(BlockState* state);
 
     std::shared_ptr<const Rule> rule;
     BlockGrid grid;
@@ -56,6 +64,9 @@ class Stopper {
     bool needsHalf = false;
     std::vector<BlockState> states;
     mutable std::vector<std::mutex> locks;  // one for each block
+    mutable std::mutex warningLock;
+    std::string spacingWarning, channelWarning;
+    mutable std::string warning;  // as it was last handed out
 };
 
 }  // namespace lull

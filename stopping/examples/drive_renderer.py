@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """Stops another renderer where its picture has had enough samples.
 
-    drive_renderer.py --pictures frame-*.png --step 64     watches pictures that are there
-    drive_renderer.py                                      drives a small renderer of its own
+    drive_renderer.py --pictures frame-*.png     watches pictures that are there
+    drive_renderer.py                            drives a small renderer of its own
 
-The first takes PNG files (needs Pillow), each with so many samples per pixel more than the one before.
+The first takes PNG files (needs Pillow) at any samples per pixel, which are the last number in their names
+(frame-64.png, frame-90.png, ...), in any order.
 The second shows the whole loop: samples are only taken in blocks that go on, the picture is shown, and
 what is not needed any more is not computed. Replace `sample()` by a call of your renderer.
 """
 import argparse
+import pathlib
+import re
 
 import lull
 import numpy as np
@@ -20,12 +23,28 @@ def report(spp, answer):
     print(f"{spp:6} spp: {share:4.0%} of {answer.stopped.size} blocks have stopped{noisy}")
 
 
-def watch_pictures(files, step, **settings):
-    """Returns the spp at which each block may stop, 0 where none of the pictures is good enough."""
+def by_spp(files):
+    """Returns files as (spp, file), by the last number in their names: 9 before 20, and that before 100."""
+    found = {}
+    for file in files:
+        numbers = re.findall(r"\d+", pathlib.Path(file).stem)
+        if not numbers or int(numbers[-1]) == 0:
+            raise SystemExit(f"{file}: has no number of samples in its name, such as frame-64.png")
+        if (other := found.setdefault(int(numbers[-1]), file)) != file:
+            raise SystemExit(f"{file} has as many samples as {other}, by their names")
+    return sorted(found.items())
+
+
+def read(file):
     from PIL import Image
-    stopper, spp = None, 0
-    for spp, file in ((step * (i + 1), f) for i, f in enumerate(files)):
-        image = np.asarray(Image.open(file).convert("RGB"))
+    return np.asarray(Image.open(file).convert("RGB"))
+
+
+def watch_pictures(files, **settings):
+    """Returns the spp at which each block may stop, 0 where none of the pictures is good enough."""
+    stopper = None
+    for spp, file in by_spp(files):
+        image = read(file)
         if stopper is None:
             stopper = lull.Stopper(image.shape[1], image.shape[0], **settings)
         answer = stopper.observe(image, spp)
@@ -63,11 +82,10 @@ def drive(width=400, height=300, step=40, cap=10000, **settings):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pictures", nargs="+", metavar="P.png")
-    parser.add_argument("--step", type=int, default=64, help="samples per pixel between two pictures [64]")
     parser.add_argument("--model", help="entropy (default), noise, paper or a file")
     options = parser.parse_args()
     if options.pictures:
-        print(watch_pictures(options.pictures, options.step, model=options.model))
+        print(watch_pictures(options.pictures, model=options.model))
     else:
         print(drive(model=options.model)[1])
 

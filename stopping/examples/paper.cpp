@@ -4,69 +4,26 @@
 // file: the spp at which each block stopped, row by row.
 //
 // The library runs the method, and no more. What to look at (sub-blocks, H, H1 or H2, k, n, bnorm,
-// snorm) is fixed by the model; entropies and windows stay inside. It trains nothing, and it does
-// not compare with people: `lull train --preset paper` and `lull evaluate` do, or paper.py beside
-// this file. The model "paper" is lull's own small network: the authors' weights are not part of
-// lull; a file with weights of Keras can be named instead.
+// snorm) is fixed by the model; lull_svd_entropy() returns the entropies. It trains nothing, and it
+// does not compare with people: `lull train --preset paper` and `lull evaluate` do, or paper.py
+// beside this file. The model "paper" is lull's own small network: the authors' weights are not
+// part of lull; a file with weights of Keras can be named instead.
 #include <lull/stopping.h>
-#include <png.h>
 
-#include <cctype>
-#include <cstdio>
-#include <filesystem>
-#include <map>
-#include <string>
-#include <vector>
+#include "pictures.h"
 
-struct Picture {
-    int width = 0, height = 0;
-    std::vector<unsigned char> pixels;  // 8-bit sRGB, as people saw it
-};
-
-static int Fail(const std::string& file, const char* message) {
-    std::fprintf(stderr, "paper: %s: %s\n", file.c_str(), message);
+static int Fail(const std::string& file, const std::string& message) {
+    std::fprintf(stderr, "paper: %s: %s\n", file.c_str(), message.c_str());
     return 1;
 }
 
-// Returns the last number in the name of a file; 0 if there is none.
-static int SppOf(const std::string& stem) {
-    size_t end = stem.size();
-    while (end > 0 && !std::isdigit(static_cast<unsigned char>(stem[end - 1]))) --end;
-    size_t begin = end;
-    while (begin > 0 && std::isdigit(static_cast<unsigned char>(stem[begin - 1]))) --begin;
-    return end - begin > 0 && end - begin < 9 ? std::stoi(stem.substr(begin, end - begin)) : 0;
-}
-
-static bool Read(const std::string& file, Picture* picture) {
-    png_image png = {};
-    png.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&png, file.c_str())) return false;
-    png.format = PNG_FORMAT_RGB;
-    *picture = {int(png.width), int(png.height), std::vector<unsigned char>(PNG_IMAGE_SIZE(png))};
-    return png_image_finish_read(&png, nullptr, picture->pixels.data(), 0, nullptr) != 0;
-}
-
-// Finds the pictures of a folder by spp: 9 before 20, which comes before 100.
 static bool Find(const char* folder, std::map<int, std::string>* files) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".png") continue;
-        const std::string file = entry.path().string();
-        const int spp = SppOf(entry.path().stem().string());
-        if (spp == 0) return !Fail(file, "has no number of samples in its name");
-        if (!files->emplace(spp, file).second)
-            return !Fail(file, "there is another picture with as many samples");
+        if (const std::string problem = Add(entry.path().string(), files); !problem.empty())
+            return !Fail(entry.path().string(), problem);
     }
     return !files->empty() || !Fail(folder, "has no PNG files");
-}
-
-// Returns the spp between the pictures, at which a rule looks at the first of them; 0 if they are
-// not its whole multiples: the rule then looks at those of its own n.
-static int PassOf(const std::map<int, std::string>& files) {
-    const int pass = files.begin()->first;
-    int expected = 0;
-    for (const auto& [spp, file] : files)
-        if (spp != (expected += pass)) return 0;
-    return pass;
 }
 
 static void Report(int spp, const std::vector<lull_answer>& answers) {
@@ -94,7 +51,8 @@ int main(int argc, char** argv) {
     std::vector<lull_answer> answers;
     for (const auto& [spp, file] : files) {
         Picture image;
-        if (!Read(file, &image)) return Fail(file, "cannot be read");
+        if (const std::string problem = Read(file, &image); !problem.empty())
+            return Fail(file, problem);
         settings.width = image.width, settings.height = image.height;
         if (!stopper && lull_stopper_create(&settings, &stopper) != LULL_OK)
             return Fail(file, lull_error_message());
@@ -109,6 +67,8 @@ int main(int argc, char** argv) {
         Report(spp, answers);
         if (lull_stopper_done(stopper)) break;
     }
+    if (const std::string warning = lull_stopper_warning(stopper); !warning.empty())
+        Fail(argv[1], warning);
     std::printf("%s;", std::filesystem::absolute(argv[1]).lexically_normal().filename().c_str());
     for (const lull_answer& a : answers) std::printf("%d;", a.stop ? a.spp : 10000);
     std::printf("\n");

@@ -31,7 +31,7 @@ def pictures_in(folder):
     found = []
     for path in pathlib.Path(folder).glob("*.png"):
         numbers = re.findall(r"\d+", path.stem)
-        if not numbers:
+        if not numbers or int(numbers[-1]) == 0:
             raise SystemExit(f"{path}: has no number of samples in its name")
         found.append((int(numbers[-1]), path))
     found.sort()

@@ -1,44 +1,45 @@
-// Watches the pictures of any renderer: `watch_pngs SPP a.png b.png ...`, each with SPP samples per
-// pixel more than the one before. Says of each whether blocks of it still need samples.
+// Watches the pictures of any renderer: `watch_pngs a_64.png b_90.png ...`, PNG files at any
+// samples per pixel, which are the last number in their names, in any order. Says of each whether
+// blocks of it still need samples.
 #include <lull/stopping.h>
-#include <png.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <vector>
+#include "pictures.h"
 
-static int Fail(const char* file, const char* message) {
-    std::fprintf(stderr, "watch_pngs: %s: %s\n", file, message);
+static int Fail(const std::string& file, const std::string& message) {
+    std::fprintf(stderr, "watch_pngs: %s: %s\n", file.c_str(), message.c_str());
     return 1;
 }
 
 int main(int argc, char** argv) {
-    const int step = argc > 2 ? std::atoi(argv[1]) : 0;
-    if (step < 1) return Fail("usage", "watch_pngs SPP a.png b.png ...");
+    if (argc < 2) return Fail("usage", "watch_pngs a_40.png a_80.png ...");
+    std::map<int, std::string> files;
+    for (int i = 1; i < argc; ++i)
+        if (const std::string problem = Add(argv[i], &files); !problem.empty())
+            return Fail(argv[i], problem);
     lull_stopper* stopper = nullptr;
-    for (int i = 2; i < argc; ++i) {
-        png_image png = {};
-        png.version = PNG_IMAGE_VERSION;
-        if (!png_image_begin_read_from_file(&png, argv[i])) return Fail(argv[i], png.message);
-        png.format = PNG_FORMAT_RGB;
-        std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(png));
-        if (!png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr))
-            return Fail(argv[i], png.message);
-
+    std::string warned;
+    for (const auto& [spp, file] : files) {
+        Picture image;
+        if (const std::string problem = Read(file, &image); !problem.empty())
+            return Fail(file, problem);
         lull_settings settings = {};  // all that is 0 has its default: the model "entropy"
-        settings.width = int(png.width), settings.height = int(png.height);
+        settings.width = image.width, settings.height = image.height;
         if (!stopper && lull_stopper_create(&settings, &stopper) != LULL_OK)
-            return Fail(argv[i], lull_error_message());
+            return Fail(file, lull_error_message());
         lull_picture picture = {};
-        picture.width = int(png.width), picture.height = int(png.height);
-        picture.format = LULL_SRGB8, picture.mean = pixels.data();
+        picture.width = image.width, picture.height = image.height;
+        picture.format = LULL_SRGB8, picture.mean = image.pixels.data();
         std::vector<lull_answer> answers(size_t(lull_stopper_block_count(stopper)));
-        if (lull_stopper_observe(stopper, &picture, step * (i - 1), answers.data()) != LULL_OK)
-            return Fail(argv[i], lull_error_message());
+        if (lull_stopper_observe(stopper, &picture, spp, answers.data()) != LULL_OK)
+            return Fail(file, lull_error_message());
+        if (warned != lull_stopper_warning(stopper)) {
+            warned = lull_stopper_warning(stopper);
+            Fail(file, warned);
+        }
 
         int going = 0;
         for (const lull_answer& answer : answers) going += !answer.stop;
-        std::printf("%s: %d spp, %d of %zu blocks go on\n", argv[i], step * (i - 1), going,
+        std::printf("%s: %d spp, %d of %zu blocks go on\n", file.c_str(), spp, going,
                     answers.size());
         if (going == 0) break;
     }

@@ -1,4 +1,6 @@
 """Types of the stopping part of the module `lull`."""
+from typing import NamedTuple
+
 import numpy as np
 
 __version__: str
@@ -97,3 +99,13 @@ class Stopper:
 
         Raises: OSError for damaged states, and states of other arguments.
         """
+
+
+class SvdEntropy(NamedTuple):
+    h: np.ndarray
+    h1: np.ndarray
+    h2: np.ndarray
+
+
+def svd_entropy(image: np.ndarray, sub_blocks: int = 100) -> SvdEntropy: ...
+def attributes26(image: np.ndarray) -> np.ndarray: ...

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "stopping/python/arrays.h"
+#include "stopping/python/check.h"
+#include "stopping/python/entropies.h"
 #include "stopping/python/picture.h"
 
 namespace py = pybind11;
@@ -18,19 +20,6 @@ namespace py = pybind11;
 namespace lull {
 
 namespace {
-
-// What the C interface says becomes an exception: ValueError, FileNotFoundError's parent OSError,
-// MemoryError or RuntimeError.
-void Check(lull_status status) {
-    if (status == LULL_OK) return;
-    const char* message = lull_error_message();
-    if (status == LULL_BAD_ARGUMENT) throw py::value_error(message);
-    PyErr_SetString(status == LULL_BAD_FILE        ? PyExc_OSError
-                    : status == LULL_OUT_OF_MEMORY ? PyExc_MemoryError
-                                                   : PyExc_RuntimeError,
-                    message);
-    throw py::error_already_set();
-}
 
 // How it stands with all blocks, for each number an array of rows x columns.
 struct Answer {
@@ -55,29 +44,19 @@ struct Answer {
     }
 };
 
-// Notices pictures of a block that lie too far apart for rules that compare them: these then look
-// at none, and never stop the block.
-class Spacing {
-  public:
-    // Returns the samples of the last three pictures if the third has come when it was asked for,
-    // could still not be checked, and each has so many times the samples of the one before; ""
-    // otherwise.
-    std::string Note(const lull_answer& answer) {
-        constexpr double kFar = 1.6;
-        const bool isFar = before > 0 && last >= kFar * before && answer.spp >= kFar * last;
-        const bool isMissed = !answer.stop && !answer.checked && answer.spp >= awaited;
-        const std::string pictures = std::to_string(before) + ", " + std::to_string(last) +
-                                     " and " + std::to_string(answer.spp);
-        before = last;
-        last = answer.spp;
-        awaited = answer.next_spp;
-        return isFar && isMissed ? pictures : "";
-    }
+std::string ReprOf(const lull_answer& a) {
+    const std::string votes = a.votes_needed > 1
+                                  ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
+                                  : py::str();
+    return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
+        .format(a.stop ? "stopped" : "active", a.spp, votes, a.value, a.threshold);
+}
 
-  private:
-    int before = 0, last = 0;  // spp
-    int awaited = 0;
-};
+constexpr int kDebug = 10, kInfo = 20;  // levels of Python's logging
+
+py::object Logger() { return py::module_::import("logging").attr("getLogger")("lull.stopper"); }
+
+bool IsLogged(int level) { return Logger().attr("isEnabledFor")(level).cast<bool>(); }
 
 class Stopper {
   public:
@@ -101,7 +80,6 @@ class Stopper {
         lull_stopper* made = nullptr;
         Check(lull_stopper_create(&settings, &made));
         handle.reset(made, lull_stopper_destroy);
-        spacings.resize(size_t(lull_stopper_block_count(made)));
     }
 
     Answer Observe(const py::array& image, int spp, const std::optional<py::array>& half) {
@@ -113,7 +91,8 @@ class Stopper {
             status = lull_stopper_observe(handle.get(), &picture.view, spp, answer.blocks.data());
         }
         Check(status);
-        for (size_t i = 0; i < answer.blocks.size(); ++i) CheckSpacing(i, answer.blocks[i]);
+        WarnOnce();
+        Log(answer, spp);
         return answer;
     }
 
@@ -128,7 +107,8 @@ class Stopper {
             status = lull_stopper_observe_block(handle.get(), block, &picture.view, spp, &answer);
         }
         Check(status);
-        CheckSpacing(size_t(block), answer);
+        WarnOnce();
+        if (IsLogged(kDebug)) LogBlock(block, answer);
         return answer;
     }
 
@@ -177,16 +157,22 @@ class Stopper {
     const int width, height;
 
   private:
-    // Warns once.
-    void CheckSpacing(size_t block, const lull_answer& answer) {
-        const std::string pictures = spacings[block].Note(answer);
-        if (pictures.empty() || hasWarned) return;
+    void WarnOnce() {
+        const std::string warning = lull_stopper_warning(handle.get());
+        if (hasWarned || warning.empty()) return;
         hasWarned = true;
-        Warn("pictures at " + pictures +
-             " spp lie too far apart for this rule, which compares them: it has not looked at "
-             "the last and will never stop so; show pictures every 20 or 40 spp, or at most 1.4 "
-             "times "
-             "the spp of the one before");
+        Warn(warning);
+    }
+    void Log(const Answer& answer, int spp) const {
+        if (IsLogged(kInfo))
+            Logger().attr("info")("%d spp: %d of %d blocks have stopped", spp,
+                                  answer.StoppedCount(), answer.blocks.size());
+        if (!IsLogged(kDebug)) return;
+        for (size_t i = 0; i < answer.blocks.size(); ++i)
+            if (answer.blocks[i].spp == spp) LogBlock(int(i), answer.blocks[i]);
+    }
+    void LogBlock(int block, const lull_answer& answer) const {
+        Logger().attr("debug")("block %d: %s", block, ReprOf(answer));
     }
     lull_rect RectOf(int block) const {
         lull_rect rect;
@@ -199,20 +185,11 @@ class Stopper {
     }
 
     std::shared_ptr<lull_stopper> handle;
-    std::vector<Spacing> spacings;  // of the blocks
     bool hasWarned = false;
 };
 
 std::optional<double> Known(double value) {
     return value < 0 ? std::nullopt : std::optional(value);
-}
-
-std::string ReprOf(const lull_answer& a) {
-    const std::string votes = a.votes_needed > 1
-                                  ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
-                                  : py::str();
-    return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
-        .format(a.stop ? "stopped" : "active", a.spp, votes, a.value, a.threshold);
 }
 
 std::string ReprOf(const Answer& answer) {
@@ -279,12 +256,21 @@ void BindStopper(py::module_& module) {
     using namespace py::literals;
     py::class_<Stopper>(
         module, "Stopper",
-        "Decides on the blocks of a picture of width x height pixels, from its first samples to\n"
-        "its last. `model` is the name of an installed model ('entropy', the default; 'noise',\n"
-        "'paper') or a file; `rule` any other rule of `lull render --stop`; `models` the folder\n"
-        "of installed models; `block` the pixels a side of blocks; `pass_spp` the spp between two\n"
-        "pictures, 0 if they come at any spp; `cap` the most spp, if above 10,000; `caution`\n"
-        "divides the threshold of visible noise.")
+        "Decides on the blocks of a picture, from its first samples to its last.\n\n"
+        "Args:\n"
+        "    width, height: pixels of the picture, from 40 to 65,536 each.\n"
+        "    model: the name of an installed model ('entropy', the default; 'noise', 'paper') or "
+        "a\n"
+        "        file.\n"
+        "    rule: any other rule of `lull render --stop`, in place of a model.\n"
+        "    models: the folder of installed models.\n"
+        "    block: pixels a side of the blocks, 40 or more.\n"
+        "    pass_spp: the samples per pixel (spp) between two pictures; 0: they come at any spp.\n"
+        "    cap: the most spp, if above 10,000; 0: not known.\n"
+        "    caution: above 0; divides the threshold of visible noise.\n\n"
+        "Raises:\n"
+        "    ValueError: for a setting out of its range, or an unknown rule.\n"
+        "    OSError: for a model or a file that cannot be read.")
         .def(
             py::init<int, int, const std::optional<std::string>&, const std::optional<std::string>&,
                      const std::optional<std::string>&, int, int, int, double>(),
@@ -292,14 +278,34 @@ void BindStopper(py::module_& module) {
             "models"_a = py::none(), "block"_a = 200, "pass_spp"_a = 0, "cap"_a = 0,
             "caution"_a = 1.0)
         .def("observe", &Stopper::Observe, "image"_a, "spp"_a, "half"_a = py::none(),
-             "Shows the picture at `spp` samples per pixel, more than at the last call: an array "
-             "of\n"
-             "height x width x 3, float32 (linear) or uint8 (sRGB), with any strides; `half` is "
-             "the\n"
-             "mean of a fixed half of the samples. Returns an Answer.")
+             "Shows the picture after more samples, and decides.\n\n"
+             "Args:\n"
+             "    image: an array of height x width x 3, float32 (linear; 1 is white) or uint8\n"
+             "        (sRGB), with any strides; what has stopped is not looked at.\n"
+             "    spp: its samples per pixel, more than at the last call.\n"
+             "    half: the mean of a fixed half of the samples, for rules that compare it.\n\n"
+             "Returns:\n"
+             "    An Answer.\n\n"
+             "Raises:\n"
+             "    ValueError: for another shape or type, values that no picture has, an spp that "
+             "is\n"
+             "        not above the last, or a half that is missing. Nothing has changed then.\n\n"
+             "Warns:\n"
+             "    UserWarning: of values that are not finite, negative or above white, of further\n"
+             "        channels, and of pictures too far apart for the rule ever to stop.")
         .def("observe_block", &Stopper::ObserveBlock, "block"_a, "image"_a, "spp"_a,
-             "half"_a = py::none(), "The same for one block. Returns a BlockAnswer.")
-        .def("answer", &Stopper::Last, "Returns the last Answer again.")
+             "half"_a = py::none(),
+             "Does the same for one block.\n\n"
+             "Args:\n"
+             "    block: its number, row by row from 0.\n"
+             "    image, spp, half: as for observe(), of the block alone.\n\n"
+             "Returns:\n"
+             "    A BlockAnswer.\n\n"
+             "Raises:\n"
+             "    ValueError: as observe(), and for a block that there is not.")
+        .def("answer", &Stopper::Last,
+             "Returns the last answer again.\n\nReturns:\n    An Answer; its spp are 0 before the "
+             "first picture.")
         .def_property_readonly("blocks", &Stopper::Blocks,
                                "Where the blocks lie: (x, y, width, height), row by row.")
         .def_property_readonly("active", &Stopper::Active,
@@ -307,8 +313,14 @@ void BindStopper(py::module_& module) {
         .def_property_readonly("done", &Stopper::Done, "Whether all blocks have stopped.")
         .def_property_readonly("needs_half", &Stopper::NeedsHalf,
                                "Whether the rule has to be shown a half of the samples.")
-        .def("save", &Stopper::Save, "Returns all that has been noted, as bytes.")
-        .def("restore", &Stopper::Restore, "state"_a, "Takes up what save() has returned.")
+        .def("save", &Stopper::Save,
+             "Saves all that has been noted, for a checkpoint of the renderer.\n\n"
+             "Returns:\n    bytes, which this version on this machine can restore.")
+        .def("restore", &Stopper::Restore, "state"_a,
+             "Takes up what save() has returned.\n\n"
+             "Args:\n    state: bytes of a stopper with the same settings.\n\n"
+             "Raises:\n    OSError: if they are damaged or of other settings; nothing has changed "
+             "then.")
         .def_readonly("width", &Stopper::width)
         .def_readonly("height", &Stopper::height)
         .def("__repr__", [](const Stopper& s) { return ReprOf(s); });
@@ -330,4 +342,5 @@ PYBIND11_MODULE(_stopping, module) {
     lull::BindBlockAnswer(module);
     lull::BindAnswer(module);
     lull::BindStopper(module);
+    lull::BindEntropies(module);
 }

@@ -1,5 +1,7 @@
 #include "stopping/python/picture.h"
 
+#include <cstdlib>
+
 #include "stopping/python/arrays.h"
 
 namespace lull {
@@ -32,6 +34,14 @@ py::array Packed(const py::array& pixels) {
                                                       py::arg("order") = "C");
 }
 
+// Returns whether the library can be shown an array as it is: rows apart from each other, and no
+// room for a fourth channel, of which it would tell once more.
+bool IsPlain(const py::array& pixels) {
+    const auto row = std::abs(pixels.strides(0)), pixel = std::abs(pixels.strides(1));
+    const bool overlaps = row < pixel * pixels.shape(1) && pixel < row * pixels.shape(0);
+    return !overlaps && pixel != 4 * std::abs(pixels.strides(2));
+}
+
 }  // namespace
 
 Picture::Picture(const py::array& image, const std::optional<py::array>& other, int width,
@@ -43,6 +53,7 @@ Picture::Picture(const py::array& image, const std::optional<py::array>& other, 
         throw py::value_error("image and half have different types");
     for (int i = 0; i < 3; ++i)
         isPlain = isPlain && mean.strides(i) != 0 && (!half || half->strides(i) == mean.strides(i));
+    isPlain = isPlain && IsPlain(mean);
     if (!isPlain) {
         mean = Packed(mean);
         if (half) half = Packed(*half);

@@ -194,6 +194,58 @@ class StopperTest(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "half has values"):
             lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(black, 40, half)
 
+    def test_measures_entropies(self):
+        codes = np.uint8(255 * np.clip(picture(40)[0], 0, 1))
+        whole = lull.svd_entropy(codes, sub_blocks=1)
+        self.assertEqual(whole.h.shape, (1, 1))
+        np.testing.assert_allclose(whole.h, whole.h1 + whole.h2, atol=1e-12)
+        parts = lull.svd_entropy(codes)
+        self.assertEqual(parts.h.shape, (10, 10))
+        part = lull.svd_entropy(codes[6:12, 14:21], sub_blocks=1)  # row 1, column 2
+        self.assertEqual(parts.h[1, 2], part.h[0, 0])
+        self.assertTrue(((0 < parts.h) & (parts.h < 1)).all())
+        self.assertGreater(lull.svd_entropy(picture(20)[0]).h.mean(), lull.svd_entropy(picture(9000)[0]).h.mean())
+        # The definition, on an L that numpy computes.
+        v = codes / 255
+        y = np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4) @ [0.212671, 0.715160, 0.072169]
+        lightness = 116 * np.where(y > 0.008856, np.cbrt(y), 7.787 * y + 16 / 116) - 16
+        s = np.linalg.svd(lightness, compute_uv=False) ** 2
+        terms = -s / s.sum() * np.log(s / s.sum()) / np.log(len(s))
+        self.assertAlmostEqual(whole.h[0, 0], terms.sum(), 9)
+        self.assertAlmostEqual(whole.h1[0, 0], terms[:len(s) // 4].sum(), 9)
+        attributes = lull.attributes26(codes)
+        self.assertEqual(attributes.shape, (26,))
+        box = np.pad(lightness, 1, mode="reflect")
+        mean = sum(box[j:j + HEIGHT, i:i + WIDTH] for j in range(3) for i in range(3)) / 9
+        self.assertAlmostEqual(attributes[0], abs(lightness - mean).mean(), 9)
+        for sub_blocks in 0, -1, 99, 61 * 61, 10 ** 9:
+            with self.assertRaises(ValueError):
+                lull.svd_entropy(codes, sub_blocks=sub_blocks)
+        for wrong in codes[:, :, 0], codes[:0], codes.astype(int):
+            with self.assertRaises(ValueError):
+                lull.svd_entropy(wrong)
+        for text in (lull.svd_entropy, lull.attributes26, lull.Stopper.observe):
+            self.assertRegex(text.__doc__, r"Args:\n(.|\n)*Returns:\n(.|\n)*Raises:\n")
+
+    def test_tells_a_logger(self):
+        stopper = lull.Stopper(140, 60, rule="fixed:80", block=70)
+        image = np.concatenate([picture(40)[0]] * 2, axis=1)
+        with self.assertLogs("lull.stopper", "DEBUG") as log:
+            stopper.observe(image, 40)
+            stopper.observe_block(0, picture(40)[0], 80)
+        self.assertEqual(log.output[0], "INFO:lull.stopper:40 spp: 0 of 2 blocks have stopped")
+        self.assertEqual(log.output[1], "DEBUG:lull.stopper:block 0: <lull.BlockAnswer: active at 40 spp, value 40, threshold 80>")
+        self.assertIn("block 0: <lull.BlockAnswer: stopped at 80 spp", log.output[-1])
+        with self.assertNoLogs("lull.stopper", "INFO"):
+            stopper.observe_block(1, picture(40)[0], 80)
+
+    def test_reads_rows_that_overlap(self):
+        image = picture(40)[0]
+        # Each row is the one above, moved by a pixel.
+        window = np.lib.stride_tricks.as_strided(image, (40, 40, 3), (12, 12, 4), writeable=False)
+        a, b = (lull.Stopper(40, 40, rule="entropy").observe(v, 40) for v in (window, window.copy()))
+        self.assertEqual(numbers(a), numbers(b))
+
     def test_says_what_it_is(self):
         stopper = lull.Stopper(WIDTH, HEIGHT, rule="fixed:80")
         self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 0 of 1 blocks stopped>")
@@ -207,6 +259,9 @@ class StopperTest(unittest.TestCase):
         stub = ast.parse(pathlib.Path(lull.__file__).with_name("_stopping.pyi").read_text())
         for kind in (node for node in stub.body if isinstance(node, ast.ClassDef)):
             named = {n.target.id if isinstance(n, ast.AnnAssign) else n.name for n in kind.body}
+            if kind.name == "SvdEntropy":
+                self.assertEqual(named, set(lull.SvdEntropy._fields))
+                continue
             real = {n for n in vars(getattr(lull, kind.name)) if not n.startswith("_")}
             self.assertEqual(named - {"__init__"}, real, kind.name)
 
@@ -234,6 +289,19 @@ class StopperTest(unittest.TestCase):
         self.assertLess(spp[0, 1], 10000)
         self.assertIn("100% of 2 blocks have stopped", out.getvalue())
         self.assertTrue(np.isfinite(image).all())
+
+    def test_example_watches_pictures_by_their_spp(self):
+        images = {spp: np.uint8(255 * np.clip(picture(spp)[0], 0, 1)) for spp in (40, 100, 56, 80)}
+        names = {f"tex_{spp}.png": image for spp, image in images.items()}
+        self.assertEqual(drive_renderer.by_spp(sorted(names)),
+                         [(spp, f"tex_{spp}.png") for spp in (40, 56, 80, 100)])
+        with unittest.mock.patch.object(drive_renderer, "read", names.get):
+            with contextlib.redirect_stdout(io.StringIO()) as out:
+                drive_renderer.watch_pictures(sorted(names))
+        self.assertEqual([line.split()[0] for line in out.getvalue().splitlines()], ["40", "56", "80", "100"])
+        for files, message in ((["a.png"], "no number of samples"), (["a_40.png", "b_40.png"], "as many samples")):
+            with self.assertRaisesRegex(SystemExit, message):
+                drive_renderer.by_spp(files)
 
     def test_example_runs_the_papers_method(self):
         pictures = {spp: np.uint8(255 * np.clip(picture(spp)[0], 0, 1)) for spp in range(20, 420, 20)}

@@ -54,7 +54,7 @@ std::set<std::string> OptionsIn(const std::string& help) {
 }
 
 const char* const kCommands[] = {"render",   "info",    "record", "train", "evaluate",
-                                 "selftest", "compare", "bench",  "study"};
+                                 "selftest", "compare", "bench",  "study", "entropy"};
 
 TEST(Install, RunsWhereItIsMoved) {
     const InstalledTree tree;
@@ -128,7 +128,7 @@ TEST(Install, CompletionKnowsCommandsAndValues) {
 // Writes pictures of ever less noise: a gradient, to which the mean of so many samples adds some.
 // A pattern makes names of the number of the picture and its samples per pixel.
 std::string WritePictures(const TemporaryDirectory& directory, int count, int step,
-                          const char* pattern = "p{:02}.png") {
+                          const char* pattern) {
     std::mt19937 generator(1);
     std::normal_distribution<float> gauss;
     std::vector<Rgb> sum(100 * 60, Rgb(0, 0, 0)), mean = sum;
@@ -155,9 +155,10 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
              "-DCMAKE_CXX_COMPILER='" LULL_CXX
              "' -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON >&2 && "
              "'" LULL_CMAKE "' --build build >&2");
-    const std::string pictures = WritePictures(tree, 30, 60);
-    const std::string out = Do(tree, "build/watch_pngs 60" + pictures);
-    EXPECT_TRUE(out.starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n")) << out;
+    WritePictures(tree, 30, 60, "tex_{1}.png");
+    const std::string out = Do(tree, "build/watch_pngs tex_*.png");  // 120 is the first name
+    EXPECT_TRUE(out.starts_with("tex_60.png: 60 spp, 1 of 1 blocks go on\ntex_120.png: 120 spp"))
+        << out;
     EXPECT_TRUE(out.ends_with(", 0 of 1 blocks go on\n")) << out;
     EXPECT_GT(std::ranges::count(out, '\n'), 5) << out;
 
@@ -174,11 +175,15 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     EXPECT_EQ(unnamed.exitCode, 1);
     EXPECT_TRUE(Contains(unnamed.err, "p.png: has no number of samples")) << unnamed.err;
 
-    const Outcome bad = RunShell(tree, "build/watch_pngs 60 p01.png nowhere.png");
+    const Outcome doubled = RunShell(tree, "build/watch_pngs tex_60.png tex_120.png tex_240.png");
+    EXPECT_EQ(doubled.exitCode, 0);
+    EXPECT_TRUE(Contains(doubled.err, "tex_240.png: pictures at 60, 120 and 240 spp lie too far"))
+        << doubled.err;
+    const Outcome bad = RunShell(tree, "build/watch_pngs tex_60.png nowhere_80.png");
     EXPECT_EQ(bad.exitCode, 1);
-    EXPECT_TRUE(Contains(bad.err, "nowhere.png")) << bad.err;
-    WritePng(tree.File("small.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
-    const Outcome small = RunShell(tree, "build/watch_pngs 60 small.png");
+    EXPECT_TRUE(Contains(bad.err, "nowhere_80.png")) << bad.err;
+    WritePng(tree.File("small_20.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
+    const Outcome small = RunShell(tree, "build/watch_pngs small_20.png");
     EXPECT_EQ(small.exitCode, 1);
     EXPECT_TRUE(Contains(small.err, "20x20")) << small.err;
 }
@@ -192,9 +197,9 @@ TEST(Install, PkgConfigFindsTheLibraries) {
     Do(tree, "eval \"'" LULL_CXX
              "' -std=c++17 TREE/share/doc/lull/examples/watch_pngs.cpp -o judge " +
                  ("$(" + flags + "--cflags --libs lull-stopping libpng)\""));
-    const std::string pictures = WritePictures(tree, 2, 60);
-    const std::string run = "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./judge 60" + pictures;
-    EXPECT_TRUE(Do(tree, run).starts_with("p01.png: 60 spp, 1 of 1 blocks go on\n"));
+    const std::string pictures = WritePictures(tree, 2, 60, "p{1}.png");
+    const std::string run = "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./judge" + pictures;
+    EXPECT_TRUE(Do(tree, run).starts_with("p60.png: 60 spp, 1 of 1 blocks go on\n"));
     tree.Write("use.c",
                "#include <lull/denoising.h>\n"
                "int main(void) { return lull_denoise(0, 0) == 0; }\n");

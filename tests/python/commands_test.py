@@ -104,8 +104,28 @@ class Others(unittest.TestCase):
             self.assertIn("automatic", [i["name"] for i in c.figures["images"]])
             thresholds = os.path.join(folder, "c.thresholds.csv")
             rows = lull.evaluate(human=thresholds, predicted=thresholds)
+            self.assertEqual(lull.evaluate([], human=thresholds, predicted=thresholds), rows)
+            picture = os.path.join(folder, "c.reference.png")
+            entropies = lull.entropy([picture], block=50, sub_blocks=25)
+            self.assertEqual(entropies, lull.entropy(picture, block=50, sub_blocks=25))
+            self.assertEqual([row["block"] for row in entropies], ["", 0])
+            self.assertEqual(entropies[0]["h"], entropies[1]["h"])  # one block
+            with self.assertRaisesRegex(lull.Error, "data.h5"):
+                lull.evaluate([os.path.join(folder, "data.h5")], human=thresholds, stop="learned")
         self.assertTrue(rows)
         self.assertTrue(any(value == 0 for row in rows for value in row.values()), rows)
+
+    def test_module_is_the_program(self):
+        def run(*words):
+            return subprocess.run([sys.executable, "-m", "lull", *words], capture_output=True, text=True,
+                                  env=dict(os.environ, PYTHONPATH=sys.path[0]))
+
+        self.assertEqual(run("--version").stdout, "lull %s\n" % lull.__version__)
+        self.assertEqual(run("rendr").returncode, 2)
+
+    def test_help_has_arguments_and_results(self):
+        for function in lull.render, lull.compare, lull.evaluate, lull.entropy:
+            self.assertRegex(function.__doc__, r"Args:\n(.|\n)*Returns:\n(.|\n)*Raises:\n")
 
     def test_example_runs(self):
         example = ROOT / "renderer/python/examples/three_rules.py"

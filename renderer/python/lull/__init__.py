@@ -4,9 +4,11 @@
     r = lull.render("scene.pbrt", resolution=(400, 300), denoise=True)
     r.image, r.spp, r.blocks, r.seconds
 
-Options are those of the command of the same name, with _ for -: `lull render --help`.
+Options are those of the command of the same name, with _ for -: `lull render --help`. `python -m
+lull` is the program itself. What a Stopper decides goes to the logger "lull.stopper": pictures with
+the level INFO, blocks with DEBUG.
 """
 from ._stopping import *  # noqa: F401,F403
 from ._stopping import __version__  # noqa: F401
-from .commands import Comparison, Rendering, compare, evaluate, render  # noqa: F401
+from .commands import Comparison, Rendering, compare, entropy, evaluate, render  # noqa: F401
 from .program import Error  # noqa: F401

@@ -1,4 +1,4 @@
-"""The commands render, compare and evaluate as functions."""
+"""The commands render, compare, evaluate and entropy as functions."""
 import contextlib
 import csv
 import dataclasses
@@ -66,11 +66,26 @@ def _output(options, name):
 
 
 def render(scene, *, progress=None, **options):
-    """Renders a scene until each block of the image has stopped. Returns a Rendering.
+    """Renders a scene until each block of the image has stopped.
 
-    Options are those of `lull render`. A KeyboardInterrupt ends it early, with what there is.
-    `progress` is called with each event of --json-progress; False: shows nothing. Files stay only
-    where `output` or `report` name them. Raises TypeError, ValueError or lull.Error."""
+    A KeyboardInterrupt ends it early, with what there is.
+
+    Args:
+        scene: a file of pbrt-v3 or glTF.
+        progress: a function that is called with each event of --json-progress; None: a line in a
+            terminal or a notebook; False: nothing.
+        **options: those of `lull render`, with _ for -: resolution=(400, 300), denoise=True. Files
+            stay only where `output` or `report` name them.
+
+    Returns:
+        A Rendering.
+
+    Raises:
+        TypeError: for an option that the command does not have.
+        ValueError: for a value that an option does not take.
+        lull.Error: for a scene or a file that is at fault.
+        FileNotFoundError: if the program lull is not found.
+    """
     with _output(options, "image.exr") as folder:
         options.setdefault("report", os.path.join(folder, "report.json"))
         last = program.run("render", [scene], options, progress)
@@ -89,8 +104,20 @@ def render(scene, *, progress=None, **options):
 
 
 def compare(scene=None, *, progress=None, **options):
-    """Compares the images of a rule, of people and of the cap. Returns a Comparison. Options are
-    those of `lull compare`."""
+    """Compares the images of a rule, of people and of the most samples.
+
+    Args:
+        scene: a file of pbrt-v3 or glTF; None: images=FOLDER names pictures of another renderer,
+            or automatic=, human= and reference= images that were rendered before.
+        progress: as for render().
+        **options: those of `lull compare`, with _ for -.
+
+    Returns:
+        A Comparison, whose images are those that were written as OpenEXR.
+
+    Raises:
+        TypeError, ValueError, lull.Error, FileNotFoundError: as render().
+    """
     with _output(options, "compare"):
         program.run("compare", [] if scene is None else [scene], options, progress)
         beginning = os.fspath(options["output"])
@@ -102,13 +129,56 @@ def compare(scene=None, *, progress=None, **options):
 
 
 def evaluate(*recordings, **options):
-    """Judges stopping rules by the thresholds of people. Returns the rows of its CSV file, as dicts
-    with numbers where there are such. Options are those of `lull evaluate`."""
+    """Judges stopping rules by the thresholds of people.
+
+    Args:
+        *recordings: data sets, each by itself or all in a list.
+        **options: those of `lull evaluate`, with _ for -: human="human.csv", stop=["learned"],
+            images="pictures/kitchen".
+
+    Returns:
+        The rows of its CSV file: dicts, with numbers where there are such.
+
+    Raises:
+        TypeError, ValueError, lull.Error, FileNotFoundError: as render().
+    """
+    return _rows("evaluate", recordings, options)
+
+
+def entropy(*pictures, **options):
+    """Computes the SVD-entropies of pictures, of their blocks and sub-blocks.
+
+    Args:
+        *pictures: image files, each by itself or all in a list.
+        **options: those of `lull entropy`, with _ for -: images="pictures/kitchen", block=200,
+            sub_blocks=100, values=True, attributes=True.
+
+    Returns:
+        The rows of its CSV file, for each picture in the order of the samples per pixel: dicts
+        with spp, block (empty: the picture), h, h1, h2, mean_h, ...
+
+    Raises:
+        TypeError, ValueError, lull.Error, FileNotFoundError: as render().
+    """
+    return _rows("entropy", pictures, options)
+
+
+def _rows(command, inputs, options):
+    """Runs a command that writes a CSV file on inputs, and returns the rows."""
     with tempfile.TemporaryDirectory(prefix="lull-") as folder:
         options.setdefault("csv", os.path.join(folder, "rows.csv"))
-        program.run("evaluate", recordings, options)
+        program.run(command, _flat(inputs), options)
         with open(options["csv"], encoding="utf-8", newline="") as f:
             return [{key: _number(value) for key, value in row.items()} for row in csv.DictReader(f)]
+
+
+def _flat(inputs):
+    """Returns files that are given one by one or in lists."""
+    for one in inputs:
+        if isinstance(one, (list, tuple)):
+            yield from one
+        else:
+            yield one
 
 
 def _number(text):

@@ -90,7 +90,8 @@ typedef struct lull_settings {
 } lull_settings;
 
 /* Points to pixels, which are read only during the call. Strides are in bytes and may be negative;
- * 0 means contiguous channels of a pixel, pixels of a row, and rows, from the top down. */
+ * 0 means contiguous channels of a pixel, pixels of a row, and rows, from the top down. Rows must
+ * not overlap. */
 typedef struct lull_picture {
     int width, height;
     int format;       /* a lull_format */
@@ -155,6 +156,12 @@ LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
 /* Returns 1 if all blocks have stopped, and for NULL. */
 LULL_API int lull_stopper_done(const lull_stopper* stopper);
 
+/* Return what a user should know of the pictures that have been shown, as a line of text; "" if
+ * there is nothing, and for NULL. Valid until the next call for the stopper. That pictures lie too
+ * far apart for the rule, which compares them, so that it will never stop (spp that double), and
+ * that pixels seem to have a fourth channel (pixel_stride), which is ignored. */
+LULL_API const char* lull_stopper_warning(const lull_stopper* stopper);
+
 /* Writes the state of a stopper to `bytes`, for a checkpoint of the renderer. `*size` is the room
  * there on entry, and the size needed on return; if `bytes` is NULL nothing else is done.
  * LULL_BAD_ARGUMENT if the room is too small. The layout is that of this machine and version. */
@@ -162,6 +169,24 @@ LULL_API lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes,
 /* Restores that state in a stopper with the same settings. LULL_BAD_FILE if the bytes are damaged
  * or belong to other settings; the stopper is then unchanged. */
 LULL_API lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_t size);
+
+/* Holds the entropies of a part of a picture, each in [0, 1]; h = h1 + h2. */
+typedef struct lull_entropy {
+    double h, h1, h2;
+} lull_entropy;
+
+/* Computes the SVD-entropy of each of `sub_blocks` parts of a picture, row by row, from the
+ * lightness (0 to 100) that an 8-bit display shows of its mean: with the n singular values s_i of a
+ * part, the largest first, and p_i = s_i^2 / sum s^2, h = -1 / log(n) sum p_i log p_i, of which h1
+ * has the terms of the first n / 4 values and h2 the others (Buisine et al. 2021, Eqs. 3 to 5).
+ * `sub_blocks` is a square number, 1 for the picture as a whole; the picture has at least its root
+ * in pixels a side. `entropies` has room for as many. LULL_BAD_ARGUMENT. */
+LULL_API lull_status lull_svd_entropy(const lull_picture* picture, int sub_blocks,
+                                      lull_entropy* entropies);
+/* Computes the 26 attributes that SVD-entropy is compared with: the means of |L - filtered L| for
+ * 13 filters, then their standard deviations. The picture has at least 5 pixels a side,
+ * `attributes` room for 26 numbers. LULL_BAD_ARGUMENT. */
+LULL_API lull_status lull_attributes26(const lull_picture* picture, double* attributes);
 
 /* Returns what went wrong in the last call of this thread that did not return LULL_OK; never NULL;
  * valid until the next such call. */
