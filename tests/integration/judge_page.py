@@ -182,6 +182,77 @@ def guessing(browser, page, folder):
     return observer.save(folder)
 
 
+def in_another_way(browser, page, folder):
+    """Reads other texts, answers questions, and goes down as well."""
+    observer = Participant(browser, page, lambda block, kind: RULE[block])
+    check(browser.evaluate("document.documentElement.lang === 'de' && screenName === 'own' &&"
+                           " byId('own-elements').textContent === 'Bitte zustimmen'"), "the own text is first")
+    browser.click("#agree")
+    check(browser.evaluate("byId('welcome-title').textContent") == "Wo ist Rauschen?", "texts are the researcher's")
+    browser.evaluate("byId('age').value = 33; for (const id of ['vision', 'colour'])"
+                     " document.querySelector(`input[name=${id}]`).checked = true")
+    observer.begin("eve")
+    observer.look()
+    observer.expect("end")
+    check(browser.evaluate("byId('end-title').textContent") == "Danke, eve", "also those with names in them")
+    file = observer.save(folder)
+    saved = json.loads(file.read_text())
+    check(saved["person"] == {"age": 33, "vision": "good", "colour": "usual"}, "questions are answered")
+    down = [a for a in saved["answers"] if a["kind"] == "descend"]
+    check(len(down) == 3 and all(STEPS[a["level"]] == snapped(RULE[a["block"]]) and a["lowest"] == a["level"] - 1
+                                 for a in down if a["level"] > 0), "half of the blocks are asked from above")
+    return file
+
+
+def is_in_view(browser):
+    return browser.evaluate("['noisy', 'reference'].every(id => { const r = byId(id).getBoundingClientRect();"
+                            " return r.left >= 0 && r.top >= 0 && r.right <= innerWidth && r.bottom <= innerHeight; })")
+
+
+def check_windows(browser, page):
+    """Both pictures are seen as a whole, or nobody can begin."""
+    def resize(width, height, scale=1):
+        browser.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale,
+                     mobile=False)
+        browser.wait_for(f"innerWidth === {width}")
+
+    resize(1400, 1000)
+    observer = Participant(browser, page, lambda block, kind: 0)
+    observer.tab_to("#name")
+    browser.call("Input.insertText", text="wim")
+    observer.key("Enter")
+    observer.expect("check")
+    for width, height in (1400, 1000), (700, 900):
+        resize(width, height)
+        browser.wait_for("byId('begin').disabled")
+        text = browser.evaluate("byId('window').textContent")
+        check(f"has {width} x {height}." in text and "do not fit: they need 1632 x " in text,
+              f"pictures of 800x800 do not fit into {width}x{height}")
+        check(browser.evaluate("document.documentElement.scrollWidth <= innerWidth"), "the check itself does")
+    resize(1000, 700, 2)
+    browser.wait_for("!byId('begin').disabled")
+    check("1x1 of its pixels for one of a picture, in place of 2x2" in browser.evaluate("byId('window').textContent"),
+          "and are made smaller by whole pixels where there are such")
+    resize(1920, 1000)
+    browser.wait_for("!byId('begin').disabled && byId('window').textContent.includes('1920 x 1000')")
+    browser.click("input[name=tones]")
+    browser.click("#begin")
+    browser.click("#practice-skip")
+    observer.expect("task")
+    check(is_in_view(browser), "both pictures are whole in a window of 1920x1000")
+    check(browser.evaluate("session.display.arrangement === 'side by side' && session.display.shown === 1"),
+          "how they were shown is kept")
+    resize(1000, 1900)
+    browser.wait_for("byId('stages').classList.contains('stacked')")
+    check(is_in_view(browser), "and in a high one, one above the other")
+    resize(1400, 1000)
+    observer.expect("pause")
+    browser.click("#go-on")
+    check(browser.evaluate("screenName === 'pause' && byId('pause-why').textContent.includes('1400 x 1000')"),
+          "a window that becomes too small is a pause, and why")
+    browser.call("Emulation.clearDeviceMetricsOverride")
+
+
 def rows(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
@@ -238,6 +309,21 @@ def main(lull, chromium, scenes):
         files.append(by_keys(browser, page, folder / "answers"))
         carelessly(browser, page, folder / "answers")
         check_collected(lull, folder, files)
+
+        (folder / "texts.md").write_text("Bitte **zustimmen**\n\n[language]\nde\n\n[title]\nWo ist *Rauschen*?\n"
+                                         "\n[end]\nDanke, {name}\n")
+        (folder / "other").mkdir()
+        subprocess.run([*make, "-o", "other.html", "--text", "texts.md", "--questions", "--descending", "0.5"],
+                       cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        eve = in_another_way(browser, folder / "other.html", folder / "other")
+        subprocess.run([lull, "judge", "--collect", eve, "-o", "other.csv", "--quiet"], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL)
+        eve = rows(folder / "other.observers.csv")[0]
+        check((eve["age"], eve["vision"], eve["tones"], eve["display_pixels"], float(eve["descending_octaves"]))
+              == ("33", "good", "all", "1", 0), "what is known of an observer is in the table")
+        subprocess.run([lull, "judge", f"{scenes}/cornell/scene.pbrt", "--resolution", "800x800", "--pass", "1", "--cap",
+                        "2", "-o", "large.html", "--quiet"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        check_windows(browser, folder / "large.html")
 
         (folder / "staircase").mkdir()
         stairs = staircase(browser, folder / "stairs.html", folder / "staircase")

@@ -105,7 +105,7 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     EXPECT_TRUE(Contains(details, "room,all,2,"));
     EXPECT_TRUE(Contains(outcome.err, "rest on as few as 2 answers; they are rough"));
     EXPECT_TRUE(ReadBytes(directory.File("human.answers.csv"))
-                    .starts_with("block,spp,noise_seen\n0,40,0\n1,80,0\n"));
+                    .starts_with("block,spp,noise_seen,observer,track\n0,40,0,"));
     EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);
 }
 

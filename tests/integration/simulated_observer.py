@@ -70,7 +70,7 @@ class Participant:
             self.key(" ")
         else:
             self.browser.click("input[name=tones]")
-        self.press("#check-form button")
+        self.press("#begin")
         self.practise()
         self.expect("task")
 
@@ -128,7 +128,7 @@ class Participant:
 
     def state(self):
         return self.browser.evaluate(
-            "(s => s.finished ? null : s.trial ? {trial: s.trial} : {round: s.round,"
+            "(s => s.finished ? null : s.trial ? {trial: s.trial} : {round: s.round, down: s.isDown,"
             " entries: s.entries.map(e => [e.kind, shownLevel(study, e)])})(replay(session))")
 
     def look(self, most=10 ** 9):
@@ -149,6 +149,10 @@ class Participant:
                     self.browser.click(("#left", "#right")[side])
                 given += 1
                 continue
+            if state["down"]:
+                self.go_down(state)
+                given += 1
+                continue
             noisy = [i for i, (kind, level) in enumerate(state["entries"])
                      if self.sees(state["round"], i, kind, level)]
             for block in noisy[:most - given]:
@@ -157,6 +161,18 @@ class Participant:
             if not noisy:
                 self.press_same()
         return self.state() is None
+
+    def go_down(self, state):
+        """Makes blocks worse until noise is seen in them, and goes a step back."""
+        for block, (kind, level) in enumerate(state["entries"]):
+            if kind != "descend":
+                continue
+            while level > 0 and not self.sees(state["round"], block, kind, level):
+                self.click_block(block)
+                level -= 1
+            if self.sees(state["round"], block, kind, level):
+                self.click_block(block, back=True)
+        self.press_same()
 
     def save(self, folder):
         """Saves the answers and returns the file."""

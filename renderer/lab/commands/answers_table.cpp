@@ -23,6 +23,9 @@ std::string NumberText(const std::optional<double>& number, double factor, int d
 void PrintUsed(std::FILE* out, const std::string& viewpoint, const AnswersUsed& used) {
     fmt::print(out, "{}: {} of {} answers, to {} of {} blocks, count\n", viewpoint, used.answers,
                used.all, used.blocks, used.allBlocks);
+    if (used.tracks > 0)
+        fmt::print(out, "of these, the answers within each of {} adjustments count as one\n",
+                   used.tracks);
     if (used.notRecorded > 0)
         fmt::print(out, "left out: {} answers to blocks that are not recorded ({})\n",
                    used.notRecorded, fmt::join(used.blocksNotRecorded, ", "));

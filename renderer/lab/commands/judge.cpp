@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "renderer/base/memory.h"
@@ -18,18 +19,22 @@ namespace lull {
 
 namespace {
 
+// Says how far apart thresholds will be for chance alone.
+void SayPower(int answers) {
+    const double octaves = StaircaseOctaves(answers);
+    Say("lull: {} answers to each block: thresholds of one observer scatter by {:.2f} octaves (a "
+        "factor of {:.2f}), means of 10 observers by {:.0f} %, by chance alone\n",
+        answers, octaves, std::exp2(octaves), 100 * (std::exp2(octaves / std::sqrt(10.0)) - 1));
+}
+
 void WriteStudy(const JudgeSettings& settings, const Study& study) {
     WriteFileAtomically(settings.output, MakeStudyPage(study, settings.study));
     if (!settings.render.quiet)
         Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
             fmt::join(study.levels, ", "));
+    if (!settings.render.quiet && settings.study.procedure == StudyProcedure::Staircase)
+        SayPower(settings.study.answers);
     fmt::print("{}\n", settings.output);
-}
-
-// Names a viewpoint after the folder of its pictures.
-std::string FolderName(std::string folder) {
-    while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
-    return SceneName(folder);
 }
 
 ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
@@ -38,9 +43,9 @@ ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
     for (const auto& entry : std::filesystem::directory_iterator(settings.images, error))
         pictures.push_back({"a picture", entry.path()});
     CheckOutputs(std::vector<NamedFile>{{"-o", settings.output}}, pictures);
-    const std::string name = settings.name.empty() ? FolderName(settings.images) : settings.name;
-    const Study study = ReadStudy(settings.images, name, settings.render.schedule.blockSize,
-                                  settings.levels, kLadderRatio);
+    const Study study =
+        MakeStudy(FindPictures(settings.images, settings.name), settings.render.schedule.blockSize,
+                  settings.levels, kLadderRatio);
     RunWithThreads(settings.render.scene.compile.threads, [&] { WriteStudy(settings, study); });
     return kDone;
 }
@@ -122,7 +127,11 @@ ExitCode MakeStudyOfScene(JudgeSettings options) {
 }
 
 ExitCode RunJudge(JudgeSettings settings) {
-    if (!settings.textFile.empty()) settings.study.text = ReadStudyText(settings.textFile);
+    if (settings.listsTexts) {
+        fmt::print("{}", DefaultStudyTexts());
+        return kDone;
+    }
+    if (!settings.textFile.empty()) settings.study.texts = ReadStudyTexts(settings.textFile);
     if (settings.collect.empty())
         return settings.images.empty() ? MakeStudyOfScene(settings) : MakeStudyOfImages(settings);
     CollectAnswers(settings);

@@ -24,16 +24,19 @@ Procedures:
   staircase   one block at a time beside its reference: which of both has the noise? Levels are
               chosen by QUEST (Watson and Pelli 1983)
 Start levels differ between observers, some blocks are asked twice, and some show the reference on
-both sides, to find out who does not look.
+both sides, to find out who does not look. --descending asks a share of the blocks once more from
+above: they begin without noise, and get worse until it is about to be seen. The page lets nobody
+begin in a window that does not show both pictures as a whole.
 
 --collect writes, beside each other:
   HUMAN.csv             mean thresholds over observers, in the format of the published ones
   HUMAN.details.csv     of each block: spread, 95 % confidence interval of the mean; of each
                         viewpoint: how far observers agree
-  HUMAN.observers.csv   of each observer: consistency, checks failed, who was left out or is in
-                        doubt, and why
-  HUMAN.answers.csv     what was said one by one, for `lull evaluate --answers`; not of staircases,
-                        whose answers are half right by chance
+  HUMAN.observers.csv   of each observer: consistency, checks failed, display, distance, age and
+                        sight, who was left out or is in doubt, and why
+  HUMAN.answers.csv     what was said one by one, by whom and in which adjustment (track), for `lull
+                        evaluate --answers`; not of staircases, whose answers are half right by
+                        chance
 Files that are damaged, foreign or contradict each other are named and left out.
 
 Examples:
@@ -77,7 +80,6 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     app.add_option("--collect", s->collect, "Collect these files of answers")
         ->type_name("ANSWERS.json ...");
     app.add_option("-o,--output", s->output, "The page to make, or the thresholds to write")
-        ->required()
         ->type_name("STUDY.html|HUMAN.csv");
     app.add_option("--name", s->name, "Name of the viewpoint in thresholds and data [the scene's]")
         ->check(CheckViewpointName);
@@ -91,9 +93,19 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     AddStudyOptions(app, &s->study);
     app.add_option(
            "--text", s->textFile,
-           "Your own text, which observers read and agree to first (consent, whom to write\n"
-           "to, the task in their language): # headings, - lists, **bold**, *italics*")
+           "Your own texts: first what observers read and agree to (consent, whom to write\n"
+           "to), then sections [key] that replace texts of the page, for another language or\n"
+           "task; # headings, - lists, **bold**, *italics*")
         ->type_name("TEXT.md");
+    app.add_flag("--list-texts", s->listsTexts,
+                 "Print all texts of the page, to be changed for --text");
+    app.add_flag("--questions", s->study.questions,
+                 "Ask observers for their age, and whether they see well and tell colours apart");
+    app.add_option("--descending", s->study.descending,
+                   "Share of the blocks that are also asked from above, by adjustment")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("X")
+        ->capture_default_str();
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
         ->type_name("STUDY.html");
     app.add_option("--report", s->report, "With --collect: write a page that shows the answers")
@@ -102,6 +114,10 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
 }
 
 void CheckJudgeOptions(const JudgeSettings& s) {
+    if (s.listsTexts) return;
+    if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
+    if (s.study.descending > 0 && s.study.procedure != StudyProcedure::Adjust)
+        Refuse("--descending is for --procedure adjust");
     const bool hasScene = !s.render.scene.file.empty();
     if (int(hasScene) + int(!s.images.empty()) + int(!s.collect.empty()) != 1)
         Refuse("a SCENE is needed, or --images, or --collect; one of them");

@@ -15,6 +15,7 @@ struct JudgeSettings {
     std::string output, name;
     std::string record;             // the data set that the render is recorded to; empty: none
     std::string report, studyPage;  // of --collect; empty: none
+    bool listsTexts = false;        // and nothing else is done
     int levels = 0;                 // 0: as many as steps of kLadderRatio give
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "renderer/base/error.h"
@@ -16,7 +18,6 @@ namespace {
 
 constexpr const char* kFormat = "lull-study";
 constexpr int kVersion = 1;
-constexpr size_t kLongestText = 100000;
 
 Json BlockJson(const StudyBlock& block) {
     Json json = RectJson(block.pixels);
@@ -35,6 +36,8 @@ Json DescribeStudy(const Study& study, const StudySettings& settings) {
                  {"repeats", settings.repeats},
                  {"catches", settings.catches},
                  {"answers", settings.answers},
+                 {"descending", settings.descending},
+                 {"questions", settings.questions},
                  {"width", study.width},
                  {"height", study.height},
                  {"levels", study.levels},
@@ -68,6 +71,18 @@ std::string ReadWholeFile(const std::string& path) { return std::string(ReadFile
 
 }  // namespace
 
+double StaircaseOctaves(int answers) {
+    static constexpr std::pair<double, double> kSimulated[] = {
+        {2, 1.62},  {4, 1.53},  {8, 1.14},  {12, 0.86}, {16, 0.68},
+        {20, 0.58}, {30, 0.43}, {40, 0.35}, {60, 0.26}, {100, 0.19}};
+    size_t next = 1;
+    while (next + 1 < std::size(kSimulated) && kSimulated[next].first < answers) ++next;
+    const auto& [fewer, atFewer] = kSimulated[next - 1];
+    const auto& [more, atMore] = kSimulated[next];
+    const double share = std::log(answers / fewer) / std::log(more / fewer);
+    return std::min(atFewer * std::pow(atMore / atFewer, share), kSimulated[0].second);
+}
+
 std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
     std::vector<std::string> scripts(study.blocks.size());
     ForEachIndex(int(scripts.size()),
@@ -75,17 +90,8 @@ std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
     std::string pictures;
     for (const std::string& script : scripts) pictures += script;
     return FillPage("judge.html", {{"study", JsonForScript(DescribeStudy(study, settings))},
-                                   {"text", JsonForScript(Json(settings.text))},
+                                   {"texts", JsonForScript(Json(AllStudyTexts(settings.texts)))},
                                    {"pictures", std::move(pictures)}});
-}
-
-std::string ReadStudyText(const std::string& path) {
-    std::string text = ReadWholeFile(path);
-    if (text.empty()) throw Error(path + ": is not a text, or empty");
-    if (text.size() > kLongestText)
-        throw Error(fmt::format("{}: has {} bytes; a text that observers read has at most {}", path,
-                                text.size(), kLongestText));
-    return text;
 }
 
 Json ReadStudyPage(const std::string& path) try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/base/enum_names.h"
+#include "renderer/lab/pages/study_texts.h"
 #include "renderer/lab/viewpoints/study.h"
 #include "renderer/results/report_json.h"
 
@@ -21,18 +22,21 @@ struct EnumNames<StudyProcedure> {
 
 struct StudySettings {
     StudyProcedure procedure = StudyProcedure::Adjust;
-    double repeats = 0.25;  // share of the blocks that are asked twice, [0, 1]
-    double catches = 0.15;  // share that checks the observer, [0, 1)
-    int answers = 8;        // to each block of a staircase, > 0
-    std::string text = {};  // shown first, in Markdown; empty: nothing
+    double repeats = 0.25;   // share of the blocks that are asked twice, [0, 1]
+    double catches = 0.15;   // share that checks the observer, [0, 1)
+    int answers = 20;        // to each block of a staircase, > 0
+    double descending = 0;   // share of the blocks that are also asked from above, [0, 1]
+    bool questions = false;  // on age and sight
+    StudyTexts texts = {};   // those that replace the page's own, and the one that is shown first
 };
+
+// Returns the standard deviation, in octaves, of a threshold from so many answers of a staircase
+// (> 0), if the observer follows the model of QUEST: of 2,000 simulated staircases with thresholds
+// from 100 to 4,000 spp on a ladder from 20 to 10,000; between and beyond those numbers, by powers.
+double StaircaseOctaves(int answers);
 
 // Returns the page, which contains everything and loads nothing.
 std::string MakeStudyPage(const Study&, const StudySettings&);
-
-// Reads a text that observers are to see first. Throws Error beginning with the path if it cannot
-// be read, is empty or is longer than anybody would read.
-std::string ReadStudyText(const std::string& path);
 
 // Returns what a study's page says of the study, with the pictures of the blocks at the last level
 // in "references", as data URIs. Throws Error beginning with the path for anything that is not such

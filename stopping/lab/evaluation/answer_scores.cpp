@@ -100,13 +100,26 @@ struct Asked {
     SingleAnswer answer;
     size_t place;
     std::vector<double> values;
+    double weight = 1;
 };
+
+// Lets the answers of a track count as one. Returns how many tracks there are.
+int WeighTracks(std::vector<Asked>* asked) {
+    std::map<int, int> counts;
+    for (const Asked& one : *asked)
+        if (one.answer.track > 0) ++counts[one.answer.track];
+    for (Asked& one : *asked)
+        if (one.answer.track > 0) one.weight = 1.0 / counts[one.answer.track];
+    return int(counts.size());
+}
 
 std::vector<Asked> AskRules(std::span<const SingleAnswer> answers,
                             std::span<const LabelledBlock> blocks, std::span<const RuleRun> runs,
                             AnswersUsed* used) {
     std::vector<Asked> asked;
     std::set<int> without;
+    // Pictures at any spp are their own last word.
+    const double slack = blocks.empty() ? 0 : 2 * blocks.front().passSpp;
     for (const SingleAnswer& answer : answers) {
         const auto block = std::ranges::find(blocks, answer.block, &LabelledBlock::block);
         if (block == blocks.end()) {
@@ -116,7 +129,7 @@ std::vector<Asked> AskRules(std::span<const SingleAnswer> answers,
         }
         Asked one{.answer = answer, .place = size_t(block - blocks.begin()), .values = {}};
         for (const RuleRun& run : runs)
-            if (const auto value = run.curves[one.place].At(answer.spp, 2 * blocks.front().passSpp))
+            if (const auto value = run.curves[one.place].At(answer.spp, slack))
                 one.values.push_back(*value);
         if (one.values.size() == runs.size())
             asked.push_back(std::move(one));
@@ -139,19 +152,20 @@ struct ScaledFit {
 ScaledFit FitAnswers(std::span<const Asked> asked, size_t places, const auto& placeOf,
                      const auto& abscissaOf) {
     const auto count = Eigen::Index(asked.size());
-    Eigen::VectorXd x(count), answers(count);
+    Eigen::VectorXd x(count), answers(count), weights(count);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, Eigen::Index(places) + 1);
     for (Eigen::Index i = 0; i < count; ++i) {
         const Asked& one = asked[size_t(i)];
         x[i] = abscissaOf(one);
         answers[i] = one.answer.seen;
+        weights[i] = one.weight;
         rows(i, Eigen::Index(placeOf(one))) = 1;
     }
     ScaledFit scaled{.fit = {}, .mean = x.mean()};
     const double deviation = std::sqrt((x.array() - scaled.mean).square().mean());
     if (deviation > 1e-12) scaled.deviation = deviation;
     rows.col(Eigen::Index(places)) = (x.array() - scaled.mean) / scaled.deviation;
-    scaled.fit = FitProbit(rows, answers);
+    scaled.fit = FitProbit(rows, answers, weights);
     return scaled;
 }
 
@@ -230,7 +244,8 @@ AnswerScores EvaluateByAnswers(const ViewpointRecording& viewpoint,
     AnswersUsed& used = scores.used;
     used.all = int(answers.size());
     used.allBlocks = int(answered.size());
-    const std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
+    std::vector<Asked> asked = AskRules(answers, recorded, runs, &used);
+    used.tracks = WeighTracks(&asked);
     if (asked.empty())
         throw std::runtime_error(fmt::format(
             "no answer is to a recorded block of '{}' at an spp where all rules have a number; "

@@ -3,7 +3,9 @@
 // The probability that noise is seen is a probit in the logarithm of the rule's number (of its odds
 // if the number is a probability), with a location and a slope for the viewpoint. Between how well
 // one threshold for all blocks explains the answers, and how well one for each block does, both
-// probits in the logarithm of the spp with one scatter, a rule explains some share.
+// probits in the logarithm of the spp with one scatter, a rule explains some share. The answers of
+// an adjustment (SingleAnswer::track), one observer's way to one threshold, do not depend on chance
+// each by itself: they count as one answer together.
 #pragma once
 
 #include <optional>
@@ -20,6 +22,7 @@ namespace lull {
 // Which answers count.
 struct AnswersUsed {
     int answers = 0, blocks = 0;              // that count
+    int tracks = 0;                           // adjustments, the answers in which count as one
     int all = 0, allBlocks = 0;               // of the file
     int notRecorded = 0;                      // answers to blocks without a recording
     int withoutNumber = 0;                    // where a rule has no number (yet, or any more)

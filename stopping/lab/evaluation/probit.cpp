@@ -26,37 +26,44 @@ double Hazard(double x) {
     return std::exp(-0.5 * x * x - LogOfDistribution(x)) / std::sqrt(2 * std::numbers::pi);
 }
 
-double LogLikelihood(const Eigen::VectorXd& scores) {
+double LogLikelihood(const Eigen::VectorXd& scores, const Eigen::VectorXd& weights) {
     double sum = 0;
-    for (const double score : scores) sum += LogOfDistribution(score);
+    for (Eigen::Index i = 0; i < scores.size(); ++i)
+        sum += weights[i] * LogOfDistribution(scores[i]);
     return sum;
 }
 
 }  // namespace
 
-ProbitFit FitProbit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& answers) {
+ProbitFit FitProbit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& answers,
+                    const Eigen::VectorXd& given) {
     if (rows.rows() == 0 || rows.rows() != answers.size())
         throw std::invalid_argument("a probit needs answers, and as many rows");
-    if (!rows.allFinite() || !answers.allFinite())
+    const Eigen::VectorXd counts = given.size() > 0 ? given : Eigen::VectorXd::Ones(answers.size());
+    if (counts.size() != answers.size() || !(counts.array() > 0).all())
+        throw std::invalid_argument("a probit needs a weight above 0 for each answer");
+    if (!rows.allFinite() || !answers.allFinite() || !counts.allFinite())
         throw std::invalid_argument("a probit needs finite numbers");
 
     // A no is a yes to the opposite.
     const Eigen::VectorXd signs = (2 * answers.array() - 1).matrix();
     const Eigen::MatrixXd signedRows = signs.asDiagonal() * rows;
     ProbitFit fit{.coefficients = Eigen::VectorXd::Zero(rows.cols())};
-    fit.logLikelihood = LogLikelihood(signedRows * fit.coefficients);
+    fit.logLikelihood = LogLikelihood(signedRows * fit.coefficients, counts);
     for (int step = 0; step < kMostSteps; ++step) {
         const Eigen::VectorXd scores = signedRows * fit.coefficients;
         const Eigen::VectorXd hazards = scores.unaryExpr(&Hazard);
-        const Eigen::VectorXd weights = (hazards.array() * (hazards + scores).array()).max(0);
+        const Eigen::VectorXd weights =
+            counts.array() * (hazards.array() * (hazards + scores).array()).max(0);
         Eigen::MatrixXd information = signedRows.transpose() * weights.asDiagonal() * signedRows;
         information.diagonal().array() += kRidge;
         // Newton's step, halved until it is one upwards; the likelihood is concave.
-        Eigen::VectorXd move = information.ldlt().solve(signedRows.transpose() * hazards);
-        double better = LogLikelihood(signedRows * (fit.coefficients + move));
+        Eigen::VectorXd move =
+            information.ldlt().solve(signedRows.transpose() * counts.cwiseProduct(hazards));
+        double better = LogLikelihood(signedRows * (fit.coefficients + move), counts);
         for (int i = 0; i < 40 && !(better >= fit.logLikelihood); ++i) {
             move /= 2;
-            better = LogLikelihood(signedRows * (fit.coefficients + move));
+            better = LogLikelihood(signedRows * (fit.coefficients + move), counts);
         }
         const double gain = better - fit.logLikelihood;
         if (!(gain > 0)) break;

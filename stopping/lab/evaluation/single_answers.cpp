@@ -13,10 +13,11 @@ namespace lull {
 namespace {
 
 constexpr const char* kHead = "block,spp,noise_seen";
+constexpr const char* kTrackHead = "block,spp,noise_seen,observer,track";
 constexpr int kMostBlocks = 1 << 16, kMostSpp = 1 << 24;
 
 // Returns the three whole numbers of a line; nothing if it is something else.
-std::optional<std::array<int, 3>> ParseNumbers(const std::string& line) {
+std::optional<std::array<int, 3>> ParseNumbers(std::string_view line) {
     std::array<int, 3> numbers;
     const char *at = line.data(), *end = at + line.size();
     for (size_t i = 0; i < numbers.size(); ++i) {
@@ -29,13 +30,41 @@ std::optional<std::array<int, 3>> ParseNumbers(const std::string& line) {
     return numbers;
 }
 
+// Returns where the comma number `count` of a line is; npos if there are fewer.
+size_t CommaAt(std::string_view line, int count) {
+    size_t at = line.find(',');
+    for (int i = 1; i < count && at != std::string_view::npos; ++i) at = line.find(',', at + 1);
+    return at;
+}
+
+// Takes observer and track from the end of a line. Returns whether they are there.
+bool ParseTrack(std::string_view* line, SingleAnswer* answer) {
+    const size_t begin = CommaAt(*line, 3), end = line->rfind(',');
+    if (begin == std::string_view::npos || end <= begin) return false;
+    const std::string_view track = line->substr(end + 1);
+    if (!track.empty()) {
+        const auto [rest, error] =
+            std::from_chars(track.data(), track.data() + track.size(), answer->track);
+        if (error != std::errc() || rest != track.data() + track.size() || answer->track < 1)
+            return false;
+    }
+    answer->observer = line->substr(begin + 1, end - begin - 1);
+    *line = line->substr(0, begin);
+    return true;
+}
+
 // Throws std::invalid_argument saying what is wrong.
-SingleAnswer ParseAnswer(const std::string& line) {
+SingleAnswer ParseAnswer(std::string_view line, bool hasTrack) {
+    SingleAnswer answer;
+    const std::string whole(line);
+    const bool isWhole = !hasTrack || ParseTrack(&line, &answer);
     const std::optional<std::array<int, 3>> numbers = ParseNumbers(line);
-    if (!numbers)
+    if (!isWhole || !numbers)
         throw std::invalid_argument(
-            "'" + Printable(line) +
-            "' is not an answer; three whole numbers are needed, as in 5,640,1");
+            "'" + Printable(whole) + "' is not an answer; " +
+            (hasTrack
+                 ? "three whole numbers, the observer and a track are needed, as in 5,640,1,ada,3"
+                 : "three whole numbers are needed, as in 5,640,1"));
     const auto [block, spp, seen] = *numbers;
     if (block < 0 || block >= kMostBlocks)
         throw std::invalid_argument("there can be no block " + std::to_string(block) +
@@ -46,23 +75,28 @@ SingleAnswer ParseAnswer(const std::string& line) {
     if (seen != 0 && seen != 1)
         throw std::invalid_argument("noise_seen is " + std::to_string(seen) +
                                     "; 1 is needed where noise was seen, else 0");
-    return {.block = block, .spp = spp, .seen = seen == 1};
+    answer.block = block;
+    answer.spp = spp;
+    answer.seen = seen == 1;
+    return answer;
 }
 
 }  // namespace
 
 std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string& fileName) {
     std::vector<SingleAnswer> answers;
-    bool hasHead = false;
+    bool hasHead = false, hasTrack = false;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         if (line.empty()) continue;
         try {
-            if (!hasHead && line != kHead)
-                throw std::invalid_argument(std::string("the first line has to be ") + kHead);
+            if (!hasHead && line != kHead && line != kTrackHead)
+                throw std::invalid_argument(std::string("the first line has to be ") + kHead +
+                                            ", or " + kTrackHead);
+            if (!hasHead) hasTrack = line == kTrackHead;
             if (hasHead) {
-                answers.push_back(ParseAnswer(line));
+                answers.push_back(ParseAnswer(line, hasTrack));
                 answers.back().line = number;
             }
             hasHead = true;

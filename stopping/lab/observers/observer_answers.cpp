@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fstream>
 #include <functional>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -55,6 +56,38 @@ std::optional<double> GetOptional(const Json& object, const char* key) {
     return object.at(key).get<double>();
 }
 
+// Returns one of the words that the page knows, or "".
+std::string GetWord(const Json& object, const char* key, std::initializer_list<const char*> words) {
+    if (!object.contains(key) || !object.at(key).is_string()) return "";
+    const std::string word = object.at(key).get<std::string>();
+    return std::ranges::find(words, word) == words.end() ? "" : word;
+}
+
+std::optional<int> GetOptionalInt(const Json& value) {
+    if (!value.is_number() || !(std::abs(value.get<double>()) <= kMostSpp)) return {};
+    return int(value.get<double>());
+}
+
+void ReadDisplay(const Json& display, ObserverAnswers* result) {
+    result->gamma = GetOptional(display, "gamma");
+    result->distanceCm = GetOptional(display, "distanceCm");
+    result->pixelsPerDegree = GetOptional(display, "pixelsPerDegree");
+    result->zoom = GetOptional(display, "zoom");
+    if (display.contains("shown")) result->shown = GetOptionalInt(display.at("shown"));
+    result->tones = GetWord(display, "tones", {"all", "not all"});
+    if (!display.contains("window") || !display.at("window").is_array() ||
+        display.at("window").size() != 2)
+        return;
+    result->windowWidth = GetOptionalInt(display.at("window").at(0));
+    result->windowHeight = GetOptionalInt(display.at("window").at(1));
+}
+
+void ReadPerson(const Json& person, ObserverAnswers* result) {
+    if (person.contains("age")) result->age = GetOptionalInt(person.at("age"));
+    result->vision = GetWord(person, "vision", {"good", "not good", "unknown"});
+    result->colour = GetWord(person, "colour", {"usual", "not usual", "unknown"});
+}
+
 std::string GetText(const Json& object, const char* key) {
     const Json& value = Get(object, key);
     if (!value.is_string()) Refuse(std::string("'") + key + "' is not a text");
@@ -87,6 +120,7 @@ AnswerKind ReadKind(const Json& answer) {
     if (kind == "asked") return AnswerKind::Asked;
     if (kind == "repeat") return AnswerKind::Repeat;
     if (kind == "catch") return AnswerKind::Catch;
+    if (kind == "descend") return AnswerKind::Descend;
     Refuse("an answer of the unknown kind '" + Printable(kind) + "'");
 }
 
@@ -100,6 +134,15 @@ BlockAnswer ReadAnswer(const Json& json, const ObserverAnswers& head, int blocks
         const int top = int(head.levels.size()) - 1, level = GetInt(json, "level", 0, top);
         answer.spp = head.levels[size_t(level)];
         const int start = json.contains("start") ? GetInt(json, "start", 0, top) : level;
+        if (answer.kind == AnswerKind::Descend) {
+            // Down to where noise was seen, and back.
+            const int lowest = GetInt(json, "lowest", 0, level);
+            for (int i = std::min(start, top - 1); i >= level; --i)
+                answer.single.push_back({.spp = head.levels[size_t(i)]});
+            if (lowest < level)
+                answer.single.push_back({.spp = head.levels[size_t(level - 1)], .seen = true});
+            return answer;
+        }
         for (int i = start; i < level; ++i)
             answer.single.push_back({.spp = head.levels[size_t(i)], .seen = true});
         // Whether there is noise in the reference nobody was asked.
@@ -176,9 +219,10 @@ ObserverAnswers Read(const Json& json) {
                std::to_string(blocks) + " blocks");
     CheckThresholds(result);
     if (json.contains("display") && json.at("display").is_object()) {
-        result.gamma = GetOptional(json.at("display"), "gamma");
-        result.distanceCm = GetOptional(json.at("display"), "distanceCm");
+        ReadDisplay(json.at("display"), &result);
     }
+    if (json.contains("person") && json.at("person").is_object())
+        ReadPerson(json.at("person"), &result);
     return result;
 }
 

@@ -10,9 +10,10 @@
 namespace lull {
 
 enum class AnswerKind {
-    Asked,   // where the block's noise was seen to end
-    Repeat,  // the same, asked again
-    Catch    // a check of the observer, to which the right answer is known
+    Asked,    // where the block's noise was seen to end
+    Repeat,   // the same, asked again
+    Descend,  // the same, asked from above: until noise is about to be seen
+    Catch     // a check of the observer, to which the right answer is known
 };
 
 // Whether noise was seen in a picture of so many samples per pixel.
@@ -43,7 +44,14 @@ struct ObserverAnswers {
     bool isIdle = false;               // the observer pointed at nothing
     double seconds = 0;                // without pauses
     int given = 0;                     // answers in all: clicks, or trials
-    std::optional<double> gamma, distanceCm;
+    // Of the display, as the observer set or said it; zoom: 1 is 100 %; pixels are those of
+    // pictures, `shown` those of the display for one of them.
+    std::optional<double> gamma, distanceCm, pixelsPerDegree, zoom;
+    std::optional<int> shown, windowWidth, windowHeight;
+    std::string tones;  // "all" or "not all", which can be told apart; empty: not known
+    // Of the observer, where the study asks; empty: not known.
+    std::optional<int> age;
+    std::string vision, colour;  // "good" or "not good", "usual" or "not usual", or "unknown"
 
     bool operator==(const ObserverAnswers& other) const;  // but for the file
 };

@@ -13,6 +13,17 @@ namespace {
 std::string Field(const std::optional<double>& value) {
     return value ? fmt::format("{:.4g}", *value) : "";
 }
+std::string Field(const std::optional<int>& value) { return value ? std::to_string(*value) : ""; }
+
+// Returns what is known of the display and the observer, for columns from gamma to colour.
+std::string ViewingFields(const ObserverAnswers& a) {
+    const std::string window = a.windowWidth && a.windowHeight
+                                   ? fmt::format("{}x{}", *a.windowWidth, *a.windowHeight)
+                                   : "";
+    return fmt::format("{},{},{},{},{},{},{},{},{},{}", Field(a.gamma), a.tones,
+                       Field(a.distanceCm), Field(a.pixelsPerDegree), Field(a.zoom), Field(a.shown),
+                       window, Field(a.age), a.vision, a.colour);
+}
 
 }  // namespace
 
@@ -36,28 +47,34 @@ std::string DetailsCsv(const Collected& collected) {
 std::string ObserversCsv(const Collected& collected) {
     std::string csv =
         "file,viewpoint,observer,counts,reason,procedure,checks,failed,repeats,repeat_octaves,"
-        "shift_octaves,seconds,gamma,distance_cm,doubts\n";
+        "descending_octaves,shift_octaves,seconds,gamma,tones,distance_cm,pixels_per_degree,zoom,"
+        "display_pixels,window,age,vision,colour,doubts\n";
     for (const CheckedObserver& o : collected.observers)
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{:.0f},{},{},{}\n",
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:.0f},{},{}\n",
                            CsvField(o.answers.file), CsvField(o.answers.viewpoint),
                            CsvField(o.answers.observer), o.leftOut.empty() ? "yes" : "no",
                            CsvField(o.leftOut), o.answers.procedure, o.checks, o.failed, o.repeats,
-                           Field(o.repeatOctaves), Field(o.shiftOctaves), o.answers.seconds,
-                           Field(o.answers.gamma), Field(o.answers.distanceCm), CsvField(o.doubts));
+                           Field(o.repeatOctaves), Field(o.descendOctaves), Field(o.shiftOctaves),
+                           o.answers.seconds, ViewingFields(o.answers), CsvField(o.doubts));
     for (const RefusedAnswers& r : collected.refused)
-        csv += fmt::format("{},,,no,{},,,,,,,,,,\n", CsvField(r.file), CsvField(r.reason));
+        csv += fmt::format("{},,,no,{}{}\n", CsvField(r.file), CsvField(r.reason),
+                           std::string(19, ','));
     return csv;
 }
 
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint) {
     std::string rows;
+    int track = 0;
     for (const CheckedObserver& o : collected.observers) {
         if (!o.leftOut.empty() || o.answers.viewpoint != viewpoint) continue;
-        for (const BlockAnswer& answer : o.answers.answers)
+        for (const BlockAnswer& answer : o.answers.answers) {
+            track += !answer.single.empty();
             for (const NoiseAnswer& single : answer.single)
-                rows += fmt::format("{},{},{}\n", answer.block, single.spp, single.seen ? 1 : 0);
+                rows += fmt::format("{},{},{},{},{}\n", answer.block, single.spp,
+                                    single.seen ? 1 : 0, CsvField(o.answers.observer), track);
+        }
     }
-    return rows.empty() ? "" : "block,spp,noise_seen\n" + rows;
+    return rows.empty() ? "" : "block,spp,noise_seen,observer,track\n" + rows;
 }
 
 }  // namespace lull

@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kQuickSeconds = 0.4;  // an answer that takes less is doubtful
 constexpr double kLooseOctaves = 1;    // and a deviation of one that is more
+// Displays and viewing conditions beyond which thresholds may be others.
+constexpr double kLeastGamma = 1.8, kMostGamma = 2.6, kMostZoomError = 0.06;
+constexpr double kLeastPixelsPerDegree = 20, kMostPixelsPerDegree = 90;
 
 // Moves answers for which `reasonOf` has a reason to `refused`.
 template <typename ReasonOf>
@@ -129,6 +132,21 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
     });
 }
 
+// Adds what is odd about how the observer saw the pictures.
+template <typename Add>
+void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
+    if (answers.tones == "not all") add("could not tell all tones of the display apart");
+    if (answers.gamma && !(*answers.gamma >= kLeastGamma && *answers.gamma <= kMostGamma))
+        add(fmt::format("had a display of gamma {:.2f}", *answers.gamma));
+    if (answers.zoom && std::abs(*answers.zoom - 1) > kMostZoomError)
+        add(fmt::format("saw the page at a zoom of {:.0f} %", 100 * *answers.zoom));
+    if (const auto pixels = answers.pixelsPerDegree;
+        pixels && !(*pixels >= kLeastPixelsPerDegree && *pixels <= kMostPixelsPerDegree))
+        add(fmt::format("saw {:.0f} pixels a degree", *pixels));
+    if (answers.vision == "not good") add("does not see well at this distance");
+    if (answers.colour == "not usual") add("does not tell colours apart as most people do");
+}
+
 // Returns what is odd about the answers that count.
 std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
@@ -141,25 +159,33 @@ std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     if (judged.repeatOctaves && *judged.repeatOctaves > kLooseOctaves)
         add(fmt::format("asked twice, gave answers that differ by a factor of {:.1f}",
                         std::exp2(std::numbers::sqrt2 * *judged.repeatOctaves)));
+    AddDisplayDoubts(judged.answers, add);
     return doubts;
 }
 
 CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& options) {
     CheckedObserver judged;
-    double squares = 0;
+    double squares = 0, above = 0;
+    int descended = 0;
     for (const BlockAnswer& answer : answers.answers) {
         if (answer.kind == AnswerKind::Catch) {
             ++judged.checks;
             judged.failed += answer.failed;
-        } else if (answer.kind == AnswerKind::Repeat) {
+        } else if (answer.kind != AnswerKind::Asked) {
             const auto first = std::ranges::find_if(answers.answers, [&](const BlockAnswer& other) {
                 return other.kind == AnswerKind::Asked && other.block == answer.block;
             });
             const double octaves = std::log2(answer.spp / first->spp);
+            if (answer.kind == AnswerKind::Descend) {
+                above += octaves;
+                ++descended;
+                continue;
+            }
             squares += octaves * octaves / 2;
             ++judged.repeats;
         }
     }
+    if (descended > 0) judged.descendOctaves = above / descended;
     if (judged.repeats > 0) judged.repeatOctaves = std::sqrt(squares / judged.repeats);
     if (judged.failed > options.mostFailed * judged.checks)
         judged.leftOut = "failed " + std::to_string(judged.failed) + " of " +
@@ -170,8 +196,8 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
     if (judged.leftOut.empty() && secondsEach < options.leastSeconds)
         judged.leftOut =
             fmt::format("took {:.2g} s per answer, too short to compare images", secondsEach);
-    if (judged.leftOut.empty()) judged.doubts = DoubtsOf(judged, secondsEach);
     judged.answers = std::move(answers);
+    if (judged.leftOut.empty()) judged.doubts = DoubtsOf(judged, secondsEach);
     return judged;
 }
 

@@ -27,6 +27,8 @@ struct CheckedObserver {
     // Standard deviation of a single answer, from those given twice: the root of the mean of half
     // the squared differences.
     std::optional<double> repeatOctaves;
+    // How far answers from above are above those from below, in the mean (hysteresis).
+    std::optional<double> descendOctaves;
     // How far the thresholds are above the mean of all observers (geometric means, octaves).
     std::optional<double> shiftOctaves;
 };

@@ -8,7 +8,7 @@ const holdTime = 500;  // ms that a finger is held to go a step back
 function placeName(block) {
   const b = study.blocks[block];
   const columns = [...new Set(study.blocks.map(o => o.x))], rows = [...new Set(study.blocks.map(o => o.y))];
-  return `row ${rows.indexOf(b.y) + 1}, column ${columns.indexOf(b.x) + 1}`;
+  return textOf("place", {row: rows.indexOf(b.y) + 1, column: columns.indexOf(b.x) + 1});
 }
 
 function makeAdjustView() {
@@ -20,7 +20,7 @@ function makeAdjustView() {
         click: e => point(block, e.shiftKey ? "-" : "+"), contextmenu: e => e.preventDefault(), mouseenter: () => markBlock(block), mouseleave: () => markBlock(-1)}, canvas);
       if (side === "noisy") {
         cell.tabIndex = block ? -1 : 0;
-        cell.setAttribute("aria-label", `Block in ${placeName(block)}`);
+        cell.setAttribute("aria-label", textOf("label.block", {place: placeName(block)}));
         cell.addEventListener("focus", () => { moveTo(block); if (cell.matches(":focus-visible")) markBlock(block); });
         cell.addEventListener("blur", () => markBlock(-1));
         stepBackWhenHeld(cell, block);
@@ -29,6 +29,9 @@ function makeAdjustView() {
       (adjustView.cells[block] = adjustView.cells[block] || {})[side] = {cell, canvas};
     });
   }
+  // As long as they will be, so that their height is known before the task.
+  putText(byId("adjust-hint"), "task.adjust");
+  putText(byId("progress-text"), "progress.look", {look: textOf("progress.second"), count: 100});
   byId("noisy").addEventListener("keydown", adjustKeys);
   byId("same").addEventListener("click", bothLookTheSame);
   byId("flicker").addEventListener("click", () => flicker());
@@ -48,23 +51,24 @@ function stepBackWhenHeld(cell, block) {
 // Asks once more, as this ends the round.
 function askIfSame(isAsked) {
   adjustView.isAsked = isAsked;
-  byId("same").textContent = isAsked ? "Everywhere? Then press again" : "Both look the same";
+  putText(byId("same"), isAsked ? "same.again" : "same");
   byId("same").classList.toggle("asked", isAsked);
 }
 
 function bothLookTheSame() {
   if (!adjustView.isAsked) {
     askIfSame(true);
-    say("Everywhere? Then press again");
+    say("same.again");
   } else if (addEvent("same")) {
     askIfSame(false);
-    say("");
+    say(null);
   }
 }
 
 function layOutAdjust() {
-  const size = pixelSize(), width = study.width * size, height = study.height * size;
-  byId("stages").classList.toggle("stacked", 2 * width + 16 > document.documentElement.clientWidth - 16);
+  const {size, stacked} = arrangement() || {size: 1 / devicePixelRatio, stacked: true};
+  const width = study.width * size, height = study.height * size;
+  byId("stages").classList.toggle("stacked", stacked);
   for (const side of ["noisy", "reference"]) {
     byId(side).style.width = width + "px";
     byId(side).style.height = height + "px";
@@ -111,8 +115,9 @@ function adjustKeys(event) {
 function point(block, direction) {
   if (adjustView.flicker) flicker();
   askIfSame(false);
-  if (!addEvent(direction, block)) return;
-  say(`${placeName(block)}: one step ${direction === "+" ? "better" : "back"}`);
+  const {entries, isDown} = replay(session);
+  if (entries[block].kind === "idle" || !addEvent(direction, block)) return;
+  say(direction === "-" ? "said.back" : isDown ? "said.worse" : "said.better", {place: placeName(block)});
 }
 
 // Shows the reference in place of the noisy picture, or the noisy one again.
@@ -120,15 +125,19 @@ function flicker(on = !adjustView.flicker) {
   adjustView.flicker = on;
   byId("flicker").setAttribute("aria-pressed", on);
   byId("noisy").parentElement.classList.toggle("flickering", on);
-  byId("noisy-caption").textContent = on ? "the reference" : "the picture to judge";
-  if (on) say("the reference, on the left");
+  putText(byId("noisy-caption"), on ? "task.reference" : "task.picture");
+  if (on) say("said.reference");
   showAdjust(replay(session));
 }
 
 function showAdjust(state) {
   const top = study.levels.length - 1;
-  byId("progress-text").textContent = ["First look", "Second look", "Last look"][Math.min(2, state.round)] +
-    `: ${session.events.filter(e => e[0] !== "same").length} answers so far`;
+  const look = textOf(["progress.first", "progress.second", "progress.last"][Math.min(2, state.round)]);
+  putText(byId("progress-text"), "progress.look", {look, count: session.events.filter(e => e[0] !== "same").length});
+  putText(byId("adjust-hint"), state.isDown ? "task.down" : "task.adjust");
+  state.entries.forEach((entry, block) => {
+    for (const {cell} of Object.values(adjustView.cells[block])) cell.classList.toggle("asked", entry.kind === "descend");
+  });
   byId("progress").value = Math.min(0.95, state.round / 2);
   alignStages();
   const drawn = state.entries.map((entry, block) => {

@@ -17,7 +17,7 @@ const gammaOf = grey => Math.log(0.5) / Math.log(grey / 255);
 function showGamma() {
   const grey = +byId("gamma").value;
   byId("gamma-patch").style.background = `rgb(${grey},${grey},${grey})`;
-  byId("gamma-value").textContent = `gamma ${gammaOf(grey).toFixed(2)}`;
+  putText(byId("gamma-value"), "gamma", {gamma: gammaOf(grey).toFixed(2)});
 }
 
 // The zoom of the page, where the browser tells: 1 is 100 %.
@@ -30,11 +30,18 @@ function showZoom() {
   byId("gamma-field").style.setProperty("--pixel", pixelSize() + "px");
   const zoom = pageZoom(), shown = Math.round(pixelSize() * devicePixelRatio);
   const off = zoom !== null && Math.abs(zoom - 1) > 0.06;
-  const pixels = `a pixel of a picture is ${shown === 1 ? "one" : shown + "x" + shown} of the display, whatever its scale (${Math.round(100 * devicePixelRatio)} %)`;
-  byId("zoom").textContent = off
-    ? `The page seems to be zoomed to ${Math.round(100 * zoom)} %. Press Ctrl and 0 to set it to 100 %.`
-    : `The zoom is 100 %, as it should be; ${pixels}.`;
+  if (off) putText(byId("zoom"), "zoom.off", {zoom: Math.round(100 * zoom)});
+  else putText(byId("zoom"), "zoom.good", {shown, scale: Math.round(100 * devicePixelRatio)});
   byId("zoom").classList.toggle("warning", off);
+}
+
+// Says whether the pictures fit, and lets nobody begin where they do not.
+function showWindow() {
+  const found = arrangement(), full = fullScale();
+  const key = !found ? "window.small" : found.shown < full ? "window.smaller" : "window.fits";
+  putText(byId("window"), key, {...windowSize(), shown: found?.shown, full, needed: neededText()});
+  byId("window").classList.toggle("warning", !found);
+  byId("begin").disabled = !found;
 }
 
 function showCard() {
@@ -45,19 +52,30 @@ function makeCheck() {
   makeWedge();
   byId("gamma").addEventListener("input", showGamma);
   byId("card-size").addEventListener("input", showCard);
-  addEventListener("resize", showZoom);
+  addEventListener("resize", () => { showZoom(); showWindow(); });
+  byId("full-check").addEventListener("click", toggleFullScreen);
+  byId("person").hidden = !study.questions;
   showGamma();
   showZoom();
+  showWindow();
   showCard();
 }
 
-// Returns what is known of the display and of how it is looked at.
+const chosen = name => document.querySelector(`input[name=${name}]:checked`)?.value ?? null;
+
+// Returns what observers say of themselves; null where they were not asked.
+function personFacts() {
+  return study.questions ? {age: +byId("age").value || null, vision: chosen("vision"), colour: chosen("colour")} : null;
+}
+
+// Returns what is known of the display and of how it is looked at. Pixels are those of pictures.
 function displayFacts() {
-  const tones = document.querySelector("input[name=tones]:checked");
-  const pixelsPerMm = byId("card-touched").checked ? byId("card-size").value / cardWidth : null;
+  const found = arrangement();
+  const pixelsPerMm = byId("card-touched").checked ? byId("card-size").value / cardWidth / pixelSize() : null;
   const distance = +byId("distance").value;
   return {userAgent: navigator.userAgent, screen: [screen.width, screen.height], window: [innerWidth, innerHeight],
-    devicePixelRatio, zoom: pageZoom(), colorDepth: screen.colorDepth, tones: tones ? tones.value : null,
+    devicePixelRatio, zoom: pageZoom(), colorDepth: screen.colorDepth, tones: chosen("tones"),
+    shown: found?.shown ?? null, arrangement: !found ? null : isStaircase || !found.stacked ? "side by side" : "one above the other",
     gamma: +gammaOf(+byId("gamma").value).toFixed(3), distanceCm: distance, pixelsPerMm,
     pixelsPerDegree: pixelsPerMm ? +(pixelsPerMm * 10 * distance * Math.PI / 180).toFixed(1) : null};
 }

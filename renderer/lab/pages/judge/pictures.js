@@ -39,10 +39,6 @@ async function drawPicture(canvas, block, level) {
   canvas.getContext("2d").drawImage(image, 0, 0);
 }
 
-// The size of a pixel of a picture in those of the page: a whole number of those of the display, as
-// anything else would blur the noise.
-const pixelSize = () => Math.max(1, Math.round(devicePixelRatio)) / devicePixelRatio;
-
 // Gives a canvas the size of a block.
 function sizeCanvas(canvas, block) {
   const b = study.blocks[block], size = pixelSize();

@@ -16,8 +16,9 @@ function showScreen(name) {
   scrollTo(0, 0);
 }
 
-function say(text) {
-  byId("said").textContent = text;
+// Tells those who do not see it; null: nothing.
+function say(key, values) {
+  byId("said").textContent = key ? textOf(key, values) : "";
 }
 
 // Says how long it may take: a guess, by 3.5 s a trial, or 1.2 s a step on half of the ladder and 3 s
@@ -25,5 +26,5 @@ function say(text) {
 function guessMinutes() {
   const blocks = study.blocks.length, steps = blocks * (1 + study.repeats) * study.levels.length / 2;
   const seconds = isStaircase ? 3.5 * planStaircase(study, 1).trials.length : 1.2 * steps + 6 * blocks;
-  return `about ${Math.ceil(seconds / 60 + 2)} to ${Math.ceil(1.7 * seconds / 60 + 4)} minutes`;
+  return textOf("minutes", {low: Math.ceil(seconds / 60 + 2), high: Math.ceil(1.7 * seconds / 60 + 4)});
 }

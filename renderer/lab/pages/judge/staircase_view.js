@@ -2,6 +2,7 @@
 // Shows a block beside its reference and asks which of both has the noise.
 
 function makeStaircaseView() {
+  putText(byId("progress-text"), "progress.trial", {trial: 1000, count: 1000});  // as long as it will be
   ["left", "right"].forEach((id, side) => byId(id).addEventListener("click", () => choose(side)));
 }
 
@@ -22,7 +23,7 @@ function layOutStaircase() {
 
 function showStaircase(state) {
   const {trial} = state, top = study.levels.length - 1;
-  byId("progress-text").textContent = `${state.count + 1} of ${state.of}`;
+  putText(byId("progress-text"), "progress.trial", {trial: state.count + 1, count: state.of});
   byId("progress").value = state.count / state.of;
   layOutStaircase();
   choosing = true;

@@ -1,14 +1,33 @@
 "use strict";
-// Shows the researcher's own text: as much of Markdown as a consent form needs, and no markup of its
-// own. # headings, lists with - or 1., paragraphs, **bold**, *italics*, [words](https://address).
+// Shows texts, which the researcher can change: as much of Markdown as a consent form needs, and no
+// markup of their own. # headings, lists with - or 1., paragraphs, **bold**, *italics*, `keys`,
+// [words](https://address); {names} stand for what is known only when a text is shown.
+
+const texts = JSON.parse(byId("texts").textContent);
+
+function textOf(key, values = {}) {
+  return texts[key].replace(/\{(\w+)\}/g, (all, name) => name in values ? values[name] : all);
+}
+
+// Puts a text in an element: as words in a line, or as paragraphs and lists.
+const putText = (element, key, values) => element.replaceChildren(...inlineOf(textOf(key, values)));
+const putTexts = (element, key, values) => element.replaceChildren(...elementsOf(textOf(key, values)));
+
+function putAllTexts() {
+  document.documentElement.lang = texts.language;
+  for (const element of document.querySelectorAll("[data-text]")) putText(element, element.dataset.text);
+  for (const element of document.querySelectorAll("[data-texts]")) putTexts(element, element.dataset.texts);
+  for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", textOf(element.dataset.label));
+}
 
 function inlineOf(text) {
-  const parts = text.split(/(\*\*[^*]+\*\*|\*[^*]+\*|\[[^\]]+\]\((?:https?:|mailto:)[^)\s]+\))/);
+  const parts = text.split(/(\*\*[^*]+\*\*|\*[^*]+\*|`[^`]+`|\[[^\]]+\]\((?:https?:|mailto:)[^)\s]+\))/);
   return parts.filter(p => p).map(part => {
     const link = part.match(/^\[([^\]]+)\]\((.+)\)$/);
     if (link) return make("a", {href: link[2], target: "_blank", rel: "noreferrer"}, link[1]);
     if (part.startsWith("**") && part.length > 4) return make("b", {}, part.slice(2, -2));
     if (part.startsWith("*") && part.length > 2) return make("i", {}, part.slice(1, -1));
+    if (part.startsWith("`") && part.length > 2) return make("kbd", {}, part.slice(1, -1));
     return part;
   });
 }

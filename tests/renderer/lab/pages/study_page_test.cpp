@@ -57,15 +57,41 @@ TEST(MakeStudyPage, HoldsWhatPeopleAreToldAndShown) {
 
 TEST(MakeStudyPage, ShowsAnOwnTextAndNoMarkup) {
     const TemporaryDirectory folder;
-    const std::string text = ReadStudyText(folder.Write("t.md", "# <b>Hello</b>\n</script>"));
-    const std::string page = MakeStudyPage(TwoBlocks(), {.text = text});
+    const StudyTexts texts = ReadStudyTexts(
+        folder.Write("t.md", "# <b>Hello</b>\n</script>\n\n[title]\nWo ist *Rauschen*?\n"));
+    const std::string page = MakeStudyPage(TwoBlocks(), {.texts = texts});
     EXPECT_TRUE(Contains(page, "\"# \\u003cb>Hello\\u003c/b>\\n\\u003c/script>\""));
+    EXPECT_TRUE(Contains(page, "\"title\":\"Wo ist *Rauschen*?\""));
+    EXPECT_TRUE(Contains(page, "\"begin\":\"Begin\""));  // as it was
     EXPECT_EQ(ReadStudyPage(folder.Write("s.html", page))["id"], StudyId(TwoBlocks()));
-    EXPECT_TRUE(Contains(MakeStudyPage(TwoBlocks(), {}), "id=\"own-text\">\"\"</script>"));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.Write("e.md", "")); }), "e.md: "));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(folder.File("none")); }), "none': "));
+    EXPECT_TRUE(Contains(MakeStudyPage(TwoBlocks(), {}), "\"own\":\"\""));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(folder.Write("e.md", "")); }), "e.md: "));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(folder.File("none")); }), "none': "));
     const std::string large = folder.Write("large.md", std::string(200000, 'a'));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyText(large); }), "200000 bytes"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(large); }), "200000 bytes"));
+}
+
+TEST(ReadStudyTexts, TakesAllTextsOfThePageAndNamesOthers) {
+    const TemporaryDirectory folder;
+    // What --list-texts prints can be given back.
+    const StudyTexts all = ReadStudyTexts(folder.Write("all.md", DefaultStudyTexts()));
+    EXPECT_GT(all.size(), 80u);
+    EXPECT_EQ(AllStudyTexts(all), AllStudyTexts({}));
+    const auto problemOf = [&](const std::string& text) {
+        return ErrorOf([&] { ReadStudyTexts(folder.Write("t.md", text)); });
+    };
+    EXPECT_TRUE(Contains(problemOf("a\n[titel]\nb"), "t.md:2: [titel] is no text of the page"));
+    EXPECT_TRUE(Contains(problemOf("[title]\na\n[title]\nb"), "t.md:3: [title] comes twice"));
+    EXPECT_TRUE(Contains(problemOf("[title]\n\n"), "[title] is empty"));
+    EXPECT_TRUE(Contains(problemOf("[end]\n{nome}"), "[end] has {nome}"));
+    EXPECT_EQ(problemOf("[end]\nDanke, {name}"), "");
+}
+
+TEST(StaircaseOctaves, FallsWithTheAnswers) {
+    EXPECT_NEAR(StaircaseOctaves(20), 0.58, 1e-9);
+    EXPECT_NEAR(StaircaseOctaves(25), 0.50, 0.01);
+    EXPECT_NEAR(StaircaseOctaves(200), 0.12, 0.03);
+    EXPECT_NEAR(StaircaseOctaves(1), 1.62, 1e-9);
 }
 
 TEST(ReadStudyPage, RefusesOtherPages) {

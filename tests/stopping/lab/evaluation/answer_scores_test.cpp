@@ -89,6 +89,26 @@ TEST(AnswerScores, SharesOutWhatTheRulesExplain) {
     EXPECT_EQ(fixed.open, 0);
 }
 
+// Each answer given ten times over in one adjustment is one answer.
+TEST(AnswerScores, CountsTheAnswersOfATrackAsOne) {
+    const ViewpointRecording picture = Picture(kThresholds, 10000);
+    const std::vector<std::string> rules = {"lnoise:0.5"};
+    std::vector<SingleAnswer> answers = Answers(kThresholds, 40, 0.5), tracks;
+    for (size_t i = 0; i < answers.size(); ++i)
+        for (int k = 0; k < 10; ++k) {
+            tracks.push_back(answers[i]);
+            tracks.back().track = int(i) + 1;
+        }
+    const AnswerScores one = EvaluateByAnswers(picture, answers, rules, {});
+    const AnswerScores all = EvaluateByAnswers(picture, tracks, rules, {});
+    EXPECT_EQ(one.used.tracks, 0);
+    EXPECT_EQ(all.used.tracks, one.used.answers);
+    EXPECT_EQ(all.used.answers, 10 * one.used.answers);
+    EXPECT_NEAR(all.best, one.best, 1e-6);
+    EXPECT_NEAR(all.rules[0].logLikelihood, one.rules[0].logLikelihood, 1e-6);
+    EXPECT_NEAR(all.rules[0].slope, one.rules[0].slope, 1e-6);
+}
+
 TEST(AnswerScores, LeavesOutWhatIsNotKnown) {
     // The recordings end at 1,000 spp; luxtile has no number before 40.
     const ViewpointRecording picture = Picture(kThresholds, 1000);

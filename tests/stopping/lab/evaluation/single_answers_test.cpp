@@ -31,6 +31,21 @@ TEST(SingleAnswers, AreReadLineByLine) {
     EXPECT_EQ(answers[1].line, 4);
 }
 
+TEST(SingleAnswers, HaveObserversAndTracks) {
+    const auto answers =
+        Read("block,spp,noise_seen,observer,track\n5,640,1,\"a, b\",3\n0,20,0,ada,\n");
+    ASSERT_EQ(answers.size(), 2u);
+    EXPECT_EQ(answers[0].track, 3);
+    EXPECT_EQ(answers[0].observer, "\"a, b\"");
+    EXPECT_EQ(answers[1].track, 0);
+    EXPECT_EQ(answers[1].observer, "ada");
+    for (const char* line : {"5,640,1", "5,640,1,ada", "5,640,1,ada,x", "5,640,1,ada,0"})
+        EXPECT_NE(
+            ErrorOf(std::string("block,spp,noise_seen,observer,track\n") + line).find("a.csv:2: '"),
+            std::string::npos)
+            << line;
+}
+
 TEST(SingleAnswers, SayWhereAndWhatIsWrong) {
     const std::string head = "block,spp,noise_seen\n";
     const struct {

@@ -49,7 +49,11 @@ TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
     EXPECT_NE(observers.find("\n1,room,\"a, b\",yes,,adjust,4,0,0,,"), std::string::npos)
         << observers;
     EXPECT_NE(observers.find("\n3,room,d,no,failed 3 of 4 checks,"), std::string::npos);
-    EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is not JSON, or cut short\",,,,,,,,,,\n"));
+    EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is not JSON, or cut short\"" +
+                                    std::string(19, ',') + "\n"));
+    const auto columns = std::ranges::count(observers.substr(0, observers.find('\n')), ',');
+    EXPECT_EQ(columns, 4 + 19);
+    EXPECT_NE(observers.find(",2.2,,60,,,,,,,,"), std::string::npos) << observers;
 }
 
 // `lull evaluate --answers` reads what is written; who is left out says nothing.
@@ -62,10 +66,14 @@ TEST(SingleAnswersCsv, HasWhatWasSeenUpToWhereItEnded) {
         answers.push_back(ParseAnswers(example.Text()));
     const std::string csv = SingleAnswersCsv(CollectObservers(std::move(answers), {}), "room");
     EXPECT_EQ(csv,
-              "block,spp,noise_seen\n0,20,1\n0,40,1\n0,80,0\n1,160,1\n"
-              "0,40,0\n1,40,0\n");
+              "block,spp,noise_seen,observer,track\n"
+              "0,20,1,ada,1\n0,40,1,ada,1\n0,80,0,ada,1\n1,160,1,ada,2\n"
+              "0,40,0,b,3\n1,40,0,b,4\n");
     std::istringstream in(csv);
-    EXPECT_EQ(ReadSingleAnswers(in, "answers.csv").size(), 6u);
+    const std::vector<SingleAnswer> answersRead = ReadSingleAnswers(in, "answers.csv");
+    ASSERT_EQ(answersRead.size(), 6u);
+    EXPECT_EQ(answersRead[3].track, 2);
+    EXPECT_EQ(answersRead[4].observer, "b");
     EXPECT_EQ(SingleAnswersCsv({}, "room"), "");
 }
 

@@ -82,6 +82,43 @@ TEST(CollectObservers, LeavesOutWhoDoesNotLook) {
     EXPECT_TRUE(Collect({{.failed = 4}}).viewpoints.empty());
 }
 
+TEST(CollectObservers, DoubtsUnusualDisplaysAndEyes) {
+    const auto doubtsOf = [](const std::string& display, const std::string& person = "null") {
+        return Collect({{.display = display, .person = person}}).observers.at(0).doubts;
+    };
+    EXPECT_EQ(doubtsOf(R"({"gamma":2.2,"tones":"all","zoom":1,"pixelsPerDegree":40})"), "");
+    EXPECT_EQ(doubtsOf(R"({"tones":"not all","gamma":1.2})"),
+              "could not tell all tones of the display apart; had a display of gamma 1.20");
+    EXPECT_EQ(doubtsOf(R"({"zoom":0.8,"pixelsPerDegree":12})"),
+              "saw the page at a zoom of 80 %; saw 12 pixels a degree");
+    EXPECT_EQ(doubtsOf("{}", R"({"age":30,"vision":"not good","colour":"not usual"})"),
+              "does not see well at this distance; does not tell colours apart as most people do");
+    EXPECT_EQ(doubtsOf("{}", R"({"age":"x","vision":"<b>","colour":7})"), "");
+    EXPECT_EQ(doubtsOf(R"({"window":[1,2,3],"shown":1e300,"tones":{}})"), "");
+}
+
+TEST(CollectObservers, TakesAnswersFromAbove) {
+    // Up to 80 spp from below, and down to 160 from above: noise was seen at 80.
+    const std::string down =
+        R"(,{"block":0,"round":2,"clicks":2,"kind":"descend","start":4,"level":3,"lowest":2})";
+    ExampleAnswers example{.levels = {2, 2}, .more = down};
+    std::string text = example.Text();
+    const std::string thresholds = "\"thresholds\":[80,";
+    text.replace(text.find(thresholds), thresholds.size(), "\"thresholds\":[120,");
+    std::vector<ObserverAnswers> answers = {ParseAnswers(text)};
+    ASSERT_EQ(answers[0].answers.back().kind, AnswerKind::Descend);
+    const std::vector<NoiseAnswer>& single = answers[0].answers.back().single;
+    ASSERT_EQ(single.size(), 2u);
+    EXPECT_EQ(single[0].spp, 160);
+    EXPECT_FALSE(single[0].seen);
+    EXPECT_EQ(single[1].spp, 80);
+    EXPECT_TRUE(single[1].seen);
+    const Collected collected = CollectObservers(std::move(answers), {});
+    EXPECT_EQ(collected.observers[0].descendOctaves, 1);
+    EXPECT_FALSE(collected.observers[0].repeatOctaves);
+    EXPECT_EQ(collected.viewpoints.at(0).blocks[0].mean, 120);
+}
+
 TEST(CollectObservers, RefusesAnswersToOtherStudies) {
     const Collected collected =
         Collect({{.observer = "a", .session = "1", .study = "other"},

@@ -1,0 +1,52 @@
+"use strict";
+// Finds how the pictures fit into the window: with a whole number of pixels of the display for each of
+// theirs, as anything else would blur or hide the noise, and side by side or one above the other.
+
+const gap = 16;  // between two pictures and beside them, in pixels of the page
+
+// The largest block, of which a staircase shows two.
+const largestBlock = {width: Math.max(...study.blocks.map(b => b.width)), height: Math.max(...study.blocks.map(b => b.height))};
+
+// Measures what the task shows beside its pictures, in pixels of the page.
+function heightOfTexts(stacked) {
+  const task = byId("task"), wasHidden = task.hidden, stages = byId("stages"), wasStacked = stages.classList.contains("stacked");
+  stages.classList.toggle("stacked", stacked);
+  task.classList.add("measured");
+  task.hidden = false;
+  const height = task.offsetHeight;
+  task.hidden = wasHidden;
+  task.classList.remove("measured");
+  stages.classList.toggle("stacked", wasStacked);
+  return height;
+}
+
+// Returns the room that both pictures need with so many pixels of the page for one of theirs.
+function neededRoom(size, stacked) {
+  if (isStaircase) return {width: 2 * largestBlock.width * size + 48 + 2 * gap, height: largestBlock.height * size + 2 * gap + heightOfTexts(false)};
+  const width = study.width * size, height = study.height * size, texts = heightOfTexts(stacked);
+  return stacked ? {width: width + gap, height: 2 * height + gap + texts} : {width: 2 * width + 2 * gap, height: height + texts};
+}
+
+const fullScale = () => Math.max(1, Math.round(devicePixelRatio));
+const windowSize = () => ({width: innerWidth, height: innerHeight});
+
+// Returns the arrangement with the largest pictures: {shown: pixels of the display for one of a
+// picture, size: of the page, stacked}; null if there is none.
+function arrangement() {
+  const room = windowSize();
+  for (let shown = fullScale(); shown >= 1; --shown)
+    for (const stacked of isStaircase ? [false] : [false, true]) {
+      const size = shown / devicePixelRatio, needed = neededRoom(size, stacked);
+      if (needed.width <= room.width && needed.height <= room.height) return {shown, size, stacked};
+    }
+  return null;
+}
+
+// Says what the smallest arrangements need.
+function neededText() {
+  const rooms = (isStaircase ? [false] : [false, true]).map(stacked => neededRoom(1 / devicePixelRatio, stacked));
+  return [...new Set(rooms.map(r => `${Math.ceil(r.width)} x ${Math.ceil(r.height)}`))].join(" / ");
+}
+
+// The size of a pixel of a picture in those of the page: a whole number of those of the display.
+const pixelSize = () => arrangement()?.size ?? 1 / devicePixelRatio;
