@@ -135,6 +135,7 @@ ExitCode Main(Job* job, int argc, char** argv) {
     AddDatasetCommand(app, &command, job);
     AddTrainCommand(app, &command);
     AddEvaluateCommand(app, &command);
+    AddEntropyCommand(app, &command);
     AddSelftestCommand(app, &command);
     AddCompareCommand(app, &command, job);
     AddBenchCommand(app, &command, job);

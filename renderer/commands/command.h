@@ -30,6 +30,7 @@ void AddBenchCommand(CLI::App& app, Command* command, Job* job);
 void AddInfoCommand(CLI::App& app, Command* command);
 void AddTrainCommand(CLI::App& app, Command* command);
 void AddEvaluateCommand(CLI::App& app, Command* command);
+void AddEntropyCommand(CLI::App& app, Command* command);
 void AddSelftestCommand(CLI::App& app, Command* command);
 void AddJudgeCommand(CLI::App& app, Command* command);
 void AddDenoiseCommand(CLI::App& app, Command* command);

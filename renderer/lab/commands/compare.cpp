@@ -20,20 +20,6 @@ namespace lull {
 
 namespace {
 
-// Writes figures and page beside what was written before, and prints the table and the names of
-// all files. Throws Error where one is not where it should be.
-void WriteReport(const CompareOptions& options, ComparisonReport report, ResultFiles results) {
-    if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
-        TalkOf(options.render).Note(note);
-        report.notes.push_back(note);
-    }
-    results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));
-    if (!options.report.empty()) results.WriteText(options.report, MakeComparisonPage(report));
-    fmt::print("{}", ComparisonTable(report));
-    for (const std::string& file : results.Names()) fmt::print("{}\n", file);
-    results.Check();
-}
-
 // Returns the results; `rendered` are the images that come from the scene, if there is one.
 std::vector<NamedFile> OutputsOf(const CompareOptions& options,
                                  const std::vector<std::string>& rendered) {
@@ -78,7 +64,7 @@ ExitCode CompareFiles(CompareOptions options) {
     report.comparison = ComparisonOf(std::move(files), options.reference, options.render.schedule);
     report.comparison.display = options.display;
     Measure(&report.comparison);
-    WriteReport(options, report, {});
+    WriteComparison(options, report, {});
     return kDone;
 }
 
@@ -248,7 +234,7 @@ void WriteResults(const RenderResult& result, Compared* compared) {
         report.notes.push_back(
             "The reference holds the samples of the other images, so that errors near the cap are "
             "understated.");
-    WriteReport(options, report, WriteImages(*compared));
+    WriteComparison(options, report, WriteImages(*compared));
 }
 
 // The ranks share the render that all images come from; the first does the rest.
@@ -277,15 +263,31 @@ ExitCode CompareRenders(CompareOptions options, Job* ranks) {
 
 }  // namespace
 
+void WriteComparison(const CompareOptions& options, ComparisonReport report, ResultFiles results) {
+    if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
+        TalkOf(options.render).Note(note);
+        report.notes.push_back(note);
+    }
+    results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));
+    if (!options.report.empty()) results.WriteText(options.report, MakeComparisonPage(report));
+    fmt::print("{}", ComparisonTable(report));
+    for (const std::string& file : results.Names()) fmt::print("{}\n", file);
+    results.Check();
+}
+
 void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* compare = app.add_subcommand(
         "compare", "Compares automatic stopping with people's thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
     AddCompareOptions(*compare, options.get());
     compare->callback([=] {
+        const bool hasPictures = !options->render.scene.file.empty() || !options->images.empty();
+        if (compare->count("--stop") > 0 && !hasPictures)
+            throw CLI::ValidationError("--stop", "needs a SCENE, or --images");
         *command = [=] {
             if (!options->render.scene.file.empty()) return CompareRenders(*options, job);
-            return job->Rank() == 0 ? CompareFiles(*options) : kDone;
+            if (job->Rank() > 0) return kDone;
+            return options->images.empty() ? CompareFiles(*options) : CompareFolder(*options);
         };
     });
 }

@@ -15,6 +15,10 @@ of a pixel is always the same, so they are the images that three renders would g
 With --reference instead, blocks are only rendered as far as the last of both. Without a scene,
 images rendered before are compared.
 
+With --images the three images are made of another renderer's pictures: each block of the one at which
+RULE stopped it, or the first of as many samples as people asked for; the last picture is the
+reference. Names hold the samples per pixel, as for lull dataset --images.
+
 With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
 denoised as a whole; its samples are rendered again for that. What looking and denoising take is
 counted as the rule's.
@@ -36,6 +40,7 @@ Examples:
   lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
   lull compare scene.pbrt --snapshots --denoise -o room
   lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
+  lull compare --images pictures/kitchen --human human.csv -o kitchen --report kitchen.html
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
   lull compare --automatic a.png --reference photo.jpg -o room
 
@@ -46,9 +51,14 @@ Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 1
 void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     AddRenderSettings(app, &o->render);
     CLI::Option* scene = app.get_option("SCENE")->required(false);
+    CLI::Option* images =
+        app.add_option("--images", o->images,
+                       "Pictures of another renderer, their spp in the file names, to make the\n"
+                       "images of; NAME is that of the viewpoint [the folder's]")
+            ->type_name("DIR[:NAME]")
+            ->excludes(scene);
     auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")
                      ->type_name("RULE")
-                     ->needs(scene)
                      ->capture_default_str();
     AddCautionOption(app, &o->render.caution);
     app.add_option("--human", o->human, "Thresholds of people, or an image rendered with them")
@@ -56,8 +66,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.add_option("--automatic", o->automatic, "Image rendered before by an automatic rule")
         ->type_name("A.exr|A.png")
         ->excludes(scene)
+        ->excludes(images)
         ->excludes(stop);
     auto* reference = app.add_option("--reference", o->reference, "Image to compare with")
+                          ->excludes(images)
                           ->type_name("R.exr|R.png");
     app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
         ->needs(scene)

@@ -1,7 +1,10 @@
 // The options of `lull compare`.
 #pragma once
 
+#include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
+#include "renderer/files/result_files.h"
+#include "renderer/lab/pages/comparison_page.h"
 #include "renderer/vision/display_model.h"
 #include "stopping/rules/rule_table.h"
 
@@ -10,6 +13,7 @@ namespace lull {
 struct CompareOptions {
     RenderSettings render;
     std::string rule = kDefaultRule;
+    std::string images;                       // DIR[:NAME] of pictures; empty: none
     std::string human, automatic, reference;  // empty: none
     std::string output, report;
     DisplayModel display;
@@ -18,5 +22,12 @@ struct CompareOptions {
 };
 
 void AddCompareOptions(CLI::App& app, CompareOptions* options);
+
+// Compares images that are made of another renderer's pictures. Throws Error and UsageError.
+ExitCode CompareFolder(CompareOptions options);
+
+// Writes figures and page beside what was written before, and prints the table and the names of
+// all files. Throws Error where one is not where it should be.
+void WriteComparison(const CompareOptions& options, ComparisonReport report, ResultFiles results);
 
 }  // namespace lull

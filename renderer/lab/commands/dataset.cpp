@@ -8,8 +8,10 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
+#include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -17,6 +19,7 @@ namespace {
 
 struct Options {
     RenderSettings render;
+    std::string images;  // the folder of another renderer's pictures; empty: a scene is rendered
     std::string name, output, human;
     std::vector<int> blocks;  // empty: all
     double past = 0;          // 0: every block goes on to the cap
@@ -28,6 +31,11 @@ sample, and records SVD-entropies, lightness and noise of every block at all pas
 at every second one after. Thresholds are no part of the file: `lull train` and `lull evaluate` join
 them by the viewpoint's name.
 
+With --images the records are those of another renderer's pictures: all files of a folder, with their
+spp in the names (room-40spp.png, or the last number, room_00040.png), at any spp. They hold what a
+picture by itself shows: entropies, lightness and the 26 attributes, and not what compares halves of
+the samples (noise, dammertz, cycles, luxtile).
+
 Blocks that the file has already are left out, so the same command can be given again. Interrupted,
 it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
 
@@ -35,13 +43,20 @@ Examples:
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
+  lull record --images pictures/kitchen -o data.h5
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
 void AddOptions(CLI::App& app, Options* o) {
     AddSceneOptions(app, &o->render.scene);
-    app.add_option("--name", o->name, "Name of the viewpoint, as in thresholds files")
-        ->required()
+    CLI::Option* scene = app.get_option("SCENE")->required(false);
+    app.add_option("--images", o->images,
+                   "Pictures of another renderer, their spp in the file names, not a scene")
+        ->excludes(scene)
+        ->type_name("DIR");
+    AddBlockOption(app, &o->render.schedule.blockSize);
+    app.add_option("--name", o->name,
+                   "Name of the viewpoint, as in thresholds files [the name of the folder]")
         ->check(CheckViewpointName);
     app.add_option("-o,--output", o->output, "Data set to make or add to")
         ->required()
@@ -93,7 +108,34 @@ ExitCode SayAllIsThere(const Options& options, Job* ranks) {
     return kDone;
 }
 
+ExitCode RecordFolder(const Options& options) {
+    const PictureFolder folder = FindPictures(options.images, options.name);
+    CheckOutputs(std::vector<NamedFile>{{"-o", options.output}}, InputsOf(folder));
+    const int blockSize = options.render.schedule.blockSize;
+    const ViewpointRecording described = DescribePictures(folder, blockSize);
+    std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
+    AddToDataset(described, &dataset);  // says now whether it does not fit
+    Options wanted = options;
+    wanted.name = folder.name;
+    wanted.render.schedule.cap = described.cap;
+    const std::vector<int> limits = LimitsOf(wanted, size_t(described.blockCount), dataset);
+    const Talk talk = TalkOf(options.render);
+    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
+        talk.Note(fmt::format("{} has all blocks of '{}' already", options.output, folder.name));
+        return kDone;
+    }
+    ViewpointRecording viewpoint;
+    RunWithThreads(options.render.scene.compile.threads, [&] {
+        viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits}, talk);
+    });
+    AddToDatasetFile(viewpoint, options.output,
+                     [&] { talk.Note("waiting for another process to write " + options.output); });
+    fmt::print("{}\n", options.output);
+    return kDone;
+}
+
 ExitCode RunDataset(Options options, Job* ranks) {
+    if (!options.images.empty()) return ranks->Rank() == 0 ? RecordFolder(options) : kDone;
     SetWording(options.render, ranks);
     CheckpointOptions& checkpoint = options.render.checkpoint;
     checkpoint = ResumeIfThere(fmt::format("{}.{}.checkpoint", options.output, options.name),
@@ -138,7 +180,13 @@ void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     options->render.sampler = SamplerKind::Random;
     options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());
-    dataset->callback([=] { *command = [=] { return RunDataset(*options, job); }; });
+    dataset->callback([=] {
+        if (options->images.empty() && options->render.scene.file.empty())
+            throw CLI::ValidationError("dataset", "a SCENE is needed, or --images");
+        if (options->images.empty() && options->name.empty())
+            throw CLI::ValidationError("--name", "is needed for a SCENE");
+        *command = [=] { return RunDataset(*options, job); };
+    });
 }
 
 }  // namespace lull

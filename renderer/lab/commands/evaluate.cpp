@@ -13,8 +13,12 @@
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/answers_table.h"
 #include "renderer/lab/commands/evaluation_table.h"
+#include "renderer/lab/commands/picture_options.h"
+#include "renderer/lab/commands/split_option.h"
+#include "renderer/lab/pages/curves_figure.h"
 #include "stopping/lab/evaluation/constants.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
+#include "stopping/lab/recordings/block_split.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -28,8 +32,10 @@ struct EnumNames<ChooseBy> {
 namespace {
 
 struct Options {
-    std::vector<std::string> datasets, predicted, rules, without;
-    std::string human, answers, csv, blocks;
+    std::vector<std::string> datasets, images, predicted, rules, without;
+    int blockSize = 200;  // pixels a side, of images
+    std::string human, answers, csv, blocks, curves, figure;
+    std::string split;  // the file that lists the blocks of a training; empty: all are judged
     bool rivals = false, constants = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
     ScoreOptions judge;
@@ -40,6 +46,9 @@ constexpr const char* kFooter =
     R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
 have. With data sets (see lull record), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
+--images DIR does the same on another renderer's pictures, as lull dataset --images would record
+them. Rules that compare halves of the samples (lnoise, dammertz, cycles, luxtile, learned:noise)
+cannot be run on pictures.
 
 --stop takes the rules of lull render. --rivals runs those that have one setting, each with the one
 that is best on the other viewpoints (leave one out); "setting" says which, and for all what would
@@ -72,9 +81,18 @@ All are means over the viewpoints, but acc and auc are of all decisions together
 viewpoint ("known"), for the others, and for all viewpoints. A rule shows skill by block only where
 it has a lower error than the known constant.
 
+--split paper:FILE judges by the blocks alone that FILE does not list: a row NAME;b0;b1;... has the
+blocks of a viewpoint that a model was trained on (lull train --split).
+
+--curves and --figure show how the number of each --stop rule falls with the samples of each block,
+as a CSV file and as an SVG picture of one viewpoint, with the thresholds of people and the stops
+(Buisine et al. 2021, Fig. 13).
+
 --answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
-spp of the picture that was shown, 1 where noise was seen. All rules are judged by the same answers.
+spp of the picture that was shown, 1 where noise was seen. Two more columns, observer,track, say which
+answers are steps of one adjustment (lull judge --collect): those of a track count as one answer. All
+rules are judged by the same answers.
   loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
           the rule's number (of its odds, for a network), with a location and a slope to be fitted
   share   % of the way from one threshold for all blocks to one threshold a block, both with one
@@ -88,6 +106,9 @@ Examples:
   lull evaluate --human human.csv --predicted predicted.csv --grid 40
   lull evaluate data.h5 more.h5 --human human.csv --stop lnoise:0.5 --stop learned:model.h5
   lull evaluate data.h5 more.h5 --human human.csv --rivals --predicted predicted.csv --brief
+  lull evaluate --images pictures/kitchen --human human.csv --stop learned --stop learned:paper
+  lull evaluate data.h5 --human human.csv --stop learned:own.h5 --split paper:training-blocks.csv
+  lull evaluate data.h5 --human human.csv --stop learned:paper --curves c.csv --figure c.svg
   lull evaluate data.h5 --answers answers.csv --stop entropy --stop learned
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
@@ -107,6 +128,7 @@ void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
 void AddOptions(CLI::App& app, Options* o) {
     app.add_option("DATASET.h5", o->datasets, "Recordings to run rules on")
         ->check(CLI::ExistingFile);
+    AddImagesOptions(app, &o->images, &o->blockSize);
     CLI::Option* human = app.add_option("--human", o->human, "Thresholds of people")
                              ->check(CLI::ExistingFile)
                              ->type_name("H.csv");
@@ -140,6 +162,18 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
     app.add_option("--blocks", o->blocks, "Write the stop of each block to a CSV file")
         ->type_name("F.csv");
+    AddSplitOption(app, &o->split, "Judge by the blocks alone that FILE does not list");
+    app.add_option("--curves", o->curves, "Write the numbers of --stop rules to a CSV file")
+        ->type_name("F.csv");
+    app.add_option("--figure", o->figure, "Draw them, for each block of one viewpoint")
+        ->check([](const std::string& file) {
+            return file.ends_with(".svg") ? "" : file + " does not end in .svg";
+        })
+        ->type_name("F.svg");
+}
+
+bool HasRecordings(const Options& options) {
+    return !options.datasets.empty() || !options.images.empty();
 }
 
 std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
@@ -151,21 +185,44 @@ std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     return rules;
 }
 
+// Reads data sets, and records folders of pictures.
+std::vector<ViewpointRecording> ReadViewpoints(const Options& options) {
+    std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+    for (const std::string& images : options.images)
+        AddToDataset(RecordAndTell(FindNamedPictures(images), {.blockSize = options.blockSize}, {}),
+                     &viewpoints);
+    return viewpoints;
+}
+
+std::vector<LabelledBlock> BlocksToJudge(const std::vector<ViewpointRecording>& viewpoints,
+                                         const Options& options) {
+    std::vector<LabelledBlock> blocks =
+        ReadLabelledBlocks(viewpoints, options.human, options.without, PrintTalk);
+    if (options.split.empty()) return blocks;
+    const std::vector<ThresholdsRow> rows = ReadThresholds(options.split);
+    try {
+        blocks = TestBlocks(blocks, rows);
+    } catch (const std::invalid_argument& error) {
+        throw Error(fmt::format("{}: {}", options.split, error.what()));
+    }
+    PrintTalk(fmt::format("{} blocks that {} does not list", blocks.size(), options.split));
+    return blocks;
+}
+
 std::vector<EvaluatedRule> EvaluateRecordings(const Options& options) {
-    const std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
-    return EvaluateOnBlocks(
-        ReadLabelledBlocks(viewpoints, options.human, options.without, PrintTalk),
-        {.rivals = options.rivals,
-         .chooseBy = options.chooseBy,
-         .rules = options.rules,
-         .context = {.models = ModelFolder(), .caution = options.caution},
-         .predicted = options.predicted,
-         .grid = options.judge.grid});
+    const std::vector<ViewpointRecording> viewpoints = ReadViewpoints(options);
+    return EvaluateOnBlocks(BlocksToJudge(viewpoints, options),
+                            {.rivals = options.rivals,
+                             .chooseBy = options.chooseBy,
+                             .rules = options.rules,
+                             .context = {.models = ModelFolder(), .caution = options.caution},
+                             .predicted = options.predicted,
+                             .grid = options.judge.grid});
 }
 
 // Reads the recordings of the one viewpoint that answers are to.
 ViewpointRecording ReadViewpoint(const Options& options) {
-    std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
+    std::vector<ViewpointRecording> viewpoints = ReadViewpoints(options);
     for (const std::string& name : options.without)
         if (std::erase_if(viewpoints, [&](const auto& v) { return v.name == name; }) == 0)
             throw Error(fmt::format("--without: there is no viewpoint '{}'", name));
@@ -180,7 +237,8 @@ ViewpointRecording ReadViewpoint(const Options& options) {
 }
 
 std::vector<NamedFile> InputsOf(const Options& options) {
-    std::vector<NamedFile> inputs = {{"--human", options.human}, {"--answers", options.answers}};
+    std::vector<NamedFile> inputs = {
+        {"--human", options.human}, {"--answers", options.answers}, {"--split", options.split}};
     for (const std::string& file : options.datasets) inputs.push_back({"DATASET.h5", file});
     for (const std::string& file : options.predicted) inputs.push_back({"--predicted", file});
     for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
@@ -197,15 +255,46 @@ void RunByAnswers(const Options& options) {
     if (!options.csv.empty()) WriteFileAtomically(options.csv, AnswerScoresCsv(scores));
 }
 
+// Returns the curves of all rules and viewpoints, or of the first viewpoint alone.
+std::vector<CurvesOfRule> CurvesOf(const std::vector<EvaluatedRule>& rules, bool onlyFirst) {
+    std::vector<CurvesOfRule> curves;
+    for (const EvaluatedRule& rule : rules) {
+        if (rule.threshold == 0 || rule.openStops == OpenStops::Extended) continue;
+        for (const ViewpointOutcome& viewpoint : rule.viewpoints) {
+            curves.push_back(
+                {.name = rule.name, .threshold = rule.threshold, .outcome = &viewpoint});
+            if (onlyFirst) break;
+        }
+    }
+    return curves;
+}
+
+void WriteCurves(const Options& options, const std::vector<EvaluatedRule>& rules) {
+    if (!options.curves.empty())
+        WriteFileAtomically(options.curves, CurvesCsv(CurvesOf(rules, false)));
+    if (options.figure.empty()) return;
+    const std::vector<CurvesOfRule> curves = CurvesOf(rules, true);
+    if (curves.empty())
+        throw Error(
+            "--figure: none of the rules has a number that falls; give one as --stop learned");
+    if (rules.at(0).viewpoints.size() > 1)
+        PrintTalk(fmt::format("--figure: shows '{}' alone; leave it out by --without for another",
+                              curves.front().outcome->name));
+    WriteFileAtomically(options.figure, CurvesSvg(curves.front().outcome->name, curves));
+}
+
 ExitCode RunEvaluate(const Options& options) {
-    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv}, {"--blocks", options.blocks}},
+    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv},
+                                        {"--blocks", options.blocks},
+                                        {"--curves", options.curves},
+                                        {"--figure", options.figure}},
                  InputsOf(options));
     if (!options.answers.empty()) {
         RunByAnswers(options);
         return kDone;
     }
     std::vector<EvaluatedRule> rules =
-        options.datasets.empty() ? EvaluateFiles(options) : EvaluateRecordings(options);
+        HasRecordings(options) ? EvaluateRecordings(options) : EvaluateFiles(options);
     if (options.constants)
         std::ranges::move(
             EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.judge.grid),
@@ -215,6 +304,7 @@ ExitCode RunEvaluate(const Options& options) {
     PrintEvaluation(stdout, rules, options.judge, !options.brief);
     if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
     if (!options.blocks.empty()) WriteFileAtomically(options.blocks, BlocksCsv(rules));
+    WriteCurves(options, rules);
     return kDone;
 }
 
@@ -222,17 +312,24 @@ ExitCode RunEvaluate(const Options& options) {
 void CheckUsage(const Options& options) {
     const bool runs = options.rivals || !options.rules.empty();
     if (!options.answers.empty()) {
-        if (options.datasets.empty() || options.rules.empty())
-            throw CLI::ValidationError("--answers", "needs DATASET.h5, and --stop for its rules");
+        if (!HasRecordings(options) || options.rules.empty())
+            throw CLI::ValidationError("--answers",
+                                       "needs DATASET.h5 or --images, and --stop for its rules");
         if (options.rivals || options.constants || !options.predicted.empty() ||
-            !options.blocks.empty())
+            !options.blocks.empty() || !options.split.empty() || !options.curves.empty() ||
+            !options.figure.empty())
             throw CLI::ValidationError("--answers", "judges the rules of --stop alone");
         return;
     }
     if (options.human.empty())
         throw CLI::ValidationError("evaluate", "needs --human, or --answers");
-    if (options.datasets.empty() && runs)
-        throw CLI::ValidationError("--stop and --rivals", "need DATASET.h5 to run rules on");
+    if (!HasRecordings(options) && runs)
+        throw CLI::ValidationError("--stop and --rivals",
+                                   "need DATASET.h5 or --images to run rules on");
+    if (options.rules.empty() && !(options.curves.empty() && options.figure.empty()))
+        throw CLI::ValidationError("--curves and --figure", "show the rules of --stop");
+    if (!options.split.empty() && !HasRecordings(options))
+        throw CLI::ValidationError("--split", "needs DATASET.h5 or --images");
     if (!runs && options.predicted.empty())
         throw CLI::ValidationError("evaluate", "needs --predicted, --stop or --rivals");
 }

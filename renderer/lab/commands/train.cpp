@@ -94,6 +94,10 @@ void AddTrainCommand(CLI::App& app, Command* command) {
     train->callback([=] {
         CompleteTrainOptions(options.get());
         *command = [=] {
+            if (options->listsValues) {
+                fmt::print("{}", ValuesText(options->plan));
+                return kDone;
+            }
             ExitCode code = kDone;
             RunWithThreads(options->threads, [&] { code = RunTrain(*options); });
             return code;

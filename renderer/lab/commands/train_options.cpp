@@ -1,5 +1,6 @@
 #include "renderer/lab/commands/train_options.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "renderer/commands/choice_option.h"
+#include "renderer/lab/commands/split_option.h"
 #include "stopping/lab/training/training_preset.h"
 
 namespace lull {
@@ -50,6 +52,7 @@ Examples:
   lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
       --pool rms,p4 --units 16,8
   lull train data.h5 --human human.csv --cross-validate --preset paper
+  lull train --preset paper
 
 Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
 
@@ -205,7 +208,7 @@ void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* l
 
 // Adds the option that sets all of a model and its training. It has to be added before those that
 // change single ones: what was given is applied in this order.
-void AddPreset(CLI::App& app, TrainingPlan* plan) {
+void AddPreset(CLI::App& app, TrainingPlan* plan, bool* isGiven) {
     std::set<std::string> names;
     for (const TrainingPreset& preset : TrainingPresets()) names.insert(preset.name);
     const auto set = [plan](const std::string& name) {
@@ -215,7 +218,13 @@ void AddPreset(CLI::App& app, TrainingPlan* plan) {
     };
     const std::string& standard = TrainingPresets().front().name;
     set(standard);
-    app.add_option_function<std::string>("--preset", set, "Defaults of the options from --k on")
+    app.add_option_function<std::string>(
+           "--preset",
+           [=](const std::string& name) {
+               set(name);
+               *isGiven = true;
+           },
+           "Defaults of the options from --k on; without data sets, lists them")
         ->check(OneOf(names))
         ->type_name("entropy|paper")
         ->default_str(standard);
@@ -225,28 +234,19 @@ void AddPreset(CLI::App& app, TrainingPlan* plan) {
 
 void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.add_option("DATASET.h5", o->plan.datasets, "Recordings to learn from")
-        ->required()
         ->check(CLI::ExistingFile);
     app.add_option("--human", o->plan.human, "Thresholds of people")
-        ->required()
         ->check(CLI::ExistingFile)
         ->type_name("H.csv");
     app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
-    AddPreset(app, &o->plan);
+    AddPreset(app, &o->plan, &o->isPreset);
     AddSettings(app, &o->plan.settings);
     AddTraining(app, &o->plan.training);
     AddList(app, "--leave-out", &o->plan.leaveOut,
             "Viewpoint to judge by, not to train on; can be given again");
     AddList(app, "--without", &o->plan.without, "Viewpoint to ignore; can be given again");
-    app.add_option_function<std::string>(
-           "--split",
-           [o](const std::string& text) {
-               if (!text.starts_with("paper:") || text.size() == 6)
-                   throw CLI::ValidationError("--split", text + " is not paper:FILE");
-               o->plan.split = text.substr(6);
-           },
-           "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others")
-        ->type_name("paper:FILE");
+    AddSplitOption(app, &o->plan.split,
+                   "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others");
     app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
     app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
@@ -260,6 +260,14 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
 }
 
 void CompleteTrainOptions(TrainOptions* o) {
+    if (o->plan.datasets.empty() && o->isPreset) {  // which then lists its values
+        o->listsValues = true;
+        return;
+    }
+    if (o->plan.datasets.empty())
+        throw CLI::ValidationError("train",
+                                   "needs DATASET.h5; --preset by itself lists its values");
+    if (o->plan.human.empty()) throw CLI::ValidationError("--human", "is required");
     if (o->output.empty() && !o->plan.crossValidate)
         throw CLI::ValidationError("train", "needs -o MODEL.h5 or --cross-validate");
     if (o->resume && o->output.empty())
@@ -272,6 +280,32 @@ void CompleteTrainOptions(TrainOptions* o) {
     plan.version = LULL_VERSION;
     // Recordings have every second pass, and so has a rule that votes as often as it was trained.
     if (plan.settings.voteSpacing == 0) plan.settings.voteSpacing = plan.settings.n;
+}
+
+std::string ValuesText(const TrainingPlan& plan) {
+    const ModelSettings& s = plan.settings;
+    const TrainingOptions& t = plan.training;
+    const auto flag = [](const char* name, bool isSet) {
+        return fmt::format("--{}{}\n", isSet ? "" : "no-", name);
+    };
+    std::string text = fmt::format("--k {}\n--n {}\n--m {}\n--features {}\n--pool {}\n", s.k, s.n,
+                                   s.m, FeatureNames(s.features), PoolsText(s.pools));
+    text += flag("snorm", s.snorm) + (s.bnorm ? "--bnorm\n" : "");
+    text += fmt::format("--spacing {}\n", SpacingName(s.spacing));
+    if (s.spacing == Spacing::Geometric) text += fmt::format("--ratio {:g}\n", s.ratio);
+    if (Needs(s, Feature::VisibleDrop))
+        text += fmt::format("--mask {:g}\n--flare {:g}\n--reference {}\n--nearness {:g}\n",
+                            s.visibility.mask, s.visibility.flare, s.visibility.reference,
+                            s.visibility.nearness);
+    text += fmt::format("--votes {}\n--vote-spacing {}\n", s.votes,
+                        s.voteSpacing > 0 ? s.voteSpacing : s.n);
+    text += fmt::format(
+        "--units {}\n--dense {}\n--dropout {:g}\n--learning-rate {:g}\n--batch {}\n--epochs {}\n",
+        UnitsText(t.units), UnitsText(t.dense), t.dropout, t.learningRate, t.batch, t.epochs);
+    text += t.augment ? "--augment\n" : "";
+    text +=
+        flag("balance-viewpoints", t.balanceViewpoints) + flag("class-weights", t.balanceClasses);
+    return text + fmt::format("--noisy-weight {:g}\n", t.noisyWeight);
 }
 
 std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {

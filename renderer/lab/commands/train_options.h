@@ -18,9 +18,14 @@ struct TrainOptions {
     double checkpointInterval = 60;  // s
     int threads = 0;
     bool quiet = false, jsonProgress = false;
+    bool isPreset = false;     // --preset was given
+    bool listsValues = false;  // and nothing is trained: its values are listed
 };
 
 void AddTrainOptions(CLI::App& app, TrainOptions* options);
+
+// Returns the values of a plan as options, one a line: what `lull train` takes for them.
+std::string ValuesText(const TrainingPlan&);
 
 // Returns the recordings and thresholds that a training reads; for CheckOutputs().
 std::vector<NamedFile> InputsOf(const TrainingPlan&);

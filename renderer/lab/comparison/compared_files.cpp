@@ -24,11 +24,6 @@ bool IsTiff(const std::string& path) {
     return extension == ".tif" || extension == ".tiff";
 }
 
-bool IsDisplayFile(const std::string& path) {
-    const std::string extension = ExtensionOf(path);
-    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || IsTiff(path);
-}
-
 std::string SizeOf(const PixelRect& region) {
     return fmt::format("{}x{} pixels", region.Width(), region.Height());
 }
@@ -65,6 +60,11 @@ ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
 
 }  // namespace
 
+bool IsDisplayFile(const std::string& path) {
+    const std::string extension = ExtensionOf(path);
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || IsTiff(path);
+}
+
 bool IsImageFile(const std::string& path) {
     return ExtensionOf(path) == ".exr" || IsDisplayFile(path);
 }
@@ -80,6 +80,7 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
     for (size_t c = 0; c < 3; ++c) {
         const std::string channel(1, "RGB"[c]);
         const ExrChannel* found = exr.Find(channel);
+        if (!found) found = exr.Find("Y");
         if (!found) throw Error(path + ": has no channel " + channel);
         for (size_t i = 0; i < found->values.size(); ++i)
             image.values[3 * i + c] = found->values[i];

@@ -15,9 +15,13 @@ struct ComparedFile {
 // case.
 bool IsImageFile(const std::string& path);
 
-// Reads an EXR: R, G and B, and, if it is one of lull's, samples, rule and seconds; or a picture
-// for displays, taken as sRGB whatever profile it has, without its alpha, whose region begins at
-// (0, 0). Throws Error, also for a TIFF of more than 8 bits, which may be linear or not.
+// Returns whether a name is that of a picture for displays: .png, .jpg, .jpeg, .tif or .tiff.
+bool IsDisplayFile(const std::string& path);
+
+// Reads an EXR: R, G and B, or Y for all three, and, if it is one of lull's, samples, rule and
+// seconds; or a picture for displays, taken as sRGB whatever profile it has, without its alpha,
+// whose region begins at (0, 0). Throws Error, also for a TIFF of more than 8 bits, which may be
+// linear or not.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 
 // Reads an image as ReadComparedFile() does. Throws Error if it does not have the size of the

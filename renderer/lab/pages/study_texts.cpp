@@ -87,7 +87,7 @@ std::string DefaultStudyTexts() { return std::string(EmbeddedFile("study_texts.m
 
 StudyTexts ReadStudyTexts(const std::string& path) {
     const std::string text(ReadFile(path).View());
-    if (text.empty()) throw Error(path + ": is no text, or empty");
+    if (text.empty()) throw Error(path + ": is not a text, or empty");
     if (text.size() > kLongestText)
         throw Error(fmt::format("{}: has {} bytes; a text that observers read has at most {}", path,
                                 text.size(), kLongestText));

@@ -1,23 +1,21 @@
-// Reads the pictures of another renderer.
+#include "renderer/lab/viewpoints/picture_folder.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "renderer/base/error.h"
-#include "renderer/image/image_io.h"
-#include "renderer/lab/viewpoints/study.h"
-#include "stopping/signals/lightness.h"
+#include "renderer/lab/comparison/compared_files.h"
+#include "renderer/lab/viewpoints/recorded_viewpoint.h"
+#include "stopping/lab/recordings/recording.h"
 
 namespace lull {
 
 namespace {
-
-struct Picture {
-    int width = 0, height = 0;
-    DisplayPixels pixels;
-};
 
 // Reads the number whose digits begin at `at`; 0 if it is none that an spp can be.
 int NumberAt(const std::string& text, size_t at) {
@@ -31,80 +29,38 @@ size_t BeginOfDigits(const std::string& text, size_t end) {
     return end;
 }
 
-Picture ReadPicture(const std::string& path) {
-    const Image image = ReadImage(path);
-    Picture picture{image.width, image.height, {}};
-    const size_t pixels = size_t(image.width) * size_t(image.height);
-    const size_t channels = size_t(image.channels);
-    const size_t green = channels >= 3 ? 1 : 0, blue = channels >= 3 ? 2 : 0;
-    std::visit(
-        [&](const auto& texels) {
-            if constexpr (std::is_same_v<decltype(texels[0]), const uint8_t&>) {
-                for (size_t i = 0; i < pixels; ++i)
-                    for (const size_t c : {size_t(0), green, blue})
-                        picture.pixels.push_back(texels[i * channels + c]);
-            } else {
-                std::vector<float> linear;
-                for (size_t i = 0; i < pixels; ++i)
-                    for (const size_t c : {size_t(0), green, blue})
-                        linear.push_back(float(texels[i * channels + c]));
-                picture.pixels.resize(linear.size());
-                EncodeSrgb8(linear, picture.pixels);
-            }
-        },
-        image.texels);
-    return picture;
-}
-
-std::map<int, std::string> FindPictures(const std::string& folder) {
+std::map<int, std::string> FindFiles(const std::string& folder) {
     std::error_code error;
     std::filesystem::directory_iterator files(folder, error);
     if (error) throw Error(fmt::format("--images {}: {}", folder, error.message()));
+    std::set<std::string> paths;  // in an order that does not depend on the file system
+    for (const auto& entry : files)
+        if (entry.is_regular_file() && !entry.path().filename().string().starts_with("."))
+            paths.insert(entry.path().string());
     std::map<int, std::string> found;
-    for (const auto& entry : files) {
-        const std::string name = entry.path().filename().string();
-        if (!entry.is_regular_file() || name.starts_with(".")) continue;
-        const int spp = SppInName(name);
-        if (spp == 0)
-            throw Error(fmt::format("{}: has no spp in its name, such as room-40spp.png",
-                                    entry.path().string()));
-        const auto [other, isNew] = found.emplace(spp, entry.path().string());
+    for (const std::string& path : paths) {
+        const int spp = SppInName(std::filesystem::path(path).filename().string());
+        if (spp == 0) throw Error(path + ": has no spp in its name, such as room-40spp.png");
+        const auto [other, isNew] = found.emplace(spp, path);
         if (!isNew)
-            throw Error(fmt::format("{} and {} are both of {} spp", other->second,
-                                    entry.path().string(), spp));
+            throw Error(fmt::format("{} and {} are both of {} spp", other->second, path, spp));
     }
-    if (found.size() < 2)
-        throw Error(fmt::format("--images {}: has {} pictures; a study needs two at least", folder,
-                                found.size()));
     return found;
 }
 
-// Returns those of `available` that are nearest to the levels of a ladder.
-std::vector<int> ChooseLevels(const std::vector<int>& available, int count, double ratio) {
-    const int low = available.front(), cap = available.back();
-    std::vector<double> wanted;
-    const double span = std::log(double(cap) / low);
-    const int steps = count > 0 ? count - 1 : std::max(1, int(std::round(span / std::log(ratio))));
-    for (int i = 0; i <= steps; ++i) wanted.push_back(std::log(low) + span * i / steps);
-    std::vector<int> levels;
-    for (const double w : wanted) {
-        const int nearest = *std::ranges::min_element(
-            available, {}, [&](int spp) { return std::abs(std::log(double(spp)) - w); });
-        if (levels.empty() || levels.back() < nearest) levels.push_back(nearest);
-    }
-    return levels;
-}
-
-DisplayPixels Cut(const Picture& picture, const PixelRect& rect) {
-    DisplayPixels pixels;
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const auto row = picture.pixels.begin() + (ptrdiff_t(y) * picture.width) * 3;
-        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
-    }
-    return pixels;
+// Names a viewpoint after the folder of its pictures.
+std::string NameOfFolder(const std::string& folder) {
+    const std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
 }
 
 }  // namespace
+
+std::vector<int> PictureFolder::Spp() const {
+    std::vector<int> all;
+    for (const auto& [spp, file] : files) all.push_back(spp);
+    return all;
+}
 
 int SppInName(const std::string& name) {
     const std::string stem = std::filesystem::path(name).stem().string();
@@ -127,34 +83,58 @@ int SppInName(const std::string& name) {
     return last == std::string::npos ? 0 : NumberAt(stem, BeginOfDigits(stem, last + 1));
 }
 
-Study ReadStudy(const std::string& folder, const std::string& viewpoint, int blockSize, int count,
-                double ratio) {
-    const std::map<int, std::string> files = FindPictures(folder);
-    std::vector<int> available;
-    for (const auto& [spp, file] : files) available.push_back(spp);
+PictureFolder FindPictures(const std::string& folder, const std::string& name) {
+    PictureFolder found{.name = name.empty() ? NameOfFolder(folder) : name,
+                        .files = FindFiles(folder)};
+    if (const std::string problem = CheckViewpointName(found.name); !problem.empty())
+        throw Error(fmt::format("--images {}: {}", folder, problem));
+    if (found.files.empty()) throw Error(fmt::format("--images {}: has no pictures", folder));
+    const RgbImage first = ReadComparedFile(found.files.begin()->second, found.name).image.image;
+    found.width = first.width;
+    found.height = first.height;
+    return found;
+}
 
-    Study study;
-    study.viewpoint = viewpoint;
-    study.levels = ChooseLevels(available, count, ratio);
-    study.provenance["renderer"] = "another";
-    std::string first;
-    for (const int spp : study.levels) {
-        const std::string& file = files.at(spp);
-        const Picture picture = ReadPicture(file);
-        if (first.empty()) {
-            first = file;
-            study.width = picture.width;
-            study.height = picture.height;
-            const PixelRect whole{{0, 0}, {picture.width, picture.height}};
-            for (const Block& block : MakeBlocks(whole, {.blockSize = blockSize}))
-                study.blocks.push_back({block.pixels, {}});
-        }
-        if (picture.width != study.width || picture.height != study.height)
-            throw Error(fmt::format("{}: has {}x{} pixels, {} has {}x{}", file, picture.width,
-                                    picture.height, first, study.width, study.height));
-        for (StudyBlock& block : study.blocks) block.pictures.push_back(Cut(picture, block.pixels));
+PictureFolder FindNamedPictures(const std::string& text) {
+    const size_t colon = text.rfind(':');
+    std::error_code error;
+    if (colon == std::string::npos || std::filesystem::is_directory(text, error))
+        return FindPictures(text);
+    return FindPictures(text.substr(0, colon), text.substr(colon + 1));
+}
+
+RgbImage ReadPicture(const PictureFolder& folder, int spp) {
+    const std::string& file = folder.files.at(spp);
+    RgbImage image = ReadComparedFile(file, folder.name).image.image;
+    if (image.width != folder.width || image.height != folder.height)
+        throw Error(fmt::format("{}: has {}x{} pixels, {} has {}x{}", file, image.width,
+                                image.height, folder.files.begin()->second, folder.width,
+                                folder.height));
+    return image;
+}
+
+std::vector<float> CutPixels(const RgbImage& image, const PixelRect& rect) {
+    std::vector<float> pixels;
+    pixels.reserve(size_t(rect.Area()) * 3);
+    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
+        const auto row = image.values.begin() + (ptrdiff_t(y) * image.width) * 3;
+        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
     }
-    return study;
+    return pixels;
+}
+
+bool IsDisplayPicture(const PictureFolder& folder, int spp) {
+    return IsDisplayFile(folder.files.at(spp));
+}
+
+int PassOfPictures(const std::vector<int>& spp) {
+    const int pass = spp.front(), last = spp.back();
+    if (spp.size() < 2) return 0;
+    for (const int n : spp)
+        if (n % pass != 0) return 0;
+    for (int n = pass; n <= last; n += pass)
+        if (IsRecorded(n, pass, last) && !std::ranges::binary_search(spp, n)) return 0;
+    return pass;
 }
 
 }  // namespace lull

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "renderer/lab/viewpoints/picture_folder.h"
 #include "renderer/lab/viewpoints/picture_ladder.h"
 #include "renderer/render/schedule.h"
 
@@ -32,14 +33,8 @@ std::string StudyId(const Study&);
 // level and the reference.
 double NoiseOf(const StudyBlock&, size_t level);
 
-// Makes a study from the pictures of another renderer: all files of a folder whose names contain
-// their spp ("room-40spp.png", "spp40.exr" or, where no name says spp, the last number, as in
-// "room_00040.png"), 8-bit ones as they are, others as linear radiance. Takes those nearest to the
-// levels of a ladder of `count` levels or, where count is 0, of steps of `ratio`. Throws Error.
-Study ReadStudy(const std::string& folder, const std::string& viewpoint, int blockSize, int count,
-                double ratio);
-
-// Returns the spp that the name of a picture (without folder) says; 0 if it says none.
-int SppInName(const std::string& name);
+// Makes a study of the pictures of another renderer: of those nearest to the levels of a ladder of
+// `count` levels or, where count is 0, of steps of `ratio`. Throws Error.
+Study MakeStudy(const PictureFolder&, int blockSize, int count, double ratio);
 
 }  // namespace lull

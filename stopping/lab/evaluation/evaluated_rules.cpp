@@ -9,6 +9,7 @@
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
+#include "stopping/rules/rule_table.h"
 
 namespace lull {
 
@@ -35,6 +36,12 @@ void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBl
 }
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+// Returns what the number of a rule is compared with; 0 where a recording has no such numbers.
+double ThresholdOf(const std::string& rule, const RuleContext& context) {
+    const RuleEntry* entry = FindRule(rule);
+    return entry && entry->replay == Replay::Decides ? ParseRule(rule, context).threshold : 0;
+}
 
 // Evaluates the thresholds of a file on recorded blocks; those beyond the end of a recording as
 // they are or, if `clipped`, at that end.
@@ -104,8 +111,10 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
     if (!blocks.empty()) context.passSpp = blocks.front().passSpp;
     for (const std::string& rule : wanted.rules) {
         const Simulator simulator = MakeSimulator(rule, context);
+        const double threshold = ThresholdOf(rule, context);
         const auto run = [&](std::span<const LabelledBlock> on) {
-            return EvaluatedRule{.name = rule, .viewpoints = Simulate(on, simulator, "")};
+            return EvaluatedRule{
+                .name = rule, .viewpoints = Simulate(on, simulator, ""), .threshold = threshold};
         };
         AddTwoFigures(
             blocks, run(blocks), [&] { return run(extended.blocks); }, &rules);

@@ -54,6 +54,8 @@ struct EvaluatedRule {
     std::string name;
     std::string setting = {};  // the one for all viewpoints, if there is one
     std::vector<ViewpointOutcome> viewpoints = {};
+    double threshold =
+        0;  // what its number, the score of verdicts, is compared with; 0: it has none
     OpenStops openStops = OpenStops::None;
 };
 

@@ -20,10 +20,17 @@ struct RivalRule {
     std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
 };
 
-std::vector<RivalRule> RivalRules() {
+// Returns those that can be run on what was recorded of the blocks.
+std::vector<RivalRule> RivalRules(std::span<const LabelledBlock> blocks) {
+    const bool haveHalves = std::ranges::all_of(
+        blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
     std::vector<RivalRule> rivals;
     for (const RuleEntry& rule : RuleTable()) {
         if (rule.sweep.largest == 0) continue;
+        const bool comparesHalves =
+            rule.replay == Replay::RanAlong ||
+            ParseRule(std::string(rule.name) + ":1").need >= ViewNeed::MeanAndHalf;
+        if (comparesHalves && !haveHalves) continue;
         rivals.push_back({&rule});
         if (rule.sweep.choosesMask) rivals.push_back({&rule, true});
     }
@@ -154,7 +161,7 @@ std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseB
     begins.push_back(blocks.size());
 
     std::vector<Rival> rivals;
-    for (const RivalRule& rule : RivalRules())
+    for (const RivalRule& rule : RivalRules(blocks))
         rivals.push_back(EvaluateRival(rule.Name(), blocks, begins, SettingsOf(rule),
                                        MakeRun(blocks, rule), chooseBy, grid));
     return rivals;

@@ -30,7 +30,8 @@ struct Rival {
 
 // Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Throws
+// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
+// that compare halves are left out where a block was recorded without (HasHalves()). Throws
 // std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
                                   int grid);

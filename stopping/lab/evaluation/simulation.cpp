@@ -23,9 +23,10 @@ RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
     return {.stop = end, .open = end < kJudgedCap};
 }
 
-// Returns whether a verdict is due: at every second pass, so that they are evenly spaced.
+// Returns whether a verdict is due: at every second pass, so that they are evenly spaced; at every
+// record where these come at any spp.
 bool HasVerdict(const LabelledBlock& block, int spp) {
-    return (spp - block.passSpp) % (2 * block.passSpp) == 0;
+    return block.passSpp == 0 || (spp - block.passSpp) % (2 * block.passSpp) == 0;
 }
 
 // Adds the verdicts of a rule of which only the stop is known: noisy before it.
@@ -49,10 +50,23 @@ void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, do
 
 // Checks that every second pass is enough for what a rule compares beyond 400 spp.
 void CheckSpacing(const Rule& rule, const LabelledBlock& block) {
-    if (rule.spacing % (2 * block.passSpp) != 0)
+    if (block.passSpp > 0 && rule.spacing % (2 * block.passSpp) != 0)
         throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +
                                     " spp apart, but recordings have one every " +
                                     std::to_string(2 * block.passSpp) + " spp");
+}
+
+// Checks that records at any spp were near enough to each other for the rule to look at one.
+void CheckLookedAt(std::span<const Decision> decisions, const LabelledBlock& block) {
+    if (block.passSpp > 0 || std::ranges::any_of(decisions, &Decision::checked)) return;
+    const std::vector<int>& spp = block.recording->spp;
+    std::string text;
+    for (size_t i = 0; i < std::min(spp.size(), size_t(4)); ++i)
+        text += (i ? ", " : "") + std::to_string(spp[i]);
+    throw std::invalid_argument(
+        "pictures at " + text + (spp.size() > 4 ? ", ..." : "") +
+        " spp lie too far apart for it: it compares them, and has looked at none; take them at "
+        "multiples of 20 or 40 spp, or at most 1.4 times the spp of the one before");
 }
 
 // Lets the rule decide after every recorded pass, whether it has stopped the block or not.
@@ -66,6 +80,7 @@ std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
         decisions.push_back(criterion.Decide(
             spp, criterion.IsDue(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
     }
+    CheckLookedAt(decisions, block);
     return decisions;
 }
 
@@ -77,8 +92,13 @@ std::vector<double> NumbersOf(std::span<const Decision> decisions) {
     return numbers;
 }
 
-// Returns the end of the pass that reaches `spp`.
-int PassReaching(int spp, int passSpp) { return (spp + passSpp - 1) / passSpp * passSpp; }
+// Returns the end of the pass, or the record where these come at any spp, that reaches `spp`.
+int PassReaching(int spp, const LabelledBlock& block) {
+    if (block.passSpp > 0) return (spp + block.passSpp - 1) / block.passSpp * block.passSpp;
+    const std::vector<int>& recorded = block.recording->spp;
+    const auto at = std::ranges::lower_bound(recorded, spp);
+    return at == recorded.end() ? spp : *at;
+}
 
 Simulator ThresholdsSimulator(const std::string& path) {
     const auto rows = std::make_shared<const std::vector<ThresholdsRow>>(ReadThresholds(path));
@@ -89,7 +109,7 @@ Simulator ThresholdsSimulator(const std::string& path) {
         if (block.block >= int(row->spp.size()))
             throw std::runtime_error(path + ": '" + block.viewpoint +
                                      "' has no threshold for block " + std::to_string(block.block));
-        return SimulateStop(block, PassReaching(row->spp[size_t(block.block)], block.passSpp));
+        return SimulateStop(block, PassReaching(row->spp[size_t(block.block)], block));
     };
 }
 
@@ -119,6 +139,9 @@ RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& ser
 }
 
 RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief) {
+    if (!HasHalves(*block.recording))
+        throw std::invalid_argument(
+            "cycles compares a half of the samples, which pictures by themselves do not have");
     const auto found = std::ranges::find(kCyclesThresholds, threshold);
     if (found == kCyclesThresholds.end()) {
         std::string message = "cycles is recorded only at the thresholds";
@@ -163,8 +186,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     const Replay replay = FindRule(text)->replay;
     if (replay == Replay::Counts)
         return [rule](const LabelledBlock& block) {
-            return SimulateStop(block,
-                                PassReaching(rule->stopAt({.index = block.block}), block.passSpp));
+            return SimulateStop(block, PassReaching(rule->stopAt({.index = block.block}), block));
         };
     if (replay == Replay::RanAlong)
         return

@@ -3,7 +3,9 @@
 // Recordings hold all passes up to 400 spp and every second one after, and a rule is simulated as
 // if there were no others: it votes on recorded passes. Verdicts (evaluation.h) are given at every
 // second pass, which recordings have from the first to the last; a pass that the rule does not look
-// at is a verdict of noise, as the rule goes on.
+// at is a verdict of noise, as the rule goes on. Where records come at any spp (pictures, passSpp
+// 0), a rule looks at them as it does at pictures that are shown to it (Checks::any), and verdicts
+// are at all of them.
 #pragma once
 
 #include <functional>
@@ -29,7 +31,8 @@ int FirstBelow(const ErrorSeries& series, double threshold);
 
 // Each returns what a rule would have done to a block. Recordings that are empty throw
 // std::invalid_argument, and so does a threshold of cycles that is none of kCyclesThresholds, and a
-// model that does not fit the passes or asks for what is not recorded. Without verdicts if `brief`.
+// model that does not fit the passes, asks for what is not recorded or looks at no record. Without
+// verdicts if `brief`.
 RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& series,
                               double threshold, bool brief = false);
 RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief = false);

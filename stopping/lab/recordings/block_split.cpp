@@ -44,4 +44,13 @@ void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split) {
     split->training = std::move(kept);
 }
 
+std::vector<LabelledBlock> TestBlocks(std::span<const LabelledBlock> blocks,
+                                      std::span<const ThresholdsRow> rows) {
+    BlockSplit split{.training = {blocks.begin(), blocks.end()}};
+    KeepListed(rows, &split);
+    if (split.test.empty())
+        throw std::invalid_argument("lists all blocks, so that none is left to judge by");
+    return std::move(split.test);
+}
+
 }  // namespace lull

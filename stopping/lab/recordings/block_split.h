@@ -27,4 +27,9 @@ std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks);
 // 16). Throws std::invalid_argument if a viewpoint to train on has no row.
 void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split);
 
+// Returns the blocks that are not listed so: those that a model was not trained on. Throws
+// std::invalid_argument for a viewpoint without a row, or if all are listed.
+std::vector<LabelledBlock> TestBlocks(std::span<const LabelledBlock> blocks,
+                                      std::span<const ThresholdsRow> rows);
+
 }  // namespace lull

@@ -16,7 +16,7 @@ struct ViewpointRecording {
     std::string name;
     int blockCount = 0;  // in the whole image
     int cap = 0;         // spp at which recordings end at the latest
-    int passSpp = 0;     // samples per pixel and pass
+    int passSpp = 0;     // samples per pixel and pass; 0: records come at any spp
     // What the recordings were made of and with: scene, its hash, resolution, sampler, ...
     std::map<std::string, std::string> provenance;
     std::map<int, BlockRecording> blocks;   // by row-major number; others are absent

@@ -105,14 +105,24 @@ void ExtendCycles(int last, int passSpp, int end, BlockRecording* recording) {
     }
 }
 
+// Returns how far the last two records are apart, in spp.
+int LastStep(const BlockRecording& recording) {
+    const size_t count = recording.spp.size();
+    return count > 1 ? recording.spp[count - 1] - recording.spp[count - 2] : recording.spp[0];
+}
+
 }  // namespace
 
 BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int end) {
     if (recording.spp.empty()) throw std::invalid_argument("a recording has no passes");
     const std::vector<Fit> fits = FitAll(recording);
     BlockRecording extended = recording;
-    for (int spp = (recording.spp.back() / passSpp + 1) * passSpp; spp <= end; spp += passSpp) {
-        if (!IsRecorded(spp, passSpp, end)) continue;
+    const bool isAny = passSpp == 0;
+    if (isAny) passSpp = LastStep(recording);
+    const int last = recording.spp.back();
+    for (int spp = isAny ? last + passSpp : (last / passSpp + 1) * passSpp; spp <= end;
+         spp += passSpp) {
+        if (!isAny && !IsRecorded(spp, passSpp, end)) continue;
         extended.spp.push_back(spp);
         for (const Fit& fit : fits) extended.values.push_back(fit.At(spp));
     }

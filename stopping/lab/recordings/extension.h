@@ -16,7 +16,8 @@
 
 namespace lull {
 
-// Returns the recording with records up to `end` spp, as IsRecorded() spaces them. Where `cycles`
+// Returns the recording with records up to `end` spp, as IsRecorded() spaces them or,
+// where passSpp is 0, as far apart as the last two. Where `cycles`
 // has not stopped at a threshold T, it does where T^2 times the spp is what it was at the least
 // threshold at which it has; it never does where there is none. Throws std::invalid_argument for a
 // recording without records.

@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kRecorderTag = 0x31434552;  // "REC1"
 constexpr int kAllPassesUntil = 400;           // spp
 constexpr int kStatisticsSubBlocks = 100;
+constexpr std::array<std::string_view, 5> kHalfChannels = {"noise", "masked_noise", "half_noise",
+                                                           "dammertz", "luxtile"};
 
 void Append(std::span<const float> from, std::vector<float>* to) {
     to->insert(to->end(), from.begin(), from.end());
@@ -71,9 +73,31 @@ int ChannelCount(std::string_view name) { return kChannels[ChannelIndex(name)].c
 
 std::span<const float> BlockRecording::Values(int i, std::string_view channel) const {
     if (absent[ChannelIndex(channel)])
-        throw std::invalid_argument("a block was recorded without '" + std::string(channel) + "'");
+        throw std::invalid_argument(
+            "a block was recorded without '" + std::string(channel) + "'" +
+            (std::ranges::find(kHalfChannels, channel) != kHalfChannels.end()
+                 ? ", which compares a half of the samples; pictures by themselves have none"
+                 : ""));
     return std::span(values).subspan(size_t(i) * kRecordLength + size_t(ChannelOffset(channel)),
                                      size_t(ChannelCount(channel)));
+}
+
+void AddPicture(const BlockView& view, BlockRecording* recording) {
+    CheckView(view, ViewNeed::Mean);
+    if (recording->spp.empty())
+        for (const std::string_view channel : kHalfChannels)
+            recording->absent.set(ChannelIndex(channel));
+    if (HasHalves(*recording))
+        throw std::invalid_argument("a picture was added to a recording with halves");
+    recording->spp.push_back(view.spp);
+    // Against itself nothing differs, so that what halves make is 0.
+    BlockView same = view;
+    same.halfMean = view.mean;
+    AppendRecord(same, &recording->values);
+}
+
+bool HasHalves(const BlockRecording& recording) {
+    return !recording.absent[ChannelIndex("half_noise")];
 }
 
 bool IsRecorded(int spp, int passSpp, int cap) {

@@ -19,7 +19,7 @@ namespace lull {
 struct Channel {
     std::string_view name;
     int count;
-    bool optional = false;  // blocks that were recorded before it came do not have it
+    bool optional = false;  // some blocks do not have it: older ones, or pictures (AddPicture())
 };
 
 // All of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
@@ -27,6 +27,7 @@ struct Channel {
 // deviation are mean and standard deviation of L; texture is the mean of t, and noise,
 // masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
 // of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L.
+// Those from noise to luxtile compare the mean with a half of the samples.
 inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"h25", 25},
                                                        {"h100", 100},
@@ -36,11 +37,11 @@ inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"lightness", 100},
                                                        {"deviation", 100},
                                                        {"texture", 100},
-                                                       {"noise", 100},
-                                                       {"masked_noise", 100},
-                                                       {"half_noise", 100},
-                                                       {"dammertz", 1},
-                                                       {"luxtile", 1},
+                                                       {"noise", 100, true},
+                                                       {"masked_noise", 100, true},
+                                                       {"half_noise", 100, true},
+                                                       {"dammertz", 1, true},
+                                                       {"luxtile", 1, true},
                                                        {"attributes26", kAttributes, true}}};
 
 // Returns which of kChannels it is, the place of its first number in a record, or how many there
@@ -67,6 +68,14 @@ struct BlockRecording {
     // that the block does not have.
     std::span<const float> Values(int i, std::string_view channel) const;
 };
+
+// Adds the record of a picture of which no half of the samples is known, with increasing spp; only
+// the mean is read. Channels that compare halves are absent. The block must have at least 20 x 20
+// pixels. Throws std::invalid_argument as CheckView() does, or if the recording has halves.
+void AddPicture(const BlockView& view, BlockRecording* recording);
+
+// Returns whether a block was recorded with a half of its samples, or has no record yet.
+bool HasHalves(const BlockRecording& recording);
 
 // Returns whether a pass is recorded: all are up to 400 spp, then every second one (counted from
 // the first), and the last.

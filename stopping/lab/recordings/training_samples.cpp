@@ -9,6 +9,52 @@
 
 namespace lull {
 
+namespace {
+
+std::string PassText(int passSpp) {
+    return passSpp > 0 ? "in passes of " + std::to_string(passSpp) + " spp" : "at any spp";
+}
+
+// Walks over the records at which a model votes, or a step of a window lies.
+class VoteGrid {
+  public:
+    VoteGrid(const LabelledBlock& block, const ModelSettings& settings)
+        : block(block),
+          n(settings.n),
+          isAny(block.passSpp == 0 && settings.spacing == Spacing::Geometric),
+          next(block.passSpp > 0 ? block.passSpp
+               : isAny           ? 1
+                                 : n) {}
+
+    // Returns whether record i is one of them. Throws std::invalid_argument if one is missing.
+    bool Takes(int i) {
+        const int spp = block.recording->spp[size_t(i)];
+        if (spp < next) return false;
+        if (isAny) {
+            next = spp + n;
+            return true;
+        }
+        // The last pass of a recording may be off the grid.
+        const bool isLast = i + 1 == block.recording->Count();
+        if (spp > next && !isLast)
+            throw std::invalid_argument("block " + std::to_string(block.block) + " of " +
+                                        block.viewpoint + " is not recorded at " +
+                                        std::to_string(next) + " spp; n = " + std::to_string(n) +
+                                        " does not fit");
+        if (spp > next) return false;
+        next += n;
+        return true;
+    }
+
+  private:
+    const LabelledBlock& block;
+    int n;
+    bool isAny;
+    int next;  // the least spp of the next one
+};
+
+}  // namespace
+
 RecordedValues ValuesOf(const BlockRecording& recording, int i) {
     return [&recording, i](std::string_view channel) { return recording.Values(i, channel); };
 }
@@ -17,14 +63,23 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     return RecordedMeasures(recording.spp[size_t(i)], ValuesOf(recording, i), settings);
 }
 
+std::vector<Feature> MissingFeatures(const BlockRecording& recording,
+                                     const ModelSettings& settings) {
+    std::vector<Feature> missing;
+    for (const Feature feature : settings.features) {
+        const bool fromHalves = IsNoise(feature) && !IsDrop(feature);
+        if ((fromHalves && !HasHalves(recording)) ||
+            (feature == Feature::Attributes26 && recording.absent[ChannelIndex("attributes26")]))
+            missing.push_back(feature);
+    }
+    return missing;
+}
+
 std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
                                         const ModelSettings& settings) {
     std::vector<LabelledBlock> kept;
     for (const LabelledBlock& block : blocks)
-        if (std::ranges::find(settings.features, Feature::Attributes26) ==
-                settings.features.end() ||
-            !block.recording->absent[ChannelIndex("attributes26")])
-            kept.push_back(block);
+        if (MissingFeatures(*block.recording, settings).empty()) kept.push_back(block);
     return kept;
 }
 
@@ -51,9 +106,10 @@ std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoi
             blocks.push_back({name, number, row->spp.at(size_t(number)), viewpoint.cap,
                               viewpoint.passSpp, &recording});
         if (!blocks.empty() && blocks.front().passSpp != viewpoint.passSpp)
-            throw std::invalid_argument("the viewpoint " + name + " was recorded in passes of " +
-                                        std::to_string(viewpoint.passSpp) + " spp, not of " +
-                                        std::to_string(blocks.front().passSpp));
+            throw std::invalid_argument(
+                "the viewpoint " + name + " was recorded " + PassText(viewpoint.passSpp) + ", '" +
+                blocks.front().viewpoint + "' " + PassText(blocks.front().passSpp) +
+                "; give viewpoints of one kind, or --without NAME");
     }
     return blocks;
 }
@@ -67,18 +123,10 @@ TrainingSamples MakeSamples(std::span<const LabelledBlock> blocks, const ModelSe
             viewpoints.try_emplace(block.viewpoint, int(viewpoints.size())).first->second;
         const BlockRecording& recording = *block.recording;
         BlockMemory memory(settings);
-        int expected = block.passSpp;  // the next spp of the grid
+        VoteGrid grid(block, settings);
         for (int i = 0; i < recording.Count(); ++i) {
+            if (!grid.Takes(i)) continue;
             const int spp = recording.spp[size_t(i)];
-            if (spp < expected) continue;
-            // The last pass of a recording may be off the grid.
-            if (spp > expected && i + 1 < recording.Count())
-                throw std::invalid_argument(
-                    "block " + std::to_string(block.block) + " of " + block.viewpoint +
-                    " is not recorded at " + std::to_string(expected) +
-                    " spp; n = " + std::to_string(settings.n) + " does not fit");
-            if (spp > expected) break;
-            expected += settings.n;
             memory.Add(MeasuresOf(recording, i, settings));
             const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
             if (!window) continue;

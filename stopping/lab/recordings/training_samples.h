@@ -23,7 +23,7 @@ struct LabelledBlock {
     std::string viewpoint;
     int block = 0;                              // row-major number
     int human = 0;                              // spp from which on people saw no noise
-    int cap = 0, passSpp = 0;                   // of the recording
+    int cap = 0, passSpp = 0;                   // of the recording; pass 0: any spp
     const BlockRecording* recording = nullptr;  // of the data set, which must outlive this
 };
 
@@ -35,8 +35,12 @@ std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoi
                                      std::span<const ThresholdsRow> human,
                                      std::vector<std::string>* unknown);
 
-// Returns the blocks that were recorded with all that the settings ask for: older recordings have
-// no attributes.
+// Returns the features that a block was recorded without: older recordings have no attributes,
+// pictures no noise of halves.
+std::vector<Feature> MissingFeatures(const BlockRecording& recording,
+                                     const ModelSettings& settings);
+
+// Returns the blocks that were recorded with all that the settings ask for.
 std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
                                         const ModelSettings& settings);
 
@@ -52,7 +56,9 @@ struct TrainingSamples {
 };
 
 // Makes a sample of each window that ends at a multiple of n spp after the first pass and is in
-// the recordings as a whole. Throws std::invalid_argument if a block is not recorded every n spp.
+// the recordings as a whole; where records come at any spp, at those at which a model votes
+// (LearnedRule()). Throws std::invalid_argument if a block is not recorded every n spp, unless
+// records come at any spp and steps are geometric.
 TrainingSamples MakeSamples(std::span<const LabelledBlock> blocks, const ModelSettings& settings);
 
 }  // namespace lull

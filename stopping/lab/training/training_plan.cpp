@@ -55,7 +55,7 @@ std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan,
 
 void CheckSpacing(const ModelSettings& settings, int passSpp) {
     for (const int spp : {settings.n, settings.voteSpacing})
-        if (spp % passSpp != 0)
+        if (passSpp > 0 && spp % passSpp != 0)
             throw std::runtime_error(
                 fmt::format("--n and --vote-spacing must be multiples of the recordings' "
                             "pass of {} spp, and {} is not",

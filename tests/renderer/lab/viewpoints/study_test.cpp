@@ -27,7 +27,7 @@ void WriteGrey(const std::string& path, int width, int height, float linear) {
 
 // Returns what reading a folder throws.
 std::string ProblemOf(const TemporaryDirectory& folder) try {
-    ReadStudy(folder.path.string(), "x", 200, 0, 1.25);
+    MakeStudy(FindPictures(folder.path.string(), "x"), 200, 0, 1.25);
     return "";
 } catch (const Error& e) {
     return e.what();
@@ -45,12 +45,12 @@ TEST(SppInName, IsTheNumberThatSaysSo) {
     EXPECT_EQ(SppInName("spp.png"), 0);
 }
 
-TEST(ReadStudy, CutsPicturesIntoBlocksAtTheLevelsOfALadder) {
+TEST(MakeStudy, CutsPicturesIntoBlocksAtTheLevelsOfALadder) {
     const TemporaryDirectory folder;
     for (const int spp : {20, 25, 40, 80, 160})
         WriteGrey(folder.File(fmt::format("a-{}spp.png", spp)), 50, 30, 0.5f);
     WriteGrey(folder.File("a-320spp.exr"), 50, 30, 0.25f);
-    const Study study = ReadStudy(folder.path.string(), "a", 40, 5, 1.25);
+    const Study study = MakeStudy(FindPictures(folder.path.string(), "a"), 40, 5, 1.25);
     EXPECT_EQ(study.levels, (std::vector<int>{20, 40, 80, 160, 320}));
     EXPECT_EQ(study.width, 50);
     ASSERT_EQ(study.blocks.size(), 2u);
@@ -63,11 +63,11 @@ TEST(ReadStudy, CutsPicturesIntoBlocksAtTheLevelsOfALadder) {
     EXPECT_EQ(NoiseOf(study.blocks[0], 4), 0);
 }
 
-TEST(ReadStudy, NamesWhatDoesNotFit) {
+TEST(MakeStudy, NamesWhatDoesNotFit) {
     const TemporaryDirectory folder;
-    EXPECT_TRUE(Contains(ProblemOf(folder), "0 pictures"));
+    EXPECT_TRUE(Contains(ProblemOf(folder), "has no pictures"));
     WriteGrey(folder.File("a-20spp.png"), 8, 8, 0.5f);
-    EXPECT_TRUE(Contains(ProblemOf(folder), "1 pictures"));
+    EXPECT_TRUE(Contains(ProblemOf(folder), "a-20spp.png: is the only picture"));
     WriteGrey(folder.File("a-40spp.png"), 8, 9, 0.5f);
     EXPECT_TRUE(Contains(ProblemOf(folder), "a-40spp.png: has 8x9 pixels"));
     WriteGrey(folder.File("b-20.png"), 8, 8, 0.5f);
@@ -75,7 +75,7 @@ TEST(ReadStudy, NamesWhatDoesNotFit) {
     folder.Write("notes.txt", "x");
     EXPECT_TRUE(Contains(ProblemOf(folder), "notes.txt: has no spp in its name") ||
                 Contains(ProblemOf(folder), "both of 20 spp"));
-    EXPECT_THROW(ReadStudy(folder.File("no such"), "x", 200, 0, 1.25), Error);
+    EXPECT_THROW(FindPictures(folder.File("no such")), Error);
 }
 
 TEST(StudyId, TellsStudiesApart) {

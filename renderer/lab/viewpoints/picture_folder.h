@@ -1,0 +1,52 @@
+// Finds and reads the pictures of another renderer: one viewpoint at increasing samples per pixel.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "renderer/image/rgb_image.h"
+#include "renderer/render/schedule.h"
+
+namespace lull {
+
+// The pictures of a folder, one at each spp, all of the same size.
+struct PictureFolder {
+    std::string name;                  // of the viewpoint
+    std::map<int, std::string> files;  // by spp
+    int width = 0, height = 0;
+
+    std::vector<int> Spp() const;
+    PixelRect Region() const { return {{0, 0}, {width, height}}; }
+};
+
+// Returns the number that the name of a picture (without folder) gives as its spp:
+// "room-40spp.png", "spp40.exr" or, where no name says spp, the last number, as in
+// "room_00040.png"; 0 if there is none.
+int SppInName(const std::string& name);
+
+// Finds all files of a folder but those whose names begin with a dot, and reads the size of the
+// first. The viewpoint is called `name` or, if that is empty, as the folder. Throws Error for a
+// folder that cannot be read or has no picture, a file without an spp, or two with the same.
+PictureFolder FindPictures(const std::string& folder, const std::string& name = "");
+
+// Does the same for a text FOLDER[:NAME].
+PictureFolder FindNamedPictures(const std::string& text);
+
+// Reads a picture that was found, as linear radiance: PNG, JPEG and 8-bit TIFF as sRGB, each 8-bit
+// code as a value that a display shows as this code, and other formats as they are. Alpha is
+// ignored. Throws Error, also if it has another size than the first.
+RgbImage ReadPicture(const PictureFolder&, int spp);
+
+// Returns the pixels of a part of a picture, R, G, B, row by row, as a BlockView has them.
+std::vector<float> CutPixels(const RgbImage&, const PixelRect&);
+
+// Returns whether a picture holds what a display shows, and not linear radiance.
+bool IsDisplayPicture(const PictureFolder&, int spp);
+
+// Returns the spp of a pass that pictures come at the ends of, if they are those of a recording
+// (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: they come at any
+// spp.
+int PassOfPictures(const std::vector<int>& spp);
+
+}  // namespace lull
