@@ -17,7 +17,7 @@ images rendered before are compared.
 
 With --images the three images are made of another renderer's pictures: each block of the one at which
 RULE stopped it, or the first of as many samples as people asked for; the last picture is the
-reference. Names hold the samples per pixel, as for lull dataset --images.
+reference. Names hold the samples per pixel, as for lull record --images.
 
 With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
 denoised as a whole; its samples are rendered again for that. What looking and denoising take is

@@ -46,7 +46,7 @@ constexpr const char* kFooter =
     R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
 have. With data sets (see lull record), everything is judged on the blocks that these hold, and
 rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
---images DIR does the same on another renderer's pictures, as lull dataset --images would record
+--images DIR does the same on another renderer's pictures, as lull record --images would record
 them. Rules that compare halves of the samples (lnoise, dammertz, cycles, luxtile, learned:noise)
 cannot be run on pictures.
 
@@ -91,7 +91,7 @@ as a CSV file and as an SVG picture of one viewpoint, with the thresholds of peo
 --answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
 spp of the picture that was shown, 1 where noise was seen. Two more columns, observer,track, say which
-answers are steps of one adjustment (lull judge --collect): those of a track count as one answer. All
+answers are steps of one adjustment (lull study --collect): those of a track count as one answer. All
 rules are judged by the same answers.
   loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
           the rule's number (of its odds, for a network), with a location and a slope to be fitted

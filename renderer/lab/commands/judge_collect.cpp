@@ -1,4 +1,4 @@
-// `lull judge --collect`: makes thresholds of what observers said.
+// `lull study --collect`: makes thresholds of what observers said.
 #include <fmt/format.h>
 
 #include <map>

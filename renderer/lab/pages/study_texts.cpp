@@ -72,7 +72,7 @@ void CheckSection(const Section& section, const StudyTexts& page, const StudyTex
     const std::string at = fmt::format("{}:{}: [{}] ", path, section.line, section.key);
     const auto known = page.find(section.key);
     if (known == page.end())
-        throw Error(at + "is no text of the page; `lull judge --list-texts` lists them");
+        throw Error(at + "is no text of the page; `lull study --list-texts` lists them");
     if (before.contains(section.key)) throw Error(at + "comes twice");
     if (section.text.empty()) throw Error(at + "is empty");
     const std::set<std::string> names = NamesIn(known->second);

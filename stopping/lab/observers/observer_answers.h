@@ -1,4 +1,4 @@
-// Reads what one observer said of one viewpoint: the JSON files that the page of `lull judge`
+// Reads what one observer said of one viewpoint: the JSON files that the page of `lull study`
 // saves.
 #pragma once
 

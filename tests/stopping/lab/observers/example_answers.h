@@ -1,4 +1,4 @@
-// Writes files of answers as the page of `lull judge` does.
+// Writes files of answers as the page of `lull study` does.
 #pragma once
 
 #include <sstream>
