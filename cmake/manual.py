@@ -89,7 +89,7 @@ def entries(body):
 
 
 def help_of(lull, *command):
-    return Help(subprocess.run([lull, *command, "--help-all"], check=True, text=True,
+    return Help(subprocess.run([lull, *command, "--help-all" if command else "--help"], check=True, text=True,
                                stdout=subprocess.PIPE).stdout)
 
 
