@@ -41,7 +41,7 @@ def c_interface(header):
     text = (ROOT / header).read_text()
     comment = re.compile(r"\s*/\*(.*?)\*/\s*", re.S)
     yield "```\n" + re.sub(r"(?m)^ \* ?", "", comment.match(text)[1]).strip() + "\n```\n"
-    for part in re.split(r"\n\s*\n", text):
+    for part in re.split(r"\n\s*\n", text.partition('extern "C" {')[2]):
         names = re.findall(r"\b(lull_\w+)(?=\()|^} (lull_\w+);|^typedef struct (lull_\w+) \w+;", part, re.M)
         declared = [n for found in names for n in found if n]
         if "LULL_API " in part or part.startswith(("typedef", "/*")) and declared:
