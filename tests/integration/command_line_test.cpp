@@ -97,12 +97,13 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
     const std::string all = ExpectSuccess(directory, "render --help-all").out;
     for (const char* option : {"--denoise ", "-o,--output", "--spp", "--resume"})
         EXPECT_TRUE(Contains(brief, option) && Contains(all, option)) << option;
-    for (const char* option : {"--png-bits", "--keep-checkpoint", "--guide-memory"})
+    for (const char* option : {"--png-bits", "--checkpoint-interval", "--guide-memory"})
         EXPECT_TRUE(!Contains(brief, option) && Contains(all, option)) << option;
     EXPECT_TRUE(Contains(brief, "lull render --help-all lists all options."));
-    for (const char* group : {"Scene", "Image", "Sampling", "Stopping", "Denoising", "Guiding",
-                              "Output", "Interruption", "Advanced"})
-        EXPECT_TRUE(Contains(all, "\n" + std::string(group) + ":\n  -")) << group;
+    for (const char* group : {"\nScene:\n  -", "\nImage:\n  -", "\nSampling:\n  -",
+                              "\nStopping:\n  -", "\nDenoising:\n  -", "\nGuiding:\n  -",
+                              "\nOutput:\n  -", "\nInterruption:\n  -", "\nAdvanced:\n  -"})
+        EXPECT_TRUE(Contains(all, group)) << group;
     EXPECT_FALSE(Contains(all, "\nOptions:\n"));
     // The options of one command alone come first.
     EXPECT_TRUE(Contains(ExpectSuccess(directory, "compare --help").out, "--snapshots"));
@@ -260,7 +261,7 @@ TEST(CommandLine, StopsBlocksAsARuleSays) {
 TEST(CommandLine, WarnsOfFirstSamplesThatTakeLongerThanTheClock) {
     const SceneDirectory directory;
     const std::string render = "LULL render scene.pbrt --quiet ";
-    const std::string part = "warning: the first sample of each pixel";
+    const std::string part = "warning: the first sample of every pixel";
     const Outcome late = RunShell(directory, "timeout -s TERM 100 " + render +
                                                  "--resolution 3000x2000 --spp 20 --threads 1 "
                                                  "--time 1ms");
