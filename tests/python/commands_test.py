@@ -110,7 +110,7 @@ class Others(unittest.TestCase):
             self.assertEqual(entropies, lull.entropy(picture, block=50, sub_blocks=25))
             self.assertEqual([row["block"] for row in entropies], ["", 0])
             self.assertEqual(entropies[0]["h"], entropies[1]["h"])  # one block
-            with self.assertRaisesRegex(lull.Error, "data.h5"):
+            with self.assertRaisesRegex(ValueError, "data.h5"):
                 lull.evaluate([os.path.join(folder, "data.h5")], human=thresholds, stop="learned")
         self.assertTrue(rows)
         self.assertTrue(any(value == 0 for row in rows for value in row.values()), rows)
