@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
@@ -25,7 +24,9 @@ namespace {
 
 constexpr uint32_t kStopperTag = 0x32504f53;  // "SOP2"
 constexpr int kLargestSide = 1 << 16;         // pixels
-constexpr int kBlockSide = 200;               // of the blocks that people have judged
+constexpr int kMostSpp = 1 << 24;
+constexpr double kLeastCaution = 0.01, kMostCaution = 100;  // as those of `lull render`
+constexpr int kBlockSide = 200;                             // of the blocks that people have judged
 
 void Require(bool holds, const std::string& message) {
     if (!holds) throw std::invalid_argument(message);
@@ -42,9 +43,13 @@ void CheckSettings(const lull_settings& s) {
                                                      " pixels; it must have " + range);
     Require(s.block == 0 || isSide(s.block),
             "blocks of " + std::to_string(s.block) + " pixels; they must have " + range);
-    Require(s.pass >= 0 && s.cap >= 0, "pass and cap must not be negative");
+    const auto isSpp = [](int spp) { return spp >= 0 && spp <= kMostSpp; };
+    Require(isSpp(s.pass) && isSpp(s.cap), "pass is " + std::to_string(s.pass) + " and cap " +
+                                               std::to_string(s.cap) + "; they must be from 0 to " +
+                                               std::to_string(kMostSpp) + " spp");
     Require(!s.model || !s.rule, "model and rule are both given; one of them is needed");
-    Require(std::isfinite(s.caution) && s.caution >= 0, "caution must be above 0");
+    Require(s.caution == 0 || (s.caution >= kLeastCaution && s.caution <= kMostCaution),
+            "caution must be from 0.01 to 100, or 0 for 1");
 }
 
 Rule MakeRule(const lull_settings& s, int blockCount) {

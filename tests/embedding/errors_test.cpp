@@ -34,6 +34,9 @@ TEST(StopperErrors, RefusesBadSettings) {
     add(LULL_BAD_ARGUMENT, "cap").cap = -1;
     add(LULL_BAD_ARGUMENT, "caution").caution = std::numeric_limits<double>::quiet_NaN();
     add(LULL_BAD_ARGUMENT, "caution").caution = -1;
+    add(LULL_BAD_ARGUMENT, "caution must be from 0.01 to 100").caution = 1e9;
+    add(LULL_BAD_ARGUMENT, "pass is 33554432").pass = 1 << 25;
+    add(LULL_BAD_ARGUMENT, "16777216 spp").cap = std::numeric_limits<int>::max();
     add(LULL_BAD_ARGUMENT, "both").model = "entropy";
     add(LULL_BAD_ARGUMENT, "there is no such rule").rule = "hunch";
     add(LULL_BAD_ARGUMENT, "'-3' is not a threshold").rule = "entropy:-3";

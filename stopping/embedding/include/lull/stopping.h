@@ -84,9 +84,10 @@ typedef struct lull_settings {
      * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: with 1.5 times the spp from
      * one picture to the next it votes; with 1.7 times, or if they double (64, 128, 256), never. */
     int pass;
-    int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known */
+    int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known. Like
+                       `pass`, at most 16,777,216 */
     double caution; /* Divides the threshold of visible noise of "entropy", "noise" and the rules
-                       `entropy` and `lnoise`: 2 stops later, 0.5 sooner; 0: 1 */
+                       `entropy` and `lnoise`: 2 stops later, 0.5 sooner; from 0.01 to 100, 0: 1 */
 } lull_settings;
 
 /* Points to pixels, which are read only during the call. Strides are in bytes and may be negative;
