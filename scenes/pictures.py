@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [many-lights|room]: of many-lights, render.png, spp.png and decision.svg, the estimates for the block
-that stopped last. Of the room, denoised: room-day.jpg, room-spp.png, room-night.jpg, and report.jpg, a screenshot of
-the report. Both by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+pictures.py LULL [many-lights|room|report]: of many-lights, render.png, spp.png and decision.svg, the estimates for the
+block that stopped last. Of the room, denoised: room-day.jpg, room-spp.png and room-night.jpg. report.jpg is a screenshot
+of a report. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
@@ -77,14 +77,19 @@ def screenshot(page, target, size):
 def room(lull, out, pictures):
     for name, scene in (("day", "room"), ("night", "room-night")):
         subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", "--block", "120", "--cap", ROOM_CAP,
-                        "-o", out / f"{name}.exr", "--report", out / f"{name}.html"], check=True)
+                        "-o", out / f"{name}.exr"], check=True)
         jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
     shutil.copy(out / "day.spp.png", pictures / "room-spp.png")
-    screenshot(out / "day.html", pictures / "report.jpg", "1400,1150")
+
+
+def report(lull, out, pictures):
+    subprocess.run([lull, "render", SCENES / "textured/scene.pbrt", "--resolution", "300x300", "--block", "100",
+                    "--cap", "600", "--sampler", "random", "-o", out / "r.exr", "--report", out / "r.html"], check=True)
+    screenshot(out / "r.html", pictures / "report.jpg", "1400,1150")
 
 
 def main():
-    makers = {"many-lights": many_lights, "room": room}
+    makers = {"many-lights": many_lights, "room": room, "report": report}
     if len(sys.argv) not in (2, 3) or sys.argv[2:] and sys.argv[2] not in makers:
         raise SystemExit(__doc__)
     pictures = SCENES / "pictures"
