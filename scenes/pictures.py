@@ -71,7 +71,7 @@ def screenshot(page, target, size):
     subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
                     f"--window-size={size}", f"--screenshot={picture}", page.as_uri()], check=True,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    jpeg(picture, target, 85)
+    jpeg(picture, target, 80)
 
 
 def room(lull, out, pictures):
@@ -85,7 +85,7 @@ def room(lull, out, pictures):
 def report(lull, out, pictures):
     subprocess.run([lull, "render", SCENES / "textured/scene.pbrt", "--resolution", "300x300", "--block", "100",
                     "--cap", "600", "--sampler", "random", "-o", out / "r.exr", "--report", out / "r.html"], check=True)
-    screenshot(out / "r.html", pictures / "report.jpg", "1400,1150")
+    screenshot(out / "r.html", pictures / "report.jpg", "1400,1620")
 
 
 def main():
