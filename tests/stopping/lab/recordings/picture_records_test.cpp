@@ -64,7 +64,7 @@ TEST(PictureRecords, StayWithoutHalvesInFiles) {
 TEST(PictureRecords, AreLookedAtWhereverTheyCome) {
     std::vector<int> spp;
     for (double n = 30; n < 9000; n *= 1.3) spp.push_back(int(n));
-    const BlockRecording recording = Record(spp);
+    const BlockRecording recording = Record(spp, 0.1);
     const LabelledBlock block = Labelled(recording);
     const RuleContext context{.passSpp = 0};
     const RuleOutcome outcome = SimulateRule(block, ParseRule("entropy:0.5", context));
@@ -76,7 +76,7 @@ TEST(PictureRecords, AreLookedAtWhereverTheyCome) {
     int shown = 0;
     for (const int n : spp) {
         shown = n;
-        if (criterion->Observe(NoisyBlock(40, 40, 0.5, n, unsigned(n)).At(n)).stop) break;
+        if (criterion->Observe(NoisyBlock(40, 40, 0.1, n, unsigned(n)).At(n)).stop) break;
     }
     EXPECT_EQ(outcome.stop, shown);
     // Rules that count stop at a picture.
