@@ -59,28 +59,28 @@ Examples:
   lull bench scene.pbrt --resolution 400x400 --block 100 --cap 2000 -o room --report room.html
   lull bench scene.pbrt --rule learned:other.h5 --external others.csv -o room
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 void AddOptions(CLI::App& app, Options* o) {
     AddRenderSettings(app, &o->render, false);
-    app.add_option("--samplers", o->samplers, "Where sample positions come from [sobol,random]")
+    app.add_option("--samplers", o->samplers, "Measure these samplers [sobol,random]")
         ->delimiter(',')
         ->check(CLI::IsMember(ChoicesOf<SamplerKind>()))
         ->type_name("S,S");
     AddGuideOptions(app, &o->guide);
-    app.add_option("--rule", o->rules, "Another stopping rule to measure; can be given again")
+    app.add_option("--rule", o->rules, "Measure this rule, too; can be given again")
         ->take_all()
         ->type_name("RULE");
-    app.add_flag("--denoise", o->denoise,
-                 "Also measure `denoised`, and images that are denoised where it stops");
+    app.add_flag("--denoise", o->denoise, "Measure the rule `denoised` and its images, too");
     AddViewingOption(app, &o->display);
-    app.add_option("--reference", o->reference, "Image to compare with")->type_name("R.exr");
-    app.add_option("--external", o->external, "Images of other renderers: name,seconds,file.exr")
+    app.add_option("--reference", o->reference, "Compare with this image")->type_name("R.exr");
+    app.add_option("--external", o->external,
+                   "Add images of other renderers: name,seconds,file.exr")
         ->type_name("E.csv");
     app.add_option("-o,--output", o->output,
-                   "Beginning of the names of the files, or their folder\n[the scene's]")
+                   "Write files whose names begin with OUT, or to DIR/ [the scene's name]")
         ->type_name("OUT|DIR/");
-    app.add_option("--report", o->report, "Write a page to look at")
+    app.add_option("--report", o->report, "Write a page with images and curves")
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })
@@ -319,7 +319,8 @@ ExitCode RunBench(Options options, Job* ranks) {
 
 void AddBenchCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* bench = app.add_subcommand(
-        "bench", "Measures error against seconds and samples: fixed numbers, and stopping rules.");
+        "bench",
+        "Plots error against time and samples, for fixed sample counts and stopping rules.");
     auto options = std::make_shared<Options>();
     AddOptions(*bench, options.get());
     bench->callback([=] { *command = [=] { return RunBench(*options, job); }; });

@@ -12,7 +12,7 @@ constexpr const char* kFooter =
     R"(With a scene and --snapshots, one render to the cap gives three images: "automatic", where RULE
 stopped each block, "human", where a thresholds file says, and the "reference" at the cap. Sample k
 of a pixel is always the same, so they are the images that three renders would give, bit for bit.
-With --reference instead, blocks are only rendered as far as the last of both. Without a scene,
+With --reference instead, each block is rendered to the larger of the two thresholds. Without a scene,
 images rendered before are compared.
 
 With --images the three images are made of another renderer's pictures: each block of the one at which
@@ -30,7 +30,7 @@ lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al.
 blocks than inside (1: not at all). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for
 displays, of which there are no linear figures. Seconds are CPU time; "~" marks estimates.
 
-Files, beside each other:
+Files, in one folder:
   OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
                        were rendered
   OUT.thresholds.csv   samples per pixel at which the rule stopped each block
@@ -44,7 +44,7 @@ Examples:
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
   lull compare --automatic a.png --reference photo.jpg -o room
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 }  // namespace
 
@@ -61,9 +61,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
                      ->type_name("RULE")
                      ->capture_default_str();
     AddCautionOption(app, &o->render.caution);
-    app.add_option("--human", o->human, "Thresholds of people, or an image rendered with them")
+    app.add_option("--human", o->human, "Compare human thresholds, or an image rendered with them")
         ->type_name("H.csv[:NAME]|H.exr|H.png");
-    app.add_option("--automatic", o->automatic, "Image rendered before by an automatic rule")
+    app.add_option("--automatic", o->automatic,
+                   "Read the image of an automatic rule, instead of rendering")
         ->type_name("A.exr|A.png")
         ->excludes(scene)
         ->excludes(images)
@@ -74,21 +75,18 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
         ->needs(scene)
         ->excludes(reference);
-    app.add_flag("--denoise", o->denoise,
-                 "Also make the image that `lull render --denoise` gives, \"denoised\"")
+    app.add_flag("--denoise", o->denoise, "Add \"denoised\", the image of `lull render --denoise`")
         ->needs(scene);
     AddViewingOption(app, &o->display);
     app.add_option("--verify", o->verify,
-                   "Render the automatic image by itself as well, on each of these numbers of\n"
-                   "threads (0: all), and measure what the rule costs and saves")
+                   "Measure cost and savings of the rule on N threads; 0: all")
         ->delimiter(',')
         ->check(CLI::Range(0, 4096))
         ->needs(scene)
         ->type_name("N,N,...");
-    app.add_option("-o,--output", o->output,
-                   "Beginning of the names of the files to write, or their folder")
+    app.add_option("-o,--output", o->output, "Write files whose names begin with OUT, or to DIR/")
         ->type_name("OUT|DIR/");
-    app.add_option("--report", o->report, "Write a page to look at")
+    app.add_option("--report", o->report, "Write a page with images and tables")
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })

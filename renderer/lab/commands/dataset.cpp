@@ -1,4 +1,4 @@
-// `lull record`: records what stopping rules can learn from.
+// `lull record`: records the data set that rules are trained on.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -45,7 +45,7 @@ Examples:
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
   lull record --images pictures/kitchen -o data.h5
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 void AddOptions(CLI::App& app, Options* o) {
     AddSceneOptions(app, &o->render.scene);
@@ -58,33 +58,33 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--name", o->name,
                    "Name of the viewpoint, as in thresholds files [the name of the folder]")
         ->check(CheckViewpointName);
-    app.add_option("-o,--output", o->output, "Data set to make or add to")
+    app.add_option("-o,--output", o->output, "Write or extend this data set")
         ->required()
         ->type_name("OUT.h5");
     app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
         ->delimiter(',')
         ->check(CLI::NonNegativeNumber)
         ->type_name("N,N,...");
-    auto* human = app.add_option("--human", o->human, "Thresholds of people, for --past")
+    auto* human = app.add_option("--human", o->human, "Read the human thresholds for --past")
                       ->check(CLI::ExistingFile)
                       ->type_name("H.csv");
-    app.add_option("--past", o->past, "End each block at this times its human threshold")
+    app.add_option("--past", o->past, "Record each block up to X times its human threshold")
         ->check(CLI::Range(0.1, 100.0))
         ->type_name("X")
         ->needs(human);
-    app.add_option("--cap", o->render.schedule.cap, "Samples per pixel at which all recordings end")
+    app.add_option("--cap", o->render.schedule.cap, "Record up to N spp")
         ->check(CLI::Range(1, 1 << 24))
         ->type_name("N")
         ->capture_default_str();
     AddEstimatorOption(app, &o->render.estimator);
-    app.add_option("--seed", o->render.seed, "Another seed gives other, equally good, samples")
+    app.add_option("--seed", o->render.seed, "Seed the random numbers")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
     AddCheckpointInterval(app, &o->render.checkpoint);
     app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors");
     app.add_flag("--json-progress", o->render.jsonProgress,
-                 "Print progress as JSON, an object a line");
+                 "Print events as JSON, one object per line, on stderr");
     app.footer(kFooter);
 }
 

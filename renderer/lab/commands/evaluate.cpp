@@ -111,14 +111,14 @@ Examples:
   lull evaluate data.h5 --human human.csv --stop learned:paper --curves c.csv --figure c.svg
   lull evaluate data.h5 --answers answers.csv --stop entropy --stop learned
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
-    app.add_option("--grid", score->grid, "Spp between the decisions that a critical error counts")
+    app.add_option("--grid", score->grid, "Count the decisions of critical errors every N spp")
         ->check(CLI::Range(1, kJudgedCap))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--margins", score->margins, "Margins of the critical error in %")
+    app.add_option("--margins", score->margins, "Set the margins of the critical error, in %")
         ->delimiter(',')
         ->check(CLI::Range(0.0, 100.0))
         ->type_name("M,M,...")
@@ -126,40 +126,40 @@ void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
 }
 
 void AddOptions(CLI::App& app, Options* o) {
-    app.add_option("DATASET.h5", o->datasets, "Recordings to run rules on")
+    app.add_option("DATASET.h5", o->datasets, "Data sets to run rules on")
         ->check(CLI::ExistingFile);
     AddImagesOptions(app, &o->images, &o->blockSize);
     CLI::Option* human = app.add_option("--human", o->human, "Thresholds of people")
                              ->check(CLI::ExistingFile)
                              ->type_name("H.csv");
-    app.add_option("--answers", o->answers, "Single answers of people to judge by instead")
+    app.add_option("--answers", o->answers,
+                   "Read the single answers of observers, instead of thresholds")
         ->check(CLI::ExistingFile)
         ->excludes(human)
         ->type_name("A.csv");
-    app.add_option("--predicted", o->predicted, "Thresholds to judge; can be given again")
+    app.add_option("--predicted", o->predicted, "Evaluate these thresholds; can be given again")
         ->check(CLI::ExistingFile)
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("P.csv");
-    app.add_option("--stop", o->rules, "Rule to judge; can be given again")
+    app.add_option("--stop", o->rules, "Evaluate this rule; can be given again")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("RULE");
     AddCautionOption(app, &o->caution);
     app.add_flag("--rivals", o->rivals,
-                 "Judge the rules that have one setting:\n" +
+                 "Evaluate the baselines, which have one setting:\n" +
                      RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
-    app.add_flag("--constants", o->constants, "Judge constant spp, too");
+    app.add_flag("--constants", o->constants, "Evaluate constant spp, too");
     AddChoiceOption(app, "--choose-by", &o->chooseBy,
-                    "What the setting of a rival or constant makes least: the error, or the "
-                    "critical error at 2 %");
-    app.add_option("--without", o->without, "Viewpoint to leave out; can be given again")
+                    "Choose settings of baselines by the least error, or critical error at 2 %");
+    app.add_option("--without", o->without, "Leave out this viewpoint; can be given again")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("NAME");
     AddCriticalErrorOptions(app, &o->judge);
     app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
-    app.add_option("--csv", o->csv, "Write all rows to a CSV file as well")->type_name("F.csv");
+    app.add_option("--csv", o->csv, "Write all rows to a CSV file")->type_name("F.csv");
     app.add_option("--blocks", o->blocks, "Write the stop of each block to a CSV file")
         ->type_name("F.csv");
     AddSplitOption(app, &o->split, "Judge by the blocks alone that FILE does not list");
@@ -338,7 +338,7 @@ void CheckUsage(const Options& options) {
 
 void AddEvaluateCommand(CLI::App& app, Command* command) {
     CLI::App* evaluate =
-        app.add_subcommand("evaluate", "Judges stopping rules by the thresholds of people.");
+        app.add_subcommand("evaluate", "Compares stopping rules with human thresholds.");
     auto options = std::make_shared<Options>();
     AddOptions(*evaluate, options.get());
     evaluate->footer(kFooter);

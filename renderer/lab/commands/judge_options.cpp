@@ -10,7 +10,7 @@ namespace lull {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Makes a page on which people say where they still see noise, and collects what they said.
+    R"(Makes a page on which observers mark visible noise, and collects their answers.
 
 The scene is rendered to the cap once, and each block kept at a ladder of samples per pixel, each
 level a quarter above the last. STUDY.html opens from disk in any browser and asks for nothing from
@@ -21,7 +21,7 @@ with the same --sampler and --estimator.
 Procedures:
   adjust      the image beside the reference: observers point where they differ, and the block gets
               one level better, until both look the same (Buisine et al. 2021)
-  staircase   one block at a time beside its reference: which of both has the noise? Levels are
+  staircase   one block at a time beside its reference: which of the two is noisier? Levels are
               chosen by QUEST (Watson and Pelli 1983)
 Start levels differ between observers, some blocks are asked twice, and some show the reference on
 both sides, to find out who does not look. --descending asks a share of the blocks once more from
@@ -46,20 +46,20 @@ Examples:
   lull study --collect answers/*.json -o human.csv --study study.html --report collected.html
   lull train data.h5 --human human.csv -o model.h5
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
-    AddChoiceOption(app, "--procedure", &s->procedure, "How people are asked");
-    app.add_option("--repeats", s->repeats, "Share of the blocks that are asked twice")
+    AddChoiceOption(app, "--procedure", &s->procedure, "Choose the procedure, described below");
+    app.add_option("--repeats", s->repeats, "Ask this fraction of the blocks twice")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("X")
         ->capture_default_str();
     app.add_option("--catches", s->catches,
-                   "Share of the blocks (of the trials of a staircase) that check the observer")
+                   "Check observers in this fraction of the blocks (staircase: trials)")
         ->check(CLI::Range(0.0, 0.5))
         ->type_name("X")
         ->capture_default_str();
-    app.add_option("--answers", s->answers, "Answers to each block of a staircase")
+    app.add_option("--answers", s->answers, "Ask N times per block of a staircase")
         ->check(CLI::Range(2, 100))
         ->type_name("N")
         ->capture_default_str();
@@ -75,19 +75,20 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     AddRenderSettings(app, &s->render);
     app.get_option("SCENE")->required(false);
     app.add_option("--images", s->images,
-                   "Pictures of another renderer, with their spp in the file names, not a scene")
+                   "Read images of another renderer, with the spp in their file names")
         ->type_name("DIR");
     app.add_option("--collect", s->collect, "Collect these files of answers")
         ->type_name("ANSWERS.json ...");
     app.add_option("-o,--output", s->output, "The page to make, or the thresholds to write")
         ->type_name("STUDY.html|HUMAN.csv");
-    app.add_option("--name", s->name, "Name of the viewpoint in thresholds and data [the scene's]")
+    app.add_option("--name", s->name, "Name the viewpoint, as in thresholds files [the scene's]")
         ->check(CheckViewpointName);
-    app.add_option("--levels", s->levels, "Levels of the ladder [each 1.25 times the last]")
+    app.add_option("--levels", s->levels,
+                   "Set the number of sample counts per block [each 1.25 times the last]")
         ->check(CLI::Range(2, 200))
         ->type_name("N");
     app.add_option("--record", s->record,
-                   "Record what rules can learn from, of the same render, in this data set")
+                   "Record the block histories of the render in this data set")
         ->type_name("DATA.h5");
     AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
@@ -108,7 +109,7 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
         ->capture_default_str();
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
         ->type_name("STUDY.html");
-    app.add_option("--report", s->report, "With --collect: write a page that shows the answers")
+    app.add_option("--report", s->report, "Write a page of the answers, with --collect")
         ->type_name("PAGE.html");
     app.footer(kFooter);
 }

@@ -18,33 +18,32 @@ namespace lull {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Learns from recordings (see lull record) and the thresholds of people when these stop to see
-noise. The defaults are those of the model `entropy`: a small LSTM network on the noise that falls of
-SVD-entropies make visible, a number for the block. --preset paper takes the configuration of Buisine
-et al. 2021, a large one on windows of 8 SVD-entropies of 100 sub-blocks; other options change either.
-Viewpoints are joined by their exact names; those without thresholds are left aside.
+    R"(Trains a network on data sets (see lull record) and human thresholds. The defaults are those of the
+model `entropy`: a small LSTM network on the visible drop in SVD-entropy of a block. --preset paper
+takes the configuration of Buisine et al. 2021, a larger network on windows of 8 SVD-entropies of 100
+sub-blocks. Other options change either. Viewpoints are joined by name; those without thresholds are
+ignored.
 
 Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
   noise, masked_noise, detail_masked_noise, lightness
                      statistics of 10x10 sub-blocks, never normalised over the window
-  entropy_drop       the fall of H since half as many samples
-  visible_drop       the noise in lightness that the fall of H makes visible, of 10x10 sub-blocks
-  attributes26       how much 13 filters take out of the block, means and deviations; blocks that were
-                     recorded without are left aside
-  logspp             the logarithm of the samples per pixel
---pool rms,p4 gives the network a few numbers for each feature in place of all sub-blocks: mean, rms,
-or pN for the power mean with exponent N (from 3 to 9); none gives it the value of each sub-block.
+  entropy_drop       drop in H from half as many samples
+  visible_drop       visible noise in L*, from the drop in H, of 10x10 sub-blocks
+  attributes26       means and deviations of the block minus its filtered copies, for 13 filters;
+                     blocks recorded without them are ignored
+  logspp             logarithm of the samples per pixel
+--pool rms,p4 replaces the values of all sub-blocks by statistics: mean, rms, or pN for the power mean
+with exponent N (3 to 9); none keeps the value of each sub-block.
 
---units none --k 1 leaves the LSTM layers out: a logistic regression on the last step.
+--units none --k 1 is a logistic regression on the last step, without LSTM layers.
 
-The same options and seed give the same weights for any number of threads. Interrupted, a training
-with -o leaves MODEL.h5.checkpoint, and goes on from there with --resume.
+The same options and seed give the same weights for any number of threads. An interrupted training
+with -o leaves MODEL.h5.checkpoint and continues with --resume.
 
-With --cross-validate each viewpoint is judged by a network that was trained on all others; with
--o, a network trained on all of them is written as well, with the distance of people's thresholds from
-the stops on what was left out, from which renders say how sure a stop is. For the columns of the tables see
-lull evaluate --help.
+--cross-validate evaluates each viewpoint by a network trained on all others. With -o, it also writes
+a network trained on all viewpoints, and stores the held-out ratios of human thresholds to stops, from
+which renders derive confidence ranges. For the columns of the tables see lull evaluate --help.
 
 Examples:
   lull train data.h5 --human human.csv -o model.h5
@@ -54,7 +53,7 @@ Examples:
   lull train data.h5 --human human.csv --cross-validate --preset paper
   lull train --preset paper
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 130 interrupted.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 bool ParseUnits(const std::string& text, std::vector<int>* units) {
     units->clear();
@@ -137,53 +136,51 @@ void AddReal(CLI::App& app, const std::string& name, double* value, double least
 }
 
 void AddSettings(CLI::App& app, ModelSettings* s) {
-    AddNumber(app, "--k", &s->k, 1, 1000, "Steps in a window");
-    AddNumber(app, "--n", &s->n, 1, 1000000, "Spp between the steps");
-    app.add_option("--m", s->m, "Sub-blocks that entropies are computed of")
+    AddNumber(app, "--k", &s->k, 1, 1000, "Set the steps of a window");
+    AddNumber(app, "--n", &s->n, 1, 1000000, "Set the spp between steps");
+    app.add_option("--m", s->m, "Set the number of sub-blocks of entropies")
         ->check(OneOf(std::set{4, 25, 100, 400}))
         ->type_name("4|25|100|400")
         ->capture_default_str();
-    AddNames(app, "--features,--channels", ParseFeatures, &s->features, "What the network is given",
-             FeatureNames(s->features));
-    AddNames(app, "--pool", ParsePoolsOrNone, &s->pools, "Statistics in place of all sub-blocks",
-             PoolsText(s->pools));
+    AddNames(app, "--features,--channels", ParseFeatures, &s->features,
+             "Set the inputs of the network", FeatureNames(s->features));
+    AddNames(app, "--pool", ParsePoolsOrNone, &s->pools,
+             "Replace the values of sub-blocks by statistics", PoolsText(s->pools));
     app.add_flag("--snorm,!--no-snorm", s->snorm,
-                 "Normalise entropies, attributes26 too, over the window" + DefaultNote(s->snorm));
-    app.add_flag("--bnorm", s->bnorm, "Normalise the entropies, or attributes26, of each step");
+                 "Normalise entropies and attributes26 over the window" + DefaultNote(s->snorm));
+    app.add_flag("--bnorm", s->bnorm, "Normalise entropies and attributes26 of each step");
     AddNames(app, "--spacing", ParseSpacing, &s->spacing,
-             "Steps of a window n spp apart (fixed), or each at --ratio times\nthe spp of the one "
-             "before, looked at every n spp (geometric)",
-             SpacingName(s->spacing));
-    AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Ratio of geometric spacing");
+             "Space steps n spp apart (fixed) or by --ratio (geometric)", SpacingName(s->spacing));
+    AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Set the ratio of geometric spacing");
     NoiseVisibility* v = &s->visibility;
     AddReal(app, "--mask", &v->mask, 1e-3, 1e9,
-            "visible_drop: detail of deviation d hides noise, 1 / (1 + d / X)");
+            "visible_drop: mask noise by detail of deviation d, as 1 / (1 + d / X)");
     AddReal(app, "--flare", &v->flare, 0.0, 1.0,
-            "visible_drop: light that the screen reflects, as a share of white");
+            "visible_drop: set the light reflected by the screen, as a fraction of white");
     AddNumber(app, "--reference", &v->reference, 1, 1 << 30,
-              "visible_drop: spp N of the picture that people compared with");
+              "visible_drop: set the spp of the observers' reference");
     AddReal(app, "--nearness", &v->nearness, 0.0, 10.0,
-            "visible_drop: noise counts (1 - spp / N)^X");
-    AddNumber(app, "--votes", &s->votes, 1, 1000, "Noiseless votes in a row that stop a block");
-    app.add_option("--vote-spacing", s->voteSpacing, "Spp between votes [n]")
+            "visible_drop: weigh noise by (1 - spp / N)^X, N: --reference");
+    AddNumber(app, "--votes", &s->votes, 1, 1000, "Stop after N consecutive votes");
+    app.add_option("--vote-spacing", s->voteSpacing, "Vote every N spp [n]")
         ->check(CLI::Range(1, 1000000))
         ->type_name("N");
 }
 
 void AddTraining(CLI::App& app, TrainingOptions* t) {
-    AddUnits(app, "--units", &t->units, "Units of the LSTM layers, or none");
-    AddUnits(app, "--dense", &t->dense, "Units of dense layers before the last one");
-    app.add_option("--dropout", t->dropout, "Share of each LSTM layer's inputs that is dropped")
+    AddUnits(app, "--units", &t->units, "Set the units of the LSTM layers, or none");
+    AddUnits(app, "--dense", &t->dense, "Set the units of dense layers before the last one");
+    app.add_option("--dropout", t->dropout, "Drop this fraction of each LSTM layer's inputs")
         ->check(CLI::Range(0.0, 0.99))
         ->type_name("X")
         ->capture_default_str();
-    app.add_option("--learning-rate", t->learningRate, "Learning rate of RMSprop")
+    app.add_option("--learning-rate", t->learningRate, "Set the learning rate of RMSprop")
         ->check(CLI::PositiveNumber)
         ->type_name("X")
         ->capture_default_str();
-    AddNumber(app, "--batch", &t->batch, 1, 1 << 20, "Samples in a batch");
-    AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "How often all samples are shown");
-    app.add_option("--seed", t->seed, "Another seed gives another network")
+    AddNumber(app, "--batch", &t->batch, 1, 1 << 20, "Set the samples per batch");
+    AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "Set the number of epochs");
+    app.add_option("--seed", t->seed, "Seed the initial weights")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N")
         ->capture_default_str();
@@ -195,7 +192,7 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
                  "Let noisy and noiseless samples count the same, as in the paper" +
                      DefaultNote(t->balanceClasses));
     AddReal(app, "--noisy-weight", &t->noisyWeight, 1e-3, 1e3,
-            "What noisy samples count more: fewer stops too early");
+            "Weigh noisy samples by X; larger: fewer early stops");
 }
 
 void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
@@ -253,9 +250,10 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     app.add_option("--csv", o->csv, "Write the scores to a CSV file")->type_name("F.csv");
-    AddNumber(app, "--threads", &o->threads, 0, 4096, "Threads; 0: one for each core");
-    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and the scores");
-    app.add_flag("--json-progress", o->jsonProgress, "Print progress as JSON, an object a line");
+    AddNumber(app, "--threads", &o->threads, 0, 4096, "Train on N threads; 0: one per core");
+    app.add_flag("--quiet", o->quiet, "Print only warnings, errors and scores");
+    app.add_flag("--json-progress", o->jsonProgress,
+                 "Print events as JSON, one object per line, on stderr");
     app.footer(kFooter);
 }
 

@@ -1,33 +1,32 @@
-/* Lets a renderer ask when its picture has enough samples: lull's stopping module, for C and
- * everything that can call C.
+/* The stopping rule of lull for other renderers: decides for each block of an image whether it
+ * needs more samples. For C, and languages that call C.
  *
- *     lull_settings settings = {0};              // all that is 0 has its default
+ *     lull_settings settings = {0};              // 0: default
  *     settings.width = 1920, settings.height = 1080;
  *     lull_stopper* stopper = NULL;
  *     if (lull_stopper_create(&settings, &stopper) != LULL_OK) puts(lull_error_message());
  *     while (!lull_stopper_done(stopper)) {
- *         spp += render(...);                    // more samples where blocks go on
+ *         spp += render(...);                    // more samples in active blocks
  *         lull_picture picture = {1920, 1080, LULL_LINEAR_FLOAT, pixels};
  *         lull_stopper_observe(stopper, &picture, spp, NULL);
  *     }
  *     lull_stopper_destroy(stopper);
  *
- * A picture is cut into blocks, each of which stops on its own, so that only blocks that go on need
- * more samples. Blocks may have different numbers of samples.
+ * The image ("picture") is cut into blocks, each of which stops by itself. Only active blocks need
+ * more samples; blocks may have different sample counts.
  *
- * Errors. Functions return LULL_OK or another lull_status; then lull_error_message() says, in the
- * same thread, what is wrong and what would be right, and nothing has changed: no result is
- * written, no block's state changes (except for LULL_OUT_OF_MEMORY and LULL_INTERNAL, after which a
- * stopper can only be destroyed). Null pointers are errors like others, unless stated otherwise.
- * Nothing throws, prints or ends the program.
+ * Errors. Functions return LULL_OK or another lull_status. In the latter case,
+ * lull_error_message() returns the reason and the remedy, in the same thread. No result is written,
+ * and no block changes its state, except for LULL_OUT_OF_MEMORY and LULL_INTERNAL, after which a
+ * stopper can only be destroyed. Null pointers are errors, unless stated otherwise. No function
+ * throws, prints or ends the program.
  *
- * Threads. All functions can be called from any thread at any time, but a stopper must not be used
- * while or after it is destroyed. Different blocks can be checked concurrently; calls for the same
- * block wait for each other. lull_stopper_observe() shares its work between the threads that oneTBB
- * has for the caller. Reading a model uses the HDF5 library, which allows one thread at a time: a
- * program that uses HDF5 itself must not do so meanwhile.
+ * Threads. All functions can be called from any thread. A stopper must not be used while or after
+ * it is destroyed. Different blocks can be checked concurrently; calls for one block are
+ * serialised. lull_stopper_observe() runs on the threads of oneTBB. Reading a model uses HDF5,
+ * which allows one thread at a time: a program that uses HDF5 must not do so meanwhile.
  *
- * The same pictures lead to the same answers, bit for bit, on any number of threads.
+ * Equal pictures lead to equal answers, bit for bit, on any number of threads.
  */
 #ifndef LULL_STOPPING_H
 #define LULL_STOPPING_H
@@ -54,35 +53,32 @@ typedef enum lull_status {
 
 typedef enum lull_format {
     LULL_LINEAR_FLOAT = 0, /* float, linear R, G, B with Rec. 709 primaries; 1 is the display's
-                              white. Values not finite count as black; blocks with more than a
-                              tenth of them, or a quarter of negative pixels, are refused, and so
-                              are first pictures most of whose lit pixels are above 4. */
-    LULL_SRGB8 = 1         /* unsigned char, sRGB, as in a PNG. A half in 8 bits is rounded, which
-                              looks like a little noise to rules that read it. */
+                              white. Values that are not finite count as black. Errors: blocks with
+                              more than 10 % of them or 25 % of negative pixels, and first pictures
+                              with most non-black pixels above 4. */
+    LULL_SRGB8 = 1         /* unsigned char, sRGB, as in a PNG. A half buffer in 8 bits has rounding
+                              errors, which rules that read it take for noise. */
 } lull_format;
 
-/* Holds the settings of a stopper; begin with all zeros. */
+/* Settings of a stopper; initialise with zeros. */
 typedef struct lull_settings {
-    int width, height; /* pixels of the whole picture; from 40 to 65,536 each */
-    /* What decides: a model, by its name ("entropy", the default; "noise", "paper") or by its file
-     * ("own.h5"); or any other rule of `lull render --stop` ("entropy:0.64", "lnoise",
-     * "fixed:400"). Set one of the two; the other is NULL. */
+    int width, height; /* pixels of the whole picture, 40 to 65,536 */
+    /* The rule: a model by name ("entropy", the default; "noise", "paper") or file ("own.h5"), or
+     * another rule of `lull render --stop` ("entropy:0.64", "lnoise", "fixed:400"). At most one is
+     * set; the other is NULL. */
     const char *model, *rule;
-    /* The folder of installed models. NULL: $LULL_MODELS if that is set, else share/lull/models
-     * where the library is installed. */
+    /* Folder of installed models. NULL: $LULL_MODELS if set, else share/lull/models of the
+     * installation. */
     const char* models;
-    /* Pixels a side of the blocks, at least 40; 0: 200, which the models were trained on. What is
-     * left at the right and at the bottom are smaller blocks. A block with a side below 40 pixels
-     * is not checked, but follows the largest of its neighbours, whose answer is its own, too
-     * (unless the rule only counts samples). A block as large as the picture is the whole picture.
-     */
+    /* Side of the blocks in pixels, at least 40; 0: 200, the size of the training data. Blocks at
+     * the right and bottom border can be smaller. A block with a side below 40 pixels is not
+     * checked: it has the answer of its largest neighbour, unless the rule only counts samples. */
     int block;
-    /* Samples per pixel between two pictures of a block, if always the same: the first picture has
-     * as many. 0: pictures come at any spp. Then the default model and the rule `entropy` look at
-     * one when 40 spp have passed since the last one that they looked at; "noise" and "paper" look
-     * only at 40, 80, 120, ... spp (20, 60, 100, ... with 20 here). The default model compares a
-     * picture with earlier ones, at 1 / sqrt(2) of its spp, 1 / 2, ...: with 1.5 times the spp from
-     * one picture to the next it votes; with 1.7 times, or if they double (64, 128, 256), never. */
+    /* Spp between two pictures of a block, if constant; the first picture has as many. 0: any. The
+     * default model and the rule `entropy` then check a picture 40 spp after the last checked one;
+     * "noise" and "paper" check at 40, 80, 120, ... spp (at 20, 60, 100, ... for pass = 20). The
+     * default model compares a picture with earlier ones at 1 / sqrt(2), 1 / 2, ... of its spp: it
+     * votes if spp grow by at most 1.5x per picture, and never if they double (64, 128, 256). */
     int pass;
     int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known. Like
                        `pass`, at most 16,777,216 */
@@ -96,8 +92,8 @@ typedef struct lull_settings {
 typedef struct lull_picture {
     int width, height;
     int format;       /* a lull_format */
-    const void* mean; /* of all samples so far: the first channel of the pixel at the top left */
-    const void* half; /* the same of one fixed half of the samples; NULL if there is none */
+    const void* mean; /* mean of all samples: first channel of the top-left pixel */
+    const void* half; /* half buffer: mean of a fixed half of the samples; or NULL */
     ptrdiff_t row_stride, pixel_stride, channel_stride;
 } lull_picture;
 
@@ -105,53 +101,54 @@ typedef struct lull_rect {
     int x, y, width, height; /* pixels; x to the right, y down */
 } lull_rect;
 
-/* Describes the state of a block. No number is NaN. */
+/* State of a block. No number is NaN. */
 typedef struct lull_answer {
-    int stop;         /* 1: needs no more samples; stays so */
+    int stop;         /* 1: needs no more samples; final */
     int checked;      /* 1: the call checked the block; 0: the numbers are older */
-    int spp;          /* of the picture that was shown last, or of the one that stopped it */
-    int next_spp;     /* the least spp that will be checked next; 0: none */
-    int votes;        /* for stopping, in a row, */
-    int votes_needed; /* and how many stop the block; 1 for rules that do not vote */
-    /* Once it has stopped: between which spp people would cease to see noise in 80 of 100 cases,
-     * for models that know; 0: not known. */
+    int spp;          /* of the last picture, or of the one that stopped the block */
+    int next_spp;     /* smallest spp of the next check; 0: none */
+    int votes;        /* consecutive votes to stop */
+    int votes_needed; /* votes that stop the block; 1 for rules without votes */
+    /* Of a stopped block: range of spp that contains the human threshold in 80 of 100 cases, if the
+     * model has one; 0: unknown. */
     int people_low, people_high;
-    double value;         /* what the rule compares, */
-    double threshold;     /* with what */
-    double probability;   /* that people would see noise (models), 1 before there is an estimate;
-                             -1: the rule has none */
-    double visible_noise; /* RMS of the noise in lightness (0 to 100), less on texture, at the last
-                             check with a half; -1: not known */
+    double value;         /* value of the rule, */
+    double threshold;     /* and its threshold */
+    double probability;   /* that an observer sees noise (models); 1 before the first estimate;
+                             -1: none */
+    double visible_noise; /* RMS noise in L*, masked by texture, at the last check with a half
+                             buffer; -1: unknown */
 } lull_answer;
 
-/* Decides on the blocks of one picture, from its first samples to its last. */
+/* Decides on the blocks of one picture, from its first to its last samples. */
 typedef struct lull_stopper lull_stopper;
 
-/* Makes a stopper. LULL_BAD_ARGUMENT, LULL_BAD_FILE. */
+/* Creates a stopper. Errors: LULL_BAD_ARGUMENT, LULL_BAD_FILE. */
 LULL_API lull_status lull_stopper_create(const lull_settings* settings, lull_stopper** stopper);
-/* Frees it. It may be NULL. */
+/* Destroys a stopper; NULL is allowed. */
 LULL_API void lull_stopper_destroy(lull_stopper* stopper);
 
-/* Return the number of blocks, and of their columns (0 for NULL), and where a block lies: row by
- * row from the top left, block = row * columns + column. LULL_BAD_ARGUMENT. */
+/* Return the numbers of blocks and of columns (0 for NULL), and the rectangle of a block. block =
+ * row
+ * * columns + column, from the top left. Error: LULL_BAD_ARGUMENT. */
 LULL_API int lull_stopper_block_count(const lull_stopper* stopper);
 LULL_API int lull_stopper_column_count(const lull_stopper* stopper);
 LULL_API lull_status lull_stopper_block_rect(const lull_stopper* stopper, int block,
                                              lull_rect* rect);
-/* Returns 1 if the rule compares with a half of the samples, so that pictures must have one. */
+/* Returns 1 if the rule needs half buffers. */
 LULL_API int lull_stopper_needs_half(const lull_stopper* stopper);
 
-/* Shows the whole picture, which has `spp` samples per pixel except in blocks that have stopped,
- * whose pixels are not read; `spp` is more than at the last call. Writes an answer for each block,
- * unless `answers` is NULL. LULL_BAD_ARGUMENT. */
+/* Checks all active blocks of the whole picture. `spp` is their sample count, larger than at the
+ * last call; stopped blocks are not read. Writes one answer per block, unless `answers` is NULL.
+ * Error: LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* picture,
                                           int spp, lull_answer* answers);
-/* Does the same for one block, with a picture of its size. `answer` may be NULL. For a block that
- * follows another nothing is done but to answer. */
+/* Checks one block, with a picture of its size. `answer` may be NULL. A block that follows another
+ * is not checked. Error: LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
                                                 const lull_picture* picture, int spp,
                                                 lull_answer* answer);
-/* Repeats the last answer for a block; `spp` is 0 if there is none. LULL_BAD_ARGUMENT. */
+/* Returns the last answer for a block; `spp` is 0 before the first. Error: LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
                                          lull_answer* answer);
 /* Returns 1 if all blocks have stopped, and for NULL. */
@@ -167,8 +164,8 @@ LULL_API const char* lull_stopper_warning(const lull_stopper* stopper);
  * there on entry, and the size needed on return; if `bytes` is NULL nothing else is done.
  * LULL_BAD_ARGUMENT if the room is too small. The layout is that of this machine and version. */
 LULL_API lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes, size_t* size);
-/* Restores that state in a stopper with the same settings. LULL_BAD_FILE if the bytes are damaged
- * or belong to other settings; the stopper is then unchanged. */
+/* Restores a state into a stopper with equal settings. LULL_BAD_FILE if the bytes are damaged or
+ * belong to other settings; the stopper is then unchanged. */
 LULL_API lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_t size);
 
 /* Holds the entropies of a part of a picture, each in [0, 1]; h = h1 + h2. */
