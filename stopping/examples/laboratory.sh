@@ -27,18 +27,18 @@ $lull entropy --images "$pictures" --block "$block" --csv "$out/entropies.csv" >
 human=$answers
 if [ -d "$answers" ]; then
     [ -e "$out/study.html" ] ||
-        $lull judge --images "$pictures" --block "$block" --levels "${LEVELS:-28}" -o "$out/study.html"
+        $lull study --images "$pictures" --block "$block" --levels "${LEVELS:-28}" -o "$out/study.html"
     if ! compgen -G "$answers/*.json" >/dev/null; then
         echo "Give $out/study.html to observers, and put the files that they save in $answers."
         exit
     fi
     human=$out/human.csv
-    $lull judge --collect "$answers"/*.json --study "$out/study.html" -o "$human" \
+    $lull study --collect "$answers"/*.json --study "$out/study.html" -o "$human" \
         --report "$out/collected.html"
 fi
 
 # 3. The pictures as a data set, and a model of these observers' sight.
-$lull dataset --images "$pictures" --block "$block" -o "$out/data.h5"
+$lull record --images "$pictures" --block "$block" -o "$out/data.h5"
 $lull train "$out/data.h5" --human "$human" -o "$out/own.h5" --quiet >"$out/training.txt"
 
 # 4. The table: how far rules stop from people; and the figure: how their numbers fall in each block.
