@@ -69,7 +69,7 @@ struct RanksTest : testing::Test {
 TEST_F(RanksTest, RefuseViewers) {
     const Outcome outcome = Run(Ranks(2) + kRender + kShort + "--display 127.0.0.1:9");
     EXPECT_NE(outcome.exitCode, 0);
-    EXPECT_TRUE(Contains(outcome.err, "render")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "--display")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "one process")) << outcome.err;
 }
 

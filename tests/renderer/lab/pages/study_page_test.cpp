@@ -105,7 +105,7 @@ TEST(ReadStudyPage, RefusesOtherPages) {
             ReadStudyPage(path);
             ADD_FAILURE() << text.substr(0, 50);
         } catch (const Error& e) {
-            EXPECT_TRUE(Contains(e.what(), "other.html: is ")) << e.what();
+            EXPECT_TRUE(Contains(e.what(), "other.html: not ")) << e.what();
         }
     }
     EXPECT_THROW(ReadStudyPage(folder.File("none.html")), Error);

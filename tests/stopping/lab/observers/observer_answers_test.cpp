@@ -56,7 +56,7 @@ TEST(ParseAnswers, ReadsStaircases) {
 TEST(ParseAnswers, NamesWhatIsDamagedOrForeign) {
     const std::string good = ExampleAnswers{.repeats = {1}}.Text();
     for (size_t size = 0; size < good.size(); size += 7)
-        ExpectProblem(good.substr(0, size), "no JSON, or cut short");
+        ExpectProblem(good.substr(0, size), "not JSON, or cut short");
     for (const char* foreign : {"{}", "[]", "1", "null", R"({"format":"other"})"})
         ExpectProblem(foreign, "no file of answers");
     ExpectProblem(With(good, "\"version\":1", "\"version\":2"), "another version");
