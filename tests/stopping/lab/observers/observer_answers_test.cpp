@@ -58,7 +58,7 @@ TEST(ParseAnswers, NamesWhatIsDamagedOrForeign) {
     for (size_t size = 0; size < good.size(); size += 7)
         ExpectProblem(good.substr(0, size), "not JSON, or cut short");
     for (const char* foreign : {"{}", "[]", "1", "null", R"({"format":"other"})"})
-        ExpectProblem(foreign, "no file of answers");
+        ExpectProblem(foreign, "not a file of answers");
     ExpectProblem(With(good, "\"version\":1", "\"version\":2"), "another version");
     ExpectProblem(With(good, "\"finished\":\"2026-01-01T01:00:00.000Z\"", "\"finished\":null"),
                   "had not finished");
