@@ -189,7 +189,7 @@ def check_sentences(browser):
             ({"stoppedBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
              "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 not finished in time."),
             ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
-             "Rendered in 5\u00a0s: 80 samples per pixel, without looking for noise.")):
+             "Rendered in 5\u00a0s: 80 samples per pixel, without a stopping rule.")):
         data = {"cap": 80, "provenance": {"criterion": rule}, "images": [{"blocks": [{"spp": s} for s in spp]}],
                 "totals": {"blocks": 2, "seconds": 5, "interrupted": False, **totals}}
         said = browser.evaluate(f"sayRender({json.dumps(data)})")
