@@ -63,7 +63,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("M")
         ->capture_default_str();
     app.add_option("--csv", o->csv, "Write the entropies of all blocks")->type_name("F.csv");
-    app.add_flag("--values", o->values, "Write those of each sub-block as well");
+    app.add_flag("--values", o->values, "Write the entropies of each sub-block as well");
     app.add_flag("--attributes", o->attributes, "Write the 26 attributes of each block as well");
     app.footer(kFooter);
 }
@@ -105,16 +105,9 @@ void PrintBlocks(const EntropiesOfPicture& picture, int subBlocks) {
 }
 
 void PrintPicture(const Source& source, const EntropiesOfPicture& picture, size_t width) {
-    SvdEntropy mean;
-    const double count = double(picture.blocks.size());
-    for (const BlockEntropies& block : picture.blocks) {
-        mean.h += block.mean.h / count;
-        mean.h1 += block.mean.h1 / count;
-        mean.h2 += block.mean.h2 / count;
-    }
     fmt::print("{:<{}}  {:>6}{}{}\n", source.file, width,
                source.spp > 0 ? std::to_string(source.spp) : "-", Numbers(picture.whole),
-               Numbers(mean));
+               Numbers(picture.mean));
 }
 
 std::string CsvNumbers(const SvdEntropy& e) {
@@ -184,7 +177,8 @@ ExitCode RunEntropy(const Options& options) {
         const RgbImage image = ReadComparedFile(source.file, source.file).image.image;
         EntropiesOfPicture picture;
         try {
-            picture = MeasureEntropies(image, options.blockSize, options.subBlocks);
+            picture =
+                MeasureEntropies(image, options.blockSize, options.subBlocks, options.attributes);
         } catch (const Error& error) {
             throw Error(fmt::format("{}: {}", source.file, error.what()));
         }

@@ -69,7 +69,7 @@ class RuleOnPictures {
                 .width = blocks[i].pixels.Width(), .height = blocks[i].pixels.Height(), .spp = spp};
             std::vector<float> pixels;
             if (criteria[i]->Need(spp) != ViewNeed::Nothing) {
-                pixels = CutPixels(picture, blocks[i].pixels);
+                pixels = CutPixels(picture.values, picture.width, blocks[i].pixels);
                 view.mean = pixels;
             }
             decisions[i] = criteria[i]->Observe(view);

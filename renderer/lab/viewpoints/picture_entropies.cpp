@@ -25,7 +25,8 @@ SvdEntropy MeanOf(std::span<const SvdEntropy> entropies) {
 
 }  // namespace
 
-EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int subBlocks) {
+EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int subBlocks,
+                                    bool withAttributes) {
     const PixelRect region{{0, 0}, {picture.width, picture.height}};
     const std::vector<Block> blocks = MakeBlocks(region, {.blockSize = blockSize});
     const int least = std::max(int(std::lround(std::sqrt(subBlocks))), 5);
@@ -35,21 +36,27 @@ EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int 
                 fmt::format("a block of {}x{} pixels is too small for {} sub-blocks; choose "
                             "another --block or fewer --sub-blocks",
                             block.pixels.Width(), block.pixels.Height(), subBlocks));
-    EntropiesOfPicture result{.whole = {}, .blocks = std::vector<BlockEntropies>(blocks.size())};
+    EntropiesOfPicture result{
+        .whole = {}, .mean = {}, .blocks = std::vector<BlockEntropies>(blocks.size())};
     const auto whole = [](const std::vector<double>& lightness, const PixelRect& rect) {
         return SubBlockEntropies(lightness, rect.Width(), rect.Height(), 1)[0];
     };
     result.whole = whole(LightnessOf(picture.values), region);
     ForEachIndex(int(blocks.size()), [&](int i) {
         const PixelRect& rect = blocks[size_t(i)].pixels;
-        const std::vector<double> lightness = LightnessOf(CutPixels(picture, rect));
+        const std::vector<double> lightness =
+            LightnessOf(CutPixels(picture.values, picture.width, rect));
         BlockEntropies& block = result.blocks[size_t(i)];
         block.pixels = rect;
         block.whole = whole(lightness, rect);
         block.subBlocks = SubBlockEntropies(lightness, rect.Width(), rect.Height(), subBlocks);
         block.mean = MeanOf(block.subBlocks);
-        block.attributes = ComputeAttributes(lightness, rect.Width(), rect.Height());
+        if (withAttributes)
+            block.attributes = ComputeAttributes(lightness, rect.Width(), rect.Height());
     });
+    std::vector<SvdEntropy> means;
+    for (const BlockEntropies& block : result.blocks) means.push_back(block.mean);
+    result.mean = MeanOf(means);
     return result;
 }
 

@@ -113,16 +113,6 @@ RgbImage ReadPicture(const PictureFolder& folder, int spp) {
     return image;
 }
 
-std::vector<float> CutPixels(const RgbImage& image, const PixelRect& rect) {
-    std::vector<float> pixels;
-    pixels.reserve(size_t(rect.Area()) * 3);
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const auto row = image.values.begin() + (ptrdiff_t(y) * image.width) * 3;
-        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
-    }
-    return pixels;
-}
-
 bool IsDisplayPicture(const PictureFolder& folder, int spp) {
     return IsDisplayFile(folder.files.at(spp));
 }

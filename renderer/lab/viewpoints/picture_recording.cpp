@@ -55,7 +55,7 @@ ViewpointRecording RecordPictures(const PictureFolder& folder,
             const size_t i = recorded[size_t(k)];
             if (!isOpen(i)) return;
             const PixelRect& rect = blocks[i].pixels;
-            const std::vector<float> pixels = CutPixels(picture, rect);
+            const std::vector<float> pixels = CutPixels(picture.values, picture.width, rect);
             AddPicture({.width = rect.Width(), .height = rect.Height(), .spp = spp, .mean = pixels},
                        &recordings[i]);
         });

@@ -28,15 +28,6 @@ std::vector<int> ChooseLevels(const std::vector<int>& available, int count, doub
     return levels;
 }
 
-DisplayPixels Cut(const DisplayPixels& picture, int width, const PixelRect& rect) {
-    DisplayPixels pixels;
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const auto row = picture.begin() + (ptrdiff_t(y) * width) * 3;
-        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
-    }
-    return pixels;
-}
-
 }  // namespace
 
 Study MakeStudy(const PictureFolder& folder, int blockSize, int count, double ratio) {
@@ -53,7 +44,7 @@ Study MakeStudy(const PictureFolder& folder, int blockSize, int count, double ra
         DisplayPixels shown(picture.values.size());
         EncodeSrgb8(picture.values, shown);
         for (StudyBlock& block : study.blocks)
-            block.pictures.push_back(Cut(shown, folder.width, block.pixels));
+            block.pictures.push_back(CutPixels(shown, folder.width, block.pixels));
     }
     return study;
 }

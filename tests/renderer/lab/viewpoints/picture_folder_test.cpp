@@ -90,7 +90,7 @@ TEST(RecordPictures, HoldsWhatPicturesShow) {
     EXPECT_EQ(block.spp, (std::vector<int>{20, 40, 60}));
     EXPECT_FALSE(HasHalves(block));
     EXPECT_THROW(block.Values(0, "noise"), std::invalid_argument);
-    const EntropiesOfPicture entropies = MeasureEntropies(ReadPicture(found, 40), 50, 100);
+    const EntropiesOfPicture entropies = MeasureEntropies(ReadPicture(found, 40), 50, 100, true);
     for (int i = 0; i < 100; ++i)
         EXPECT_FLOAT_EQ(block.Values(1, "h100")[size_t(i)],
                         float(entropies.blocks[1].subBlocks[size_t(i)].h));
