@@ -110,6 +110,12 @@ Belief Together(const Belief& samples, Belief usual) {
     return {share * samples.mean + (1 - share) * usual.mean, share * samples.variance};
 }
 
+Planes LuminancesOf(const Planes& image) {
+    Planes luminances(image.width, image.height, 1);
+    for (size_t i = 0; i < image.Area(); ++i) luminances.values[i] = LuminanceOf(image, i);
+    return luminances;
+}
+
 // Returns slope * (a - b) of the luminances of two pictures, in lightness.
 Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
     Planes difference(a.width, a.height, 1);
@@ -170,6 +176,7 @@ Planes AsSeen(Planes difference) {
 EstimatedError MeasureError(const DenoisedPicture& denoised) {
     EstimatedError error = Measure(denoised, true);
     error.structure = StructureLeft(denoised.noisy, denoised.variance, denoised.halves);
+    error.noisy = {LuminancesOf(denoised.noisy.a), LuminancesOf(denoised.noisy.b)};
     return error;
 }
 

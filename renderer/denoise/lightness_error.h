@@ -14,6 +14,7 @@ struct EstimatedError {
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // half the difference of the denoised halves: the part that still changes
     Planes structure;  // structure of the samples that the picture lacks (structure.h); not squared
+    Halves noisy;      // luminances of the halves of the samples
 };
 // Measures it as it is seen (AsSeen).
 EstimatedError MeasureError(const DenoisedPicture&);
