@@ -1,5 +1,5 @@
 // Renders as commands do: the scene is loaded, checked and compiled, and rendered by a session that
-// prints on stderr what there is to say and goes on from its checkpoint.
+// prints its messages on stderr and continues from its checkpoint.
 //
 //     RenderJob render(settings, ranks);
 //     render.CheckFiles({{"-o", output}});

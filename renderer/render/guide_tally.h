@@ -40,9 +40,9 @@ struct GuideTally {
     GuideComparison Compare(std::span<const TileNoise> noise) const;
 };
 
-// Returns the variance of guided samples over that of unguided ones in a part of the film, whose
-// tiles are `noise`, and its standard error on top: in (0, 1], and 1 where fewer than kTilesEnough
-// say so.
+// Returns the variance of guided samples over that of unguided ones in a part of the film, with the
+// tiles `noise`, plus its standard error: in (0, 1], and 1 where fewer than kTilesEnough tiles have
+// an estimate.
 double VarianceOf(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
 inline constexpr int kTilesEnough = 8;
 

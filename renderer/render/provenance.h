@@ -37,8 +37,8 @@ struct Provenance {
     GuideFigures guideFigures = {};  // of learning; not part of the identity
 };
 
-// Names a scene in thresholds files: the file without folder and extension, or the folder where
-// the file is called scene.pbrt. Not empty, without what the format has no room for.
+// Names a scene in thresholds files: the file without folder and extension, or the folder where the
+// file is called scene.pbrt. Not empty, without characters that the format reserves.
 std::string SceneName(const std::string& file);
 
 // A part of the provenance, by its name in each of the places that tell it; null: not told there.
@@ -49,8 +49,8 @@ struct NamedProvenance {
     std::variant<bool, int, uint64_t, std::string, Vec2i, PixelRect> value;
 };
 
-// Returns all parts, in the order of reports: the one list of what is told of an image beside its
-// results. Not in it: the hash of the scene, and of guides what came of them.
+// Returns all parts, in the order of reports: the only list of properties stated of an image
+// besides its results. Without the hash of the scene, and the results of guides.
 std::vector<NamedProvenance> PartsOf(const Provenance&);
 
 // Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".

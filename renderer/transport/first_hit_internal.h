@@ -13,13 +13,13 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
                                            : scene.shapes.worldShapeCount + found.instance);
 }
 
-// Stands where nobody asks, and in a recorder for what it does not need.
+// The default for all callbacks: records nothing.
 struct NoRecorder {
     // Whether a path at its greatest depth has to go on for the recorder.
     static constexpr bool Wanted() { return false; }
-    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface of which the
-    // BSDF is not known yet, or is scattered by a medium at p, so far away. The path has found what
-    // is emitted there.
+    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
+    // not yet known, or is scattered by a medium at p, at this distance. The path has found the
+    // emission there.
     static void LeaveScene(const Path&) {}
     static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
     static void MeetMedium(const Path&, float, const Vec3f&) {}
@@ -39,7 +39,7 @@ class FirstHitRecorder : public NoRecorder {
 
     bool Wanted() const { return !done; }
 
-    // What shines from there stands for the albedo.
+    // The environment's radiance stands for the albedo.
     void LeaveScene(const Path& path) {
         if (done) return;
         done = true;

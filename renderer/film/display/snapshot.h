@@ -10,8 +10,8 @@
 
 namespace lull {
 
-// Used by all threads of a render and by the one that sends. The image is cut into cells; what has
-// changed in a cell is one rectangle, however often it changes before it is sent.
+// Used by all threads of a render and by the one that sends. The image is cut into cells; the
+// changes of a cell are one rectangle, however often it changes before it is sent.
 class Snapshot {
   public:
     static constexpr int kChannels = 5;  // R, G, B, spp, stop

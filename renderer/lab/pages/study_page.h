@@ -38,9 +38,9 @@ double StaircaseOctaves(int answers);
 // Returns the page, which contains everything and loads nothing.
 std::string MakeStudyPage(const Study&, const StudySettings&);
 
-// Returns what a study's page says of the study, with the pictures of the blocks at the last level
-// in "references", as data URIs. Throws Error beginning with the path for anything that is not such
-// a page.
+// Returns the data of a study's page, with the pictures of the blocks at the last level in
+// "references", as data URIs. Throws Error beginning with the path for anything that is not such a
+// page.
 Json ReadStudyPage(const std::string& path);
 
 }  // namespace lull

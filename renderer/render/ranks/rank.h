@@ -12,7 +12,7 @@ class Rank {
   public:
     Rank(const RenderContext&, const RenderOptions&, tbb::task_arena*, RankHooks);
 
-    // Runs `body`; what it throws leaves no task at work.
+    // Runs `body`; after an exception no task is at work.
     template <typename Body>
     RenderResult Guarded(const Body& body) try {
         return body();
@@ -21,12 +21,12 @@ class Rank {
         throw;
     }
 
-    // Runs `work` on a thread of the arena; what it throws, the channel's Exchange() throws.
+    // Runs `work` on a thread of the arena; its exceptions are thrown by the channel's Exchange().
     void Enqueue(std::function<void()> work) { executor.tasks.Enqueue(arena, std::move(work)); }
     void EnqueueReady() {
         Enqueue([this] { executor.SpawnReady(); });
     }
-    // Returns what the tiles here took since the last call, in samples and seconds a thread.
+    // Returns the cost of the tiles here since the last call, in samples and seconds a thread.
     TileEffort TakeEffort();
     // Returns the tiles of a block that a rank has by this deal and did not have by the one before;
     // all where that is empty.

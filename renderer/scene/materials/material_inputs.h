@@ -101,8 +101,8 @@ struct MaterialReader {
     }
 };
 
-// Returns whether a number can be an index of refraction. Light that goes in and out of what is
-// beyond these, and is not all reflected, would count up to 1e4 times.
+// Returns whether a number can be an index of refraction. Beyond these limits, light that enters
+// and leaves without total reflection would count up to 1e4 times.
 inline bool IsIndexOfRefraction(float index) { return index >= 0.01f && index <= 100; }
 
 // Returns the error of a constant index of refraction as a message, "" if none.
