@@ -21,7 +21,7 @@ struct LightnessNoise {
     std::vector<float> noise;
     std::vector<float> halfNoise;  // (L(A) - L(B)) / 2, bounded
     // Standard deviation of L in the surrounding 13 x 13 pixels (within the block), after smoothing
-    // L by 5 x 5 averages: what masks noise. Written t.
+    // L by 5 x 5 averages, which masks noise. Written t.
     std::vector<float> texture;
 };
 
@@ -33,7 +33,7 @@ std::vector<float> DisplayedLightness(std::span<const float> mean);
 // Reads both means of the view; values that are not finite count as 0. Throws as CheckView() does.
 LightnessNoise ComputeLightnessNoise(const BlockView& view);
 
-// Returns noise / (1 + t / 4): what remains visible of noise on texture.
+// Returns noise / (1 + t / 4): the noise that remains visible on texture.
 inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
 
 // Statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,

@@ -1,4 +1,4 @@
-// One spp for all blocks of a picture: what every rule that looks at blocks has to beat.
+// One sample count for all blocks of an image: the baseline of rules that measure blocks.
 #pragma once
 
 #include <span>

@@ -9,8 +9,8 @@
 
 namespace lull {
 
-// What the best setting of a rule is: the one with the least mean error of the thresholds, or
-// with the least critical error at 2 %.
+// Criterion for the best setting of a rule: the least mean error of the thresholds, or the least
+// critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 
 // Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is that of critical
@@ -23,7 +23,7 @@ struct Rival {
     std::string rule;
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
-    // The best setting on all viewpoints: what to use on new ones. A threshold, to three digits;
+    // The best setting on all viewpoints, for use on new ones. A threshold, to three digits;
     // "threshold, mask" for "entropy, mask".
     std::string bestOfAll;
 };

@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// Puts bytes into a file, whole or not at all; throws what went wrong.
+// Writes bytes to a file, completely or not at all; throws the error.
 using FileWriter = std::function<void(const std::string& path, std::span<const std::byte> bytes)>;
 
 // The states of several trainings, by number, finished ones first.
@@ -30,9 +30,9 @@ class TrainingCheckpoint {
     void Restore(size_t training, Trainer* trainer) const;
     // Returns whether the next writing is due.
     bool IsDue() const;
-    // Writes the file, if there is one. Throws what the writer does.
+    // Writes the file, if there is one. Throws as the writer does.
     void Write();
-    // Forgets all trainings, and removes the file.
+    // Discards all trainings, and removes the file.
     void Remove();
     const std::string& Path() const { return path; }
 
