@@ -99,8 +99,8 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();
     const CLI::App& command = given.empty() ? app : *given.front();
-    const std::string help = "; lull " + (given.empty() ? "" : command.get_name() + " ") +
-                             "--help lists what can be given";
+    const std::string help =
+        "; lull " + (given.empty() ? "" : command.get_name() + " ") + "--help lists the options";
     const std::vector<std::string> rest = app.remaining(true);
     if (error.get_exit_code() != int(CLI::ExitCodes::ExtrasError) || rest.empty())
         return error.what() + help;

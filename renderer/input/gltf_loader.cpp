@@ -150,7 +150,7 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
             object.shapes.push_back(std::move(shape));
             continue;
         }
-        if (moves) warnings.Add(shape.loc, "what emits light is not blurred by its motion");
+        if (moves) warnings.Add(shape.loc, "moving emitters have no motion blur");
         for (size_t i = 0; i < placements.size(); ++i) {
             ShapeEntity copy = i + 1 < placements.size() ? shape : std::move(shape);
             copy.worldFromObject = placements[i].worldFromMesh;

@@ -100,7 +100,7 @@ void Job::Begin(const std::string& what) {
     }
     throw Error(
         fmt::format("rank {} is about to render something else: the version of lull, the "
-                    "scene and what it refers to have to be the same everywhere",
+                    "scene and its files have to be the same everywhere",
                     all.different));
 }
 

@@ -46,7 +46,7 @@ FUNCTIONS = {"render": ("scene: Path, *, progress: Progress = None", "Rendering"
 
 
 def type_of(option):
-    """Returns how Python writes what an option takes."""
+    """Returns the Python type of an option."""
     if option.value is None:
         return "bool"
     name = option.value.partition(":")[0].partition("=")[0]

@@ -160,7 +160,7 @@ bool GuideLearner::Decide(const Film& film) {
 
 bool GuideLearner::Learn(const Film& film) {
     if (IsTrial() && learning.round >= kFirstDecision && !Decide(film))
-        return Finish(false, "variance times work is not surely below what it is without");
+        return Finish(false, "variance times work is not significantly below that without guiding");
     GuideFigures& figures = learning.figures;
     const bool isUsed = options.mode == GuideMode::On || learning.decided > 0;
     const int most = options.isShort ? kMostWithClock : kMost;
@@ -180,8 +180,8 @@ bool GuideLearner::Learn(const Film& film) {
     figures.bytes = int64_t(guide.Bytes());
     figures.leaves = int(guide.leaves.size());
     figures.why = options.mode == GuideMode::On ? "as asked for"
-                  : isUsed                      ? "variance times work is below what it is without"
-                                                : "too few samples to decide";
+                  : isUsed ? "variance times work is below that without guiding"
+                           : "too few samples to decide";
     return !isLast || Finish(true, figures.why);
 }
 

@@ -207,8 +207,8 @@ void Stopper::NoteChannels(const lull_picture& picture) {
     if (!HasFourthChannel(picture)) return;
     const std::lock_guard lock(warningLock);
     channelWarning =
-        "pixels seem to have a fourth channel (pixel_stride), and R, G and B are looked at as they "
-        "are; show what people see, over its background";
+        "pixels seem to have a fourth channel (pixel_stride), and R, G and B are used without it; "
+        "show the image over its background";
 }
 
 void Stopper::NoteSpacing(BlockState* state) {
@@ -218,8 +218,9 @@ void Stopper::NoteSpacing(BlockState* state) {
     if (!spacingWarning.empty()) return;  // the first is enough
     spacingWarning =
         "pictures at " + pictures +
-        " spp lie too far apart for this rule, which compares them: it has not looked at the last "
-        "and will never stop so; show pictures every 20 or 40 spp, or at most 1.4 times the spp of "
+        " spp lie too far apart for this rule, which compares them: the last was not checked, "
+        "and no block will ever stop; show pictures every 20 or 40 spp, or at most 1.4 times the "
+        "spp of "
         "the one before";
 }
 

@@ -131,7 +131,7 @@ KerasModel ParseKerasConfig(const std::string& json, const std::string& version)
     try {
         return Parse(Json::parse(json), version);
     } catch (const Json::exception& error) {
-        throw std::runtime_error(std::string("model_config is not what Keras writes: ") +
+        throw std::runtime_error(std::string("model_config is not in the format of Keras: ") +
                                  error.what());
     }
 }

@@ -121,7 +121,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     if (!saysM) s.m = int(inputs);
     CheckSettings(s);
     if (InputCount(s) != inputs || (timeSteps > 0 && s.k != timeSteps))
-        throw std::runtime_error("/lull says " + std::to_string(s.k) + " steps of " +
+        throw std::runtime_error("/lull has " + std::to_string(s.k) + " steps of " +
                                  std::to_string(InputCount(s)) + " values, but the network takes " +
                                  (timeSteps > 0 ? std::to_string(timeSteps) : "any number of") +
                                  " steps of " + std::to_string(inputs) + " values");

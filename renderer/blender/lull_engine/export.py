@@ -89,7 +89,7 @@ def set_camera(scene, warn):
         raise SystemExit("the scene has no camera")
     data = camera.data
     if data.type == 'PANO':
-        raise SystemExit(f"camera '{camera.name}' is panoramic, which glTF cannot say")
+        raise SystemExit(f"camera '{camera.name}' is panoramic, which glTF does not support")
     for o in scene.objects:
         o.hide_render = o.hide_render or (o.type == 'CAMERA' and o != camera)
     camera.hide_render = False

@@ -31,9 +31,8 @@ void Tell(const Collected& collected) {
 std::string AgreementOf(const CollectedViewpoint& viewpoint) {
     if (!viewpoint.agreement) return "not known";
     const std::string word = AgreementInAWord(*viewpoint.agreement);
-    return fmt::format(
-        "{:.2f} ({}{})", *viewpoint.agreement, word,
-        word == "poor" ? ": these thresholds say more of the observers than of the picture" : "");
+    return fmt::format("{:.2f} ({}{})", *viewpoint.agreement, word,
+                       word == "poor" ? ": observers differ more than blocks do" : "");
 }
 
 // Prints how far the thresholds of a viewpoint can be relied on.

@@ -92,11 +92,10 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
         ->type_name("DATA.h5");
     AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
-    app.add_option(
-           "--text", s->textFile,
-           "Your own texts: first what observers read and agree to (consent, whom to write\n"
-           "to), then sections [key] that replace texts of the page, for another language or\n"
-           "task; # headings, - lists, **bold**, *italics*")
+    app.add_option("--text", s->textFile,
+                   "Use your own texts: first a consent form with an address, then sections [key]\n"
+                   "that replace texts of the page, for another language or task; # headings,\n"
+                   "- lists, **bold**, *italics*")
         ->type_name("TEXT.md");
     app.add_flag("--list-texts", s->listsTexts,
                  "Print all texts of the page, to be changed for --text");

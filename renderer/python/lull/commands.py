@@ -37,7 +37,7 @@ class Rendering:
 
 @dataclasses.dataclass(repr=False)
 class Comparison:
-    """What `lull compare` finds: pictures by their names, and all figures."""
+    """Results of `lull compare`: images by their names, and all figures."""
     images: dict
     figures: dict
 

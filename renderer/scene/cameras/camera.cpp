@@ -133,7 +133,8 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     for (LensInterface& stop : settings.interfaces)
         if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
             if (radius > stop.apertureRadius)
-                warnings.Add(entity.loc, "\"aperturediameter\" is limited to what the lens has",
+                warnings.Add(entity.loc,
+                             "\"aperturediameter\" is limited to the aperture of the lens",
                              fmt::format("{:g} mm", 2000 * stop.apertureRadius));
             stop.apertureRadius = std::min(stop.apertureRadius, radius);
         }

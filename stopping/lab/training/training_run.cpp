@@ -112,8 +112,8 @@ std::optional<TrainingResult> TrainAll(
 std::string CertaintyText(const TrainingResult& result) {
     if (result.logRatios.empty()) return "";
     return fmt::format(
-        "80 % of the thresholds of people lie between {:.2f} and {:.2f} times the stop; of each "
-        "viewpoint, {:.1f} % between those that the others give",
+        "80 % of the human thresholds are {:.2f} to {:.2f} times the stop; of each viewpoint, "
+        "{:.1f} % are in the range of the others",
         std::exp(result.logRatios[1]), std::exp(result.logRatios[9]),
         100 * RangeCoverage(result.rules.front().viewpoints));
 }

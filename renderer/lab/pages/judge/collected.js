@@ -54,7 +54,7 @@ function makePicture(viewpoint) {
 function sayAgreement(viewpoint) {
   if (!isNumber(viewpoint.agreement)) return "How far observers agree cannot be told of one of them.";
   return `Their agreement is ${viewpoint.inAWord} (intraclass correlation ${viewpoint.agreement.toFixed(2)})` +
-    (viewpoint.inAWord === "poor" ? ": these thresholds say more of the observers than of the picture." : ".");
+    (viewpoint.inAWord === "poor" ? ": observers differ more than blocks do." : ".");
 }
 
 function makeViewpoint(viewpoint) {
