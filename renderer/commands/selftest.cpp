@@ -1,4 +1,4 @@
-// `lull selftest`: checks on the user's own machine that the program computes what it should.
+// `lull selftest`: checks known answers on the user's own machine.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -78,7 +78,7 @@ void PrintTheme(const std::string& theme, bool markdown) {
         fmt::print("{}\n", theme);
 }
 
-// Shows what rules make of samples of which the few that matter come seldom.
+// Shows the bias of rules on samples whose few important values are rare.
 void PrintHeavyTails(const SelftestOptions& options) {
     fmt::print(
         "\n## Bias of stopped images\n\n"
