@@ -80,7 +80,7 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
     return uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// Returns what a saved state belongs to.
+// Returns the identity of a saved state: its settings, rule and blocks.
 std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;
@@ -162,7 +162,7 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
     PictureValues values;
     for (int i = 0; i < int(states.size()); ++i)
         if (states[size_t(i)].criterion) values.Add(CheckValues(i, picture, RectOf(i), spp));
-    // What is left of a picture once blocks have stopped may be its brightest part.
+    // The rest of a picture once blocks have stopped may be its brightest part.
     if (std::ranges::none_of(states, [](const BlockState& s) { return s.answer.stop == 1; })) {
         const std::string fault = FaultOfExposure(values);
         Require(fault.empty(), fault);
@@ -268,7 +268,7 @@ void Stopper::Check(int block, const lull_picture& picture, const lull_rect& par
     NoteSpacing(&state);
 }
 
-// The state begins with what it belongs to and ends with a checksum.
+// The state begins with its identity and ends with a checksum.
 std::vector<std::byte> Stopper::Save() const {
     const auto all = LockAll();
     StateWriter writer;

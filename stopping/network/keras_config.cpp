@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int kMostCount = 16384;  // a bound on what a damaged file can ask for
+constexpr int kMostCount = 16384;  // a bound for damaged files
 
 const std::array<std::pair<const char*, Activation>, 4> activationNames = {
     {{"linear", Activation::Linear},

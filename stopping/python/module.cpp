@@ -1,4 +1,4 @@
-// What the Python module `lull` has of stopping: the C interface with numpy arrays and exceptions.
+// The stopping part of the Python module `lull`: the C interface with numpy and exceptions.
 #include <lull/stopping.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

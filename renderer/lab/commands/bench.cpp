@@ -105,7 +105,7 @@ std::vector<ObservedRule> MakeRules(const Options& options, const RenderJob& ren
     return rules;
 }
 
-// One way of rendering: what a curve is drawn for.
+// One variant of rendering, with a curve of its own.
 struct Variant {
     SamplerKind sampler = SamplerKind::Sobol;
     bool isGuided = false;
@@ -237,9 +237,9 @@ void AddPoints(const Variant& variant, const ObservedRender& observed, const Gui
     }
 }
 
-// Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
-// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render,
-// and the first measures.
+// Renders a variant, or continues an earlier run, and adds its points: none, where --guide auto
+// does not guide. Returns false if it was interrupted. The ranks share the render, and the first
+// measures.
 bool BenchVariant(const Variant& variant, Bench* bench) {
     RenderJob& render = bench->render;
     RenderSettings& settings = render.settings;
@@ -262,7 +262,7 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     return true;
 }
 
-// Returns what has to be known of the points.
+// Returns notes for the reader of the points.
 std::vector<std::string> Notes(const Options& options) {
     std::vector<std::string> notes;
     if (options.reference.empty())

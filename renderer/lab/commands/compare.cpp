@@ -32,7 +32,7 @@ std::vector<NamedFile> OutputsOf(const CompareOptions& options,
     return outputs;
 }
 
-// Returns what is read, but for the scene.
+// Returns the input files, without those of the scene.
 std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     std::vector<NamedFile> inputs = {{"--automatic", options.automatic},
                                      {"--human", options.human},

@@ -176,7 +176,7 @@ void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* dataset = app.add_subcommand(
         "record", "Records block histories of a viewpoint, to train stopping rules.");
     auto options = std::make_shared<Options>();
-    // What people judged is pbrt-v3's own noise.
+    // Observers judged pbrt-v3's own noise.
     options->render.sampler = SamplerKind::Random;
     options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());

@@ -204,7 +204,7 @@ void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* l
 }
 
 // Adds the option that sets all of a model and its training. It has to be added before those that
-// change single ones: what was given is applied in this order.
+// change single ones: options are applied in this order.
 void AddPreset(CLI::App& app, TrainingPlan* plan, bool* isGiven) {
     std::set<std::string> names;
     for (const TrainingPreset& preset : TrainingPresets()) names.insert(preset.name);

@@ -218,8 +218,8 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
     camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
-    // Scales in the transform change the length of directions, not what they point at; remove a
-    // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
+    // Scales in the transform change the length of directions, not their target; remove a uniform
+    // one, so that rays have unit length as pbrt-v3's nearly always have.
     camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();
     if (camera.motion) {
         camera.rotation.setIdentity();

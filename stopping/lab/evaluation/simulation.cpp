@@ -48,7 +48,7 @@ void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, do
                 {.spp = spp[i], .score = numbers[i], .noisy = !(numbers[i] < threshold)});
 }
 
-// Checks that every second pass is enough for what a rule compares beyond 400 spp.
+// Checks that every second pass is enough for the comparisons of a rule beyond 400 spp.
 void CheckSpacing(const Rule& rule, const LabelledBlock& block) {
     if (block.passSpp > 0 && rule.spacing % (2 * block.passSpp) != 0)
         throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +

@@ -33,7 +33,7 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
         viewpoints->push_back(std::move(viewpoint));
 }
 
-// What networks did to blocks that each of them did not see, or did.
+// Outcomes of networks on blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
     std::vector<LabelledBlock> blocks = {};
