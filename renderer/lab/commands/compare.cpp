@@ -277,7 +277,7 @@ void WriteComparison(const CompareOptions& options, ComparisonReport report, Res
 
 void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* compare = app.add_subcommand(
-        "compare", "Compares automatic stopping with people's thresholds and with a reference.");
+        "compare", "Compares automatic stopping with human thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
     AddCompareOptions(*compare, options.get());
     compare->callback([=] {
