@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the types of the functions that run commands from what the program says of itself.
+"""Writes the types of the functions that run commands, from the help of the program.
 
 stubs.py LULL FILE: reads `LULL COMMAND --help-all` and writes FILE, commands.pyi of the module `lull`.
 """
