@@ -1,4 +1,4 @@
-// Lets a render write layers beside its image.
+// Options of AOVs.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -37,7 +37,7 @@ std::unique_ptr<const Scene> CompileScene(const RenderSettings&, SceneInput*);
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 
-// Returns where models are installed: beside the program, wherever that is.
+// Returns the folder of installed models, next to the program.
 std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
@@ -48,7 +48,7 @@ Rule ReadRule(const std::string& option, const std::string& rule, const RenderSe
 // Returns the provenance of an image, without the rule.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
-// Returns how to say things beside that.
+// Returns the format of messages.
 inline Talk TalkOf(const RenderSettings& settings) { return {.isJson = settings.jsonProgress}; }
 
 // Creates the printer of progress on stderr; `adaptive` says whether blocks stop by themselves.

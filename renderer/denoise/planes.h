@@ -42,7 +42,7 @@ inline constexpr float kLargest = 1e18f;  // its square is finite
 // Returns 0 for negative values and NaN, and at most kLargest.
 inline float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
 
-// Returns the values pixel by pixel, all channels of one beside each other.
+// Returns the values pixel by pixel, with adjacent channels.
 std::vector<float> Interleaved(const Planes&);
 
 // Returns half the squared difference of two images: of a value of either, where they differ by

@@ -54,7 +54,7 @@ struct ExrImage {
 // Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
 int64_t WriteExr(const std::string& path, const ExrImage& image);
 
-// Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
+// Fills in row `y` of an image, 0 at the top, with adjacent channels.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
 // Does the same with channels of `image` that have no values: they come row by row, from the top.

@@ -60,7 +60,7 @@ struct LearningOptions {
     bool isShort = false;
 };
 
-// All that is needed to go on learning, to the same bits.
+// All that is needed to continue learning, to the same bits.
 struct Learning {
     int round = 0;        // 0: nothing was recorded yet
     int decided = 0;      // of auto: the round after which it was known that guides pay; 0: none

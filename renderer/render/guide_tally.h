@@ -12,7 +12,7 @@ namespace lull {
 struct SampleSpread {
     double squares = 0;    // of luminance, about the means of its pixels
     int64_t freedom = 0;   // how many of these are independent
-    int64_t vertices = 0;  // of paths, beside the camera
+    int64_t vertices = 0;  // of paths, without the camera
     int64_t samples = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// How a block goes on after a pass.
+// Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = kUnknownNoise;

@@ -13,7 +13,7 @@
 //                                                 at more than means
 //       Answer: stop or continue                ->   begins the block's next pass
 //
-// No rank waits for another block. To write a checkpoint, to deal out the tiles anew, or to end,
+// No rank waits for another block. To write a checkpoint, to reassign the tiles, or to end,
 // rank 0 says
 //
 //       Pause                                ->   finishes the tiles under way

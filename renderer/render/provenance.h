@@ -56,8 +56,8 @@ std::vector<NamedProvenance> PartsOf(const Provenance&);
 // Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".
 std::string TextOf(const NamedProvenance&);
 
-// Settings that decide the pixels and the inputs of criteria, beside the samples: scene, seed,
-// rule, ... A render goes on only if all of it is the same.
+// Settings that decide the pixels and the inputs of criteria, besides the samples: scene, seed,
+// rule, ... A render continues only if all of it is the same.
 using RenderIdentity = std::map<std::string, std::string>;
 
 // Returns the parts that have a name there, and the hash of the scene (SceneHash()).

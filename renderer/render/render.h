@@ -28,11 +28,11 @@ struct BlockResult {
     std::vector<DecisionRecord> decisions;  // those for which the block was checked
 };
 
-// With the film, all that is needed to go on with a render: the pixels will be the
+// With the film, all that is needed to continue a render: the pixels will be the
 // same bits as without the interruption. A pass may be under way, for some of its pixels.
 struct RenderState {
     std::vector<BlockResult> blocks;
-    // Of each block, as Criterion::Save() has it; empty: all begin anew.
+    // Of each block, as Criterion::Save() has it; empty: all begin again.
     std::vector<std::vector<std::byte>> criteria;
     double seconds = 0;  // since the start of the first run
 };
@@ -46,7 +46,7 @@ struct RenderOptions {
     uint64_t seed = 0;
     int threads = 0;  // 0: all
 
-    // Makes each block's own stopping criterion; empty: all go on to the cap.
+    // Makes each block's own stopping criterion; empty: all continue to the cap.
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
     // How the numbers in their decisions go, from which progress predicts the end; nothing: it does
     // not.

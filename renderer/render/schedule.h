@@ -24,7 +24,7 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (block_grid.h)
-    // For renders that somebody looks at while they go on: the first pass is taken in steps of 1,
+    // For renders that are viewed in progress: the first pass is taken in steps of 1,
     // 2, 4, ... spp.
     bool inSteps = false;
     // For renders that have a clock: the next pass is that of the block with the most
@@ -111,7 +111,7 @@ std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 // samples per pixel, which are thus independent of the order of execution too.
 class Schedule {
   public:
-    // `starts` is empty, or has as many as there are blocks: to go on where an earlier schedule
+    // `starts` is empty, or has as many as there are blocks: to continue an earlier schedule
     // was, or to leave blocks out.
     // Only tiles of the share are given out and waited for.
     Schedule(const PixelRect& region, const ScheduleOptions&,

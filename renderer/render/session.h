@@ -15,7 +15,7 @@ namespace lull {
 struct CheckpointOptions {
     std::string file;        // empty: none
     double interval = 60;    // seconds
-    bool resume = false;     // goes on from the file, if it is there
+    bool resume = false;     // continues from the file, if it exists
     bool isKept = false;     // also when every block has stopped
     bool isImplied = false;  // named by the command, which resumes without being told to
     MayDiffer mayDiffer = MayDiffer::Nothing;
@@ -29,7 +29,7 @@ struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
-    AovSet aovs;            // layers beside the film
+    AovSet aovs;            // AOVs to collect
     bool features = false;  // inputs of the denoiser; the film has to keep its half buffer
     GuideOptions guide;
     CheckpointOptions checkpoint;
@@ -67,7 +67,7 @@ class Session {
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
     const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
     const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
-    // Frees them, once the render is done and nobody asks for them.
+    // Frees them, once the render is done, to free memory.
     void DropFeatures();
     // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;

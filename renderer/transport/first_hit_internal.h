@@ -15,7 +15,7 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
 
 // The default for all callbacks: records nothing.
 struct NoRecorder {
-    // Whether a path at its greatest depth has to go on for the recorder.
+    // Whether a path at its greatest depth has to continue for the recorder.
     static constexpr bool Wanted() { return false; }
     // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
     // not yet known, or is scattered by a medium at p, at this distance. The path has found the
@@ -25,7 +25,7 @@ struct NoRecorder {
     static void MeetMedium(const Path&, float, const Vec3f&) {}
     // It has come to a surface of this BSDF.
     static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
-    // It goes on; `isTransmission` says whether through the surface, or medium.
+    // It is scattered; `isTransmission`: through the surface, or medium.
     static void Scatter(const Path&, bool) {}
     static void End(const Path&) {}
 };

@@ -90,7 +90,7 @@ class Guided {
         }
     }
 
-    // Returns how many vertices the path had, beside the camera.
+    // Returns the number of vertices of the path, without the camera.
     int Vertices() const { return vertices; }
 
   private:

@@ -34,7 +34,7 @@ struct PathOptions {
 struct PathSample {
     Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
     bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
-    int vertices = 0;  // that the path had beside the camera; counted of guided paths alone
+    int vertices = 0;  // of the path, without the camera; of guided paths alone
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

@@ -65,7 +65,7 @@ struct NoMedia {
         path->wentThrough = true;
         return true;
     }
-    // Is told that the path leaves a surface.
+    // Called when the path leaves a surface.
     static void Leave(const SurfaceVertex&, const Vec3f&) {}
 };
 

@@ -1,4 +1,4 @@
-// Cuts pictures into the blocks that rules decide on, for whoever shows them: the same picture has
+// Cuts pictures into the blocks that rules decide on, for all programs: the same picture has
 // the same blocks, and so the same decisions, everywhere.
 #pragma once
 

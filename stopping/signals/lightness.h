@@ -38,7 +38,7 @@ std::vector<double> LightnessOf(std::span<const float> linear);
 // The luminance below which L is linear in it.
 inline constexpr double kLinearLuminance = 0.008856;
 
-// L at a luminance, at least 0, and its derivative there; above white L goes on.
+// L at a luminance, at least 0, and its derivative there; above white L continues.
 template <typename Real>
 struct LightnessSlope {
     Real lightness, slope;

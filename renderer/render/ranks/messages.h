@@ -37,7 +37,7 @@ struct StartMessage {
     std::vector<ViewNeed> needs;  // of criterion and clock after each block's next pass
 };
 
-// How a block goes on.
+// Decision on a block.
 struct AnswerMessage {
     int block;
     bool stop;

@@ -43,7 +43,7 @@ class Rank {
 // Returns whether a guide is being learned: rank 0 then has all tiles.
 bool IsLearning(const RenderContext&);
 
-// Returns how tiles are dealt out as long as nobody knows how fast ranks are.
+// Returns the assignment of tiles before the speeds of ranks are known.
 std::vector<int> FirstDeal(const RenderContext&, const RenderOptions&);
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.

@@ -15,7 +15,7 @@
 //         returns the invalid or unsupported parameters as a message, "" if none;
 //     std::optional<SubsurfaceProfile> Profile(const MaterialInputs&) const
 //         returns how light that the lobes transmit spreads below the surface; nothing where it
-//         goes on unscattered. The needs have kScattersBelow;
+//         continues unscattered. The needs have kScattersBelow;
 //     SurfaceTilt Tilt(const MaterialReader&) const
 //         reads the maps of the shading normal, unless only "bumpmap" is used.
 #pragma once

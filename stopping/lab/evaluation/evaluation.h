@@ -45,8 +45,8 @@ struct ViewpointOutcome {
 // Where blocks stop that a rule had not stopped where their recordings end.
 enum class OpenStops {
     None,     // there are no such blocks
-    Ends,     // at these ends, although the rule goes on for longer
-    Extended  // where the rule stops if recordings go on by their own laws (extension.h)
+    Ends,     // at these ends, although the rule continues
+    Extended  // where the rule stops on extrapolated recordings (extension.h)
 };
 
 // The outcomes of a rule, or of the thresholds in a file.

@@ -16,7 +16,7 @@ enum class AnswerKind {
     Catch     // a check of the observer, to which the right answer is known
 };
 
-// Whether noise was seen in a picture of so many samples per pixel.
+// Whether noise was seen in a picture of `spp` samples per pixel.
 struct NoiseAnswer {
     int spp = 0;
     bool seen = false;

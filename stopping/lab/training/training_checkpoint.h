@@ -1,4 +1,4 @@
-// Keeps the states of trainings in a file, to go on from there.
+// Stores the states of trainings in a file, to continue from there.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@ class TrainingCheckpoint {
     // Reads the file. Throws std::runtime_error.
     void Read();
     void Set(size_t training, std::vector<std::byte> state);
-    // Lets a training go on where its state says; leaves it where there is none. Throws
+    // Restores a training to its saved state; leaves it unchanged where there is none. Throws
     // std::runtime_error if it is the state of another.
     void Restore(size_t training, Trainer* trainer) const;
     // Returns whether the next writing is due.
