@@ -36,8 +36,8 @@ class RenderJob {
     // which those of the scene are known, or could not be written now. Takes the checkpoint for
     // this process alone.
     void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {});
-    // Takes that of the settings, which have changed, instead. Throws Error if another process has
-    // it.
+    // Locks the checkpoint of the settings, which have changed, instead. Throws Error if another
+    // process has it.
     void LockCheckpoint();
     // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();

@@ -41,7 +41,7 @@ int FixedSpp(const std::string& rule);
 std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
-// Error that a bad rule is; `measures` are those of RuleContext.
+// Error that a bad rule is; `measures` are RuleContext's.
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
 

@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Returns both halves of the samples, R, G, B, filtered. The variance is that of a pixel of either.
+// Returns both halves of the samples, R, G, B, filtered. `variance` is of a pixel of either.
 // Processes bands of rows, so that the candidates of few rows are in memory at a time. The same
 // bits for any number of threads.
 Halves FilterColours(const Halves& noisy, const Planes& features, const Planes& variance,

@@ -9,7 +9,7 @@ namespace lull {
 
 // The energy removed from the mean of both half buffers.
 struct Firefly {
-    size_t pixel;  // may be that of others too
+    size_t pixel;  // several fireflies may share it
     Rgb excess;    // not negative
 };
 

@@ -14,8 +14,8 @@ namespace lull {
 void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
                      const Film&, const Layers& = {}, std::span<const std::byte> guide = {});
 
-// Settings that may differ from those of the checkpoint: none, or those that decide when blocks
-// stop, which is the rule, with its model, and the cap.
+// Settings that may differ from the checkpoint's: none, or the settings that decide when blocks
+// stop, which are the rule, with its model, and the cap.
 enum class MayDiffer { Nothing, Stops };
 
 // Fills the film, which has no samples yet, and the layers, and returns the state; `guide`, if

@@ -21,7 +21,7 @@ struct Provenance {
     uint64_t seed = 0;
     SamplerKind sampler = SamplerKind::Sobol;
     Estimator estimator = Estimator::Combined;
-    std::string criterion, checksum;  // the stopping rule and that of its file, if any
+    std::string criterion, checksum;  // the stopping rule; of its file, if any
     std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
     RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;

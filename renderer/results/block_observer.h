@@ -43,7 +43,7 @@ struct ObserverOptions {
     bool goesOn = false;     // to the cap, rather than until all rules have stopped the block
 };
 
-// Runs several rules over one block; its own decisions are those of the first rule until that
+// Runs several rules over one block; its own decisions are the first rule's until that
 // stops.
 class BlockObserver final : public Criterion {
   public:

@@ -32,7 +32,7 @@ struct NoRecorder {
 
 class FirstHitRecorder : public NoRecorder {
   public:
-    // `direction` is that of the camera's ray at `time`.
+    // `direction` is of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
                      float time, FirstHit* hit)
         : scene(scene), options(options), direction(direction), time(time), hit(hit) {}

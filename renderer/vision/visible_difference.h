@@ -47,7 +47,7 @@ VisibleReference PrepareReference(std::span<const float> reference, int width, i
 // Compares two pictures of linear RGB (row-major triples), as ColorVideoVDP compares still ones:
 // Mantiuk, Hanji, Ashraf, Asano, Chapiro: ColorVideoVDP: A visual difference predictor for image,
 // video and display distortions, ACM TOG 43(4), 2024, with the constants of its version 0.5.6.
-// Sensitivity is that of castleCSF itself. The pictures are seen on a display; values are clamped
+// Sensitivity is castleCSF's own. The pictures are seen on a display; values are clamped
 // to its range, and NaN is black. Throws Error if sizes do not fit.
 VisibleDifference FindVisibleDifference(std::span<const float> image,
                                         std::span<const float> reference, int width, int height,

@@ -14,7 +14,7 @@ namespace lull {
 // Answer of a criterion. No number in it is ever NaN.
 struct Decision {
     bool stop = false;
-    // Whether the block was checked in this call; if not, the numbers are those of the last check.
+    // Whether the block was checked in this call; if not, the numbers are the last check's.
     bool checked = false;
     double value = 0;      // an error estimate, P(noisy) or the spp
     double threshold = 0;  // of the value

@@ -11,7 +11,7 @@ namespace lull {
 // Estimates for every pixel of a block, row-major.
 //
 // With A the mean of one half of the samples, B that of the other and M of all, (A - B) / 2 has the
-// standard deviation of the error of M. Lightness L is that of the displayed colour: components
+// standard deviation of the error of M. Lightness L is of the displayed colour: components
 // are clamped to [0, 1], but not rounded to 8 bits, which would add noise of its own.
 struct LightnessNoise {
     std::vector<float> lightness;  // L of M, in [0, 100]

@@ -20,7 +20,7 @@ class Snapshot {
     explicit Snapshot(const PixelRect& region);
 
     void Show(const PixelRect& pixels, const Film& film);
-    // Shows these colours, R, G, B of each pixel, from now on in place of those of the film.
+    // Shows these colours, R, G, B of each pixel, from now on in place of the film's.
     void ShowDenoised(const PixelRect& pixels, std::span<const float> rgb);
     void ShowStop(const PixelRect& block);
     // Marks everything that was ever shown as not sent.

@@ -38,7 +38,7 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name, 
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
                         const ScheduleOptions&);
 
-// Returns the region of the files: that of the EXRs among them; a picture for displays of the same
+// Returns the region of the EXRs among the files; a picture for displays of the same
 // size can be of any part. The last of `files` is the reference, from the file of that name. Throws
 // Error if they do not fit together.
 PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);

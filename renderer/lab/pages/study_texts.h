@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Texts in Markdown by their keys, those of study_texts.md; and "own", which observers read and
+// Texts in Markdown by the keys of study_texts.md; and "own", which observers read and
 // agree to first, if there is one.
 using StudyTexts = std::map<std::string, std::string>;
 

@@ -54,7 +54,7 @@ std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const Pix
 // Returns whether a picture has display values rather than linear radiance.
 bool IsDisplayPicture(const PictureFolder&, int spp);
 
-// Returns the spp of a pass at whose ends the pictures are, if they are those of a recording
+// Returns the spp of a pass at whose ends the pictures are, if they are a recording's
 // (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: they are at any
 // spp.
 int PassOfPictures(const std::vector<int>& spp);

@@ -43,7 +43,7 @@ struct ShapeTable {
     size_t TriangleCount() const;  // instances counted as often as they are placed
 
     // Fills in the interaction at a hit of `ray`, all but the fields that `needs` leaves out.
-    // `time` is that of the ray, from 0 where the shutter opens to 1; only moving objects use it.
+    // `time` is the ray's, from 0 where the shutter opens to 1; only moving objects use it.
     void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
                   SurfaceInteraction* interaction, float time = 0) const;
 

@@ -13,7 +13,7 @@ namespace lull {
 // (their setting): "constant, known", the best one on this viewpoint itself, which no rule can
 // know; with two viewpoints or more "constant, of others", the best one on the others; and
 // "constant", the best one on all. Only names and human thresholds are read of the outcomes. `grid`
-// is that of critical errors, in spp. Throws std::invalid_argument if there is no viewpoint.
+// is the step of critical errors, in spp. Throws std::invalid_argument if there is no viewpoint.
 std::vector<EvaluatedRule> EvaluateConstants(std::span<const ViewpointOutcome> viewpoints, ChooseBy,
                                              int grid);
 

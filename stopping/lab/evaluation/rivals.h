@@ -13,7 +13,7 @@ namespace lull {
 // critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 
-// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is that of critical
+// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is the step of critical
 // errors, in spp.
 double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
 
@@ -28,9 +28,9 @@ struct Rival {
     std::string bestOfAll;
 };
 
-// Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
+// Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
+// samples. Thresholds are RuleSweep's; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
 // that compare halves are left out where a block was recorded without (HasHalves()). Throws
 // std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
