@@ -1,4 +1,4 @@
-// Pictures in which noise and what is seen are hard to tell apart.
+// Pictures in which noise and detail are hard to tell apart.
 #include <fmt/format.h>
 
 #include "renderer/denoise/visible_error.h"
