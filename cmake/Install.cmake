@@ -6,7 +6,7 @@ set(lull_data ${CMAKE_INSTALL_DATADIR}/lull)
 set(lull_cmake ${CMAKE_INSTALL_LIBDIR}/cmake/lull)
 file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
 
-# The component `python` is what a wheel holds.
+# The component `python` has the contents of a wheel.
 install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT python)
 install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull COMPONENT python)
 install(FILES ${models} DESTINATION ${lull_data}/models COMPONENT python)

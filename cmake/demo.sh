@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs what is missing, builds lull and renders one of its own scenes, a room by day, denoised: each block
+# Installs missing packages, builds lull and renders one of its own scenes, a room by day, denoised: each block
 # until it is clean, or until 110 seconds have passed. To be done in minutes on two cores, the picture is
 # 640x360 pixels with blocks of 120x120.
 set -euo pipefail

@@ -24,7 +24,7 @@ TEXT = 30  # the column where texts begin
 
 
 class Option:
-    """One entry of a help text: its names, the name of its value and what is said of it."""
+    """One entry of a help text: its names, the name of its value and its description."""
 
     def __init__(self, head, text):
         names, _, rest = head.replace(" REQUIRED", "").partition(" ")
@@ -50,7 +50,7 @@ class Option:
 
 
 class Help:
-    """A help text in parts: what the command does, its usage, entries and what follows."""
+    """A help text in parts: description, usage, entries and footer."""
 
     def __init__(self, text):
         head, _, rest = text.partition("\nUsage: ")
@@ -94,7 +94,7 @@ def help_of(lull, *command):
 
 
 def roff(text):
-    """Escapes what troff would take for more than text."""
+    """Escapes the commands of troff."""
     text = text.replace("\\", "\\e").replace("-", "\\-")
     return "\n".join("\\&" + line if line[:1] in (".", "'") else line for line in text.split("\n"))
 
@@ -133,7 +133,7 @@ def quoted(words):
 
 
 def rules_of(page):
-    """Returns what stopping rules begin with: with a colon where more has to follow."""
+    """Returns the prefixes of stopping rules: with a colon where an argument has to follow."""
     section = page.notes.partition("(--stop)")[2].partition("\n\n")[0]
     rules = [RULE.match(line) for line in section.split("\n")]
     return [r[1] + (":" if (r[2] or "").startswith(":") else "") for r in rules if r]

@@ -16,7 +16,7 @@ install_packages() {
     ((${#missing[@]})) || return 0
     if ! command -v apt-get >/dev/null; then
         echo "No apt-get here; lull needs what Debian calls: $*" >&2
-        return 0 # CMake says what it cannot find
+        return 0 # CMake names the missing ones
     fi
     echo "Installing: ${missing[*]}"
     ((EUID == 0)) || sudo=sudo

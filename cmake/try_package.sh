@@ -1,5 +1,5 @@
 #!/bin/bash
-# Really installs the package of a build, runs what it has put there and removes it again; as root,
+# Really installs the package of a build, runs its files and removes it again; as root,
 # on a machine that may be changed: bash cmake/try_package.sh build/package/lull_0.1.0_amd64.deb
 set -euo pipefail
 package=$(readlink -f "${1:?a package is needed: lull_VERSION_ARCH.deb}")
@@ -29,7 +29,7 @@ done
 bash -c '. /usr/share/bash-completion/completions/lull && complete -p lull'
 [[ -r /usr/share/man/man1/lull.1 ]]
 
-# What is for other programs. Where the package has no Python module, there is nothing to import.
+# Files for other programs. Where the package has no Python module, there is nothing to import.
 cp -r /usr/share/doc/lull/examples .
 if [[ -e /usr/include/png.h ]]; then
     cmake -S examples -B build && cmake --build build

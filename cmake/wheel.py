@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes a wheel, which pip installs, of what `cmake --install` has put into a tree.
+"""Makes a wheel, which pip installs, from a tree of `cmake --install`.
 
 wheel.py TREE PYTHON_DIR VERSION ARCH FOLDER: PYTHON_DIR is where the modules are in TREE, ARCH for
 which processor they are built ("": any). Run by the Python that the modules are for. In the wheel

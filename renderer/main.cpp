@@ -46,7 +46,7 @@ ExitCode Run(Job* job, const Command& command) {
         message = e.what();
     } catch (const std::bad_alloc&) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
-    } catch (const std::system_error& e) {  // as of what prints, which does not say to where
+    } catch (const std::system_error& e) {  // of printing, without a file name
         message = HasLostResults() ? "cannot write the results to stdout: " + e.code().message()
                                    : OneLine(e.what());
     } catch (const std::exception& e) {
@@ -99,12 +99,12 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();
     const CLI::App& command = given.empty() ? app : *given.front();
-    const std::string help = "; lull " + (given.empty() ? "" : command.get_name() + " ") +
-                             "--help lists what can be given";
+    const std::string help =
+        "; lull " + (given.empty() ? "" : command.get_name() + " ") + "--help lists the options";
     const std::vector<std::string> rest = app.remaining(true);
     if (error.get_exit_code() != int(CLI::ExitCodes::ExtrasError) || rest.empty())
         return error.what() + help;
-    // They come in no order; the option is what the others belong to.
+    // They come in no order; the others are arguments of the option.
     const auto option =
         std::ranges::find_if(rest, [](const auto& w) { return w.starts_with("-"); });
     if (option == rest.end()) return "unexpected argument '" + rest.front() + "'" + help;

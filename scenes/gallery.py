@@ -15,7 +15,7 @@ import subprocess
 from PIL import Image, ImageDraw, ImageFont
 
 SCENES = pathlib.Path(__file__).resolve().parent
-# What each scene shows, in the order of the sheet.
+# Captions of the scenes, in the order of the sheet.
 TITLES = {
     "direct": "direct light stops early",
     "textured": "texture hides noise",

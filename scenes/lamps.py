@@ -3,7 +3,7 @@
 
 A floor lies under small emitting spheres of all colours; with `--triangles` an emitting ceiling of
 so many triangles in waves takes their place. All the light together is the same for any number.
-The camera looks at the floor from below the lamps, so that what is seen is noise of direct light.
+The camera looks at the floor from below the lamps, so that all noise is of direct light.
 """
 
 import argparse

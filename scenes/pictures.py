@@ -37,6 +37,8 @@ def curve(decisions, width, height):
         for v in (0, .25, .5, .75, 1))
     return f"""<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}"
  font-family="sans-serif" font-size="13" fill="#444">
+<style>@media (prefers-color-scheme: dark) {{ svg {{ fill: #bbb }} rect {{ fill: #0d1117 }} [stroke="#ddd"] {{ stroke: #333 }}
+ [stroke="#246"] {{ stroke: #79c0ff }} [fill="#246"] {{ fill: #79c0ff }} [stroke="#c33"] {{ stroke: #ff7b72 }} [fill="#c33"] {{ fill: #ff7b72 }} }}</style>
 <rect width="{width}" height="{height}" fill="#fff"/>
 {ticks}
 <path d="M{left} {limit_y:.1f}H{width - 12}" stroke="#c33" stroke-dasharray="5 4"/>

@@ -1,4 +1,4 @@
-// Checks what the compiler cannot: that rooms include no header that another keeps for itself, and
+// Checks conditions that the compiler cannot: that rooms include no private header of another, and
 // that the folders of a large room have an order.
 #include <gtest/gtest.h>
 

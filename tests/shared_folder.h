@@ -17,7 +17,7 @@ inline std::filesystem::path SharedFolder() {
 }  // namespace lull
 
 // Declares `variable` as the path of a shared file or folder, or skips the test. cmake/test.sh
-// counts what is skipped by the words before the colon.
+// counts skipped tests by the words before the colon.
 #define LULL_SHARED_FILE(variable, name)                                  \
     const std::filesystem::path variable = lull::SharedFolder() / (name); \
     if (!std::filesystem::exists(variable))                               \

@@ -78,7 +78,7 @@ class BlockDistribution {
     static Sums SumsOf(const Sums& weights);
     static Cells MakeCells(const float* weights, int stride);
 
-    int columns = 1, rows = 1;  // without what fills up the last blocks
+    int columns = 1, rows = 1;  // without the padding of the last blocks
     float scale = 0;            // density of a block that is as likely as all together
     Distribution2D blocks;
     std::vector<int32_t> tables;  // by block, row by row; -1: sampled evenly

@@ -9,8 +9,8 @@
 
 namespace lull {
 
-// Is specialised for an enum: `all` has each value with its name, in the order in which people read
-// them.
+// Names of the values of an enum: specialisations have `all`, each value with its name, in the
+// order of help texts.
 //
 //     template <>
 //     struct EnumNames<Weather> {

@@ -25,8 +25,8 @@ struct FileLoc {
 // for other control characters.
 std::string OneLine(const std::string& text);
 
-// Signals that the input or the environment is at fault; what() is the one message a user sees,
-// beginning with the location where one is known. main() turns it into exit code 1.
+// Signals that the input or the environment is at fault; the message is the only one a user sees,
+// and begins with the location where one is known. main() turns it into exit code 1.
 class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& message) : std::runtime_error(message) {}
@@ -41,7 +41,7 @@ class Error : public std::runtime_error {
     FileLoc loc;
 };
 
-// Several errors of one scene; what() has one a line.
+// Several errors of one scene; the message has one a line.
 class Errors : public Error {
   public:
     using Error::Error;
@@ -116,7 +116,7 @@ class Warnings {
     bool substitutes, isVerbose;
     mutable std::mutex mutex;
     std::map<std::string, Count> counts;
-    std::map<std::string, int> alike;  // kinds, by what they have in common
+    std::map<std::string, int> alike;  // counts by kind of message
     std::vector<Error> errors;         // the first
     size_t moreErrors = 0;
 };

@@ -55,8 +55,8 @@ struct AnonymousRange {
     uintptr_t kibibytesInUse;
 };
 
-// Lists what the process has to read and write beside files. Addresses that are only reserved, as
-// sanitizers do by the terabyte, are not in use.
+// Lists the anonymous memory of the process. Addresses that are only reserved, as sanitizers do by
+// the terabyte, are not in use.
 std::vector<AnonymousRange> AnonymousRanges() {
     std::vector<AnonymousRange> ranges;
     std::ifstream in("/proc/self/smaps");
@@ -92,7 +92,7 @@ int64_t AvailableMemory() {
 
 void CheckMemory(int64_t bytes, const std::string& what, const std::string& remedy,
                  const FileLoc& loc) {
-    // What is small is not worth asking the system for.
+    // A small allocation is not worth a system call.
     constexpr int64_t kSmall = int64_t(1) << 26;
     if (bytes < kSmall) return;
     const int64_t available = AvailableMemory();

@@ -10,9 +10,9 @@
 
 namespace lull {
 
-// Returns how many bytes can still be allocated: what the system has available, within the limits
-// of this process (ulimit -v) and of its group (containers). A very large number if that is not
-// known.
+// Returns the number of bytes that can still be allocated: the memory available in the system,
+// within the limits of this process (ulimit -v) and of its group (containers). A very large number
+// if unknown.
 int64_t AvailableMemory();
 
 // Throws Error if that is less than `bytes`: "<what> needs 27.0 GB of memory, 11.3 GB are

@@ -46,7 +46,7 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf(values.size(
         running += isUniform ? 1 : values[i];
         if (isUniform || values[i] > 0) last = i;
     }
-    // What lies behind it must not be chosen for what rounding has left of 1.
+    // Entries behind it must not be chosen for the rounding error of 1.
     for (int i = last + 1; i <= n; ++i) cdf[i] = 1;
 
     const int entries = DistributionTables::EntriesFor(n);

@@ -68,9 +68,9 @@ struct DistributionTables {
     }
 };
 
-// Represents a piecewise-constant density over [0, 1), proportional to nonnegative values.
-// All-zero (or non-finite) values give the uniform density. Only running sums are kept, and all
-// probabilities are their differences: exactly what sampling with them does.
+// Represents a piecewise-constant density over [0, 1), proportional to nonnegative values. All-zero
+// (or non-finite) values give the uniform density. Only running sums are stored; all probabilities
+// are their differences, consistent with Sample().
 class Distribution1D {
   public:
     Distribution1D() = default;

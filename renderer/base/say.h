@@ -10,7 +10,7 @@
 namespace lull {
 
 // Prints to the stream. Where that cannot be written any more, as its terminal is closed or its
-// disk is full, nothing is printed, and the work goes on.
+// disk is full, nothing is printed, and the work continues.
 template <typename... Args>
 void SayTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
     try {

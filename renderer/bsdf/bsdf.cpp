@@ -3,7 +3,7 @@
 namespace lull {
 namespace {
 
-// Drops what float cannot hold. f is nonnegative, so that its sum tells.
+// Drops values beyond the range of float. f is nonnegative, so that its sum tells.
 BsdfValue Finite(const BsdfValue& v) {
     return v.f.sum() < kInfinity && v.pdf < kInfinity ? v : BsdfValue();
 }

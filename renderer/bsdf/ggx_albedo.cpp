@@ -175,7 +175,7 @@ struct Place {
     float t;
 };
 
-// `x2` is the square of what the nodes are even in.
+// `x2` is the square of the variable in which nodes are even.
 Place PlaceOf(float x2, int nodes) {
     const float x = std::sqrt(std::clamp(x2, 0.f, 1.f)) * float(nodes - 1);
     const int i = std::min(int(x), nodes - 2);

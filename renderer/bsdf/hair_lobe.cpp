@@ -44,7 +44,7 @@ double SampleAzimuthal(double u, double s) {
     return std::clamp(x, -std::numbers::pi, std::numbers::pi);
 }
 
-// What depends on the outgoing direction alone.
+// Terms of the outgoing direction alone.
 struct Outgoing {
     float sinTheta, cosTheta, phi;
     float gammaO, gammaT;  // angles to the normal, outside and inside, across the hair
@@ -146,7 +146,7 @@ BsdfValue HairLobe::Evaluate(const Vec3f& wo, const Vec3f& wi) const {
 
 bool HairLobe::Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
     const Outgoing o(*this, wo);
-    // Choose a path and use what is left of the number again.
+    // Choose a path and use the rest of the number again.
     float x = u.x();
     int p = 0;
     for (; p < kRest && x >= o.pmf[p]; ++p) x -= o.pmf[p];

@@ -52,8 +52,8 @@ struct CoatedInterface {
 // Reflects diffusely below a rough interface and glossily at it. Both share one distribution of
 // microfacets and Schlick's reflectance from f0 to f90; metal is an interface without a base.
 //
-// Appendix B scales the base by 1 - F of the half vector and allows better ways, as the sum can
-// exceed 1 at grazing angles. Here the base gets what the interface, taken as a whole, does not
+// Appendix B scales the base by 1 - F of the half vector and allows better methods, as the sum can
+// exceed 1 at grazing angles. Here the base gets the fraction that the whole interface does not
 // reflect, once for each direction (Kelemen and Szirmay-Kalos 2001): reciprocal, and a white base
 // reflects all light.
 struct LayeredReflection {
@@ -114,8 +114,8 @@ struct LayeredReflection {
     }
 
   private:
-    // What reaches the base from one direction, and how often the base is to be sampled: by
-    // how much light it and the interface reflect there.
+    // Fraction of the light from one direction that reaches the base, and the probability of
+    // sampling the base: its fraction of the light that it and the interface reflect.
     struct Split {
         float through = 0, diffuseShare = 0;
     };
@@ -132,8 +132,8 @@ struct LayeredReflection {
     }
 };
 
-// Lets light through a sheet too thin to bend it, blurred by the roughness of its surface: what
-// LayeredReflection's interface would reflect goes on at the other side instead, by 1 - F.
+// Transmits through a sheet too thin to refract, blurred by the roughness of its surface: the
+// reflection of LayeredReflection's interface continues on the other side instead, by 1 - F.
 struct ThinTransmission {
     static constexpr bool kIsSpecular = false, kTransmits = true;
     StoredRgb t;

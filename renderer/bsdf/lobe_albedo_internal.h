@@ -18,8 +18,8 @@ struct ToColor {
     Rgb operator()(const Rgb& c) const { return c; }
 };
 
-// The diffuse part of FresnelBlend is constructed to scatter everything that the glossy part
-// leaves, except for what is lost at grazing angles.
+// The diffuse part of FresnelBlend scatters all light that the glossy part does not, except for a
+// loss at grazing angles.
 template <typename To>
 typename To::Value DiffuseAlbedo(const FresnelBlend& lobe, float cosO, To to) {
     const float v = 1 - 0.5f * cosO;

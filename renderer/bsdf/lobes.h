@@ -197,8 +197,8 @@ Lobe Scaled(const Lobe& lobe, const Rgb& scale);
 // as a luminance.
 float EstimatedAlbedo(const Lobe& lobe, const Vec3f& wo);
 
-// Lets a FresnelBlend choose between its parts by what they scatter to wo, but each of them with a
-// probability of at least `least`; leaves other lobes alone.
+// Makes a FresnelBlend choose between its parts by the light that they scatter to wo, but each of
+// them with a probability of at least `least`; leaves other lobes alone.
 void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe);
 
 // Calls f with the lobe inside; f must accept every kind and return the same type for all.

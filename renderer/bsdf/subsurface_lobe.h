@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Transmits what a smooth dielectric does not reflect of light that comes from all sides: the
+// Transmits the part of light from all sides that a smooth dielectric does not reflect: the
 // directional part of a separable BSSRDF (pbrt 3rd ed., eq. 11.8).
 struct DiffuseExit {
     static constexpr bool kIsSpecular = false, kTransmits = false;

@@ -1,4 +1,4 @@
-// Lets a render write layers beside its image.
+// Options of AOVs.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,7 +10,7 @@ namespace lull {
 // Adds --aov and --aov-through-specular.
 void AddAovOptions(CLI::App& app, AovSet* wanted);
 
-// Throws Error where the memory cannot hold such layers, or what a denoiser is shown, `features`.
+// Throws Error where the memory cannot hold these layers, or a denoiser's `features`.
 void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-// Lets commands that render go on where they were interrupted.
+// Options of checkpoints, for commands that render.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -14,7 +14,7 @@ void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);
 // Adds --checkpoint-interval alone, for commands that name the file themselves.
 CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options);
 
-// Returns the options of a render that goes on from the file without being told to.
+// Returns the options of a render that resumes from the file without being told to.
 CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 
 // Returns exclusive access to a checkpoint, for as long as work may write it. Throws Error if
@@ -25,7 +25,7 @@ FileLock LockCheckpoint(const std::string& file);
 // the render would replace it.
 void CheckCheckpoint(const CheckpointOptions&);
 
-// Returns how a render goes on that has ended early: by which command, if it has a checkpoint.
+// Returns how to continue a render that has ended early: by which command, if it has a checkpoint.
 std::string HowToGoOn(const CheckpointOptions&);
 
 }  // namespace lull

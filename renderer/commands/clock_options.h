@@ -26,8 +26,8 @@ std::function<double()> StartClock(const ClockOptions&);
 
 using ProgressListener = std::function<void(const RenderProgress&)>;
 
-// Returns a listener that passes on what it hears and warns, once and as early as it can be known,
-// where a sample for each of so many pixels will take longer than there is time.
+// Returns a listener that forwards all progress and warns, once and as early as possible, where the
+// first sample of all `pixels` will take longer than the time that is left.
 ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk&, ProgressListener listener);
 
 }  // namespace lull

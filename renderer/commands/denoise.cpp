@@ -61,7 +61,7 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
     return mean;
 }
 
-// Throws where nothing says what is noise.
+// Throws where the halves do not determine the noise.
 void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
     if (!options.half.empty()) {
         const std::string dependence = DependenceOf(picture.colour);
@@ -100,7 +100,7 @@ ExitCode RunDenoise(Options options) {
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
-    // What follows needs the memory.
+    // The next steps need the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     const auto start = std::chrono::steady_clock::now();
     const DenoisedImage denoised = DenoiseImage(std::move(picture), region, blocks);

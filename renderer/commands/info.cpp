@@ -1,4 +1,4 @@
-// `lull info`: says what is in a scene, as it would be rendered.
+// `lull info`: describes a scene as it would be rendered.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -98,7 +98,7 @@ std::string FilmText(const FilmSettings& film, const std::string& file) {
     return text + ", image " + DefaultOutput(film.filename, file);
 }
 
-// Returns what is used, and what the file asks for if that is something else.
+// Returns the name that is used, and the file's if it differs.
 std::string UsedText(const std::string& used, const Entity& asked) {
     if (!asked.loc.file || asked.name == used) return used;
     return fmt::format("{} ({} in the file)", used, asked.name);

@@ -20,7 +20,7 @@ void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs) {
     for (const std::string& file : {rest, rest.substr(0, rest.rfind(':'))}) {
         std::error_code error;
         if (std::filesystem::is_regular_file(file, error))
-            return inputs->push_back({"what the rule reads,", file});
+            return inputs->push_back({"the file of the rule,", file});
     }
 }
 

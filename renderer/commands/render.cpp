@@ -193,8 +193,8 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     return result;
 }
 
-// Takes back what is said of blocks that have too few samples to know what is noise: they stay as
-// they are, and may be as wrong as can be.
+// Marks blocks with too few samples for an estimate of their noise: they stay unfiltered, with the
+// largest error.
 void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
                  DenoisedImage* denoised) {
     constexpr float mostLightness = 100;
@@ -216,13 +216,13 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
                         count, result.blocks.size(), kLeastDenoisedSpp));
 }
 
-// What the denoiser makes of a finished render.
+// Denoised image of a finished render.
 struct DenoiserResults {
     std::optional<DenoisedImage> image;
     std::vector<ExrChannel> halves;  // what can be denoised later
 };
 
-// Makes what is asked for, and frees what it is made of.
+// Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
     const RenderSettings& settings = p.render.settings;

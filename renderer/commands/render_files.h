@@ -12,7 +12,7 @@ struct RenderFiles {
     std::string exr, png, sppMap, thresholds, ranges, report;
 };
 
-// Returns the names for `output`, a name that ends in .exr or .png; all lie beside each other.
+// Returns the names for `output`, a name that ends in .exr or .png; all are in one folder.
 RenderFiles NameFiles(const std::string& output, const std::string& report);
 
 // Returns the image to write where the command names none: the scene's `filename`, or the name of

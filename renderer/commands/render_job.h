@@ -1,5 +1,5 @@
 // Renders as commands do: the scene is loaded, checked and compiled, and rendered by a session that
-// prints on stderr what there is to say and goes on from its checkpoint.
+// prints its messages on stderr and continues from its checkpoint.
 //
 //     RenderJob render(settings, ranks);
 //     render.CheckFiles({{"-o", output}});
@@ -36,8 +36,8 @@ class RenderJob {
     // which those of the scene are known, or could not be written now. Takes the checkpoint for
     // this process alone.
     void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {});
-    // Takes that of the settings, which have changed, instead. Throws Error if another process has
-    // it.
+    // Locks the checkpoint of the settings, which have changed, instead. Throws Error if another
+    // process has it.
     void LockCheckpoint();
     // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();

@@ -37,18 +37,18 @@ std::unique_ptr<const Scene> CompileScene(const RenderSettings&, SceneInput*);
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 
-// Returns where models are installed: beside the program, wherever that is.
+// Returns the folder of installed models, next to the program.
 std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
-// Error that a bad rule is; `measures` are those of RuleContext.
+// Error that a bad rule is; `measures` are RuleContext's.
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
 
 // Returns the provenance of an image, without the rule.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
-// Returns how to say things beside that.
+// Returns the format of messages.
 inline Talk TalkOf(const RenderSettings& settings) { return {.isJson = settings.jsonProgress}; }
 
 // Creates the printer of progress on stderr; `adaptive` says whether blocks stop by themselves.

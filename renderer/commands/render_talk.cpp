@@ -14,7 +14,7 @@ namespace lull {
 
 namespace {
 
-// Returns which blocks have ended, and how: what a rule was not content with at the cap is not
+// Returns which blocks have ended, and how: a block at the cap that its rule has not stopped is not
 // stopped.
 std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     const RenderProgress& p = result.progress;
@@ -26,7 +26,7 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     return text;
 }
 
-// Returns what was saved, unless that is nothing.
+// Returns the savings, unless there are none.
 std::string SavingsOf(const Savings& savings, int cap) {
     constexpr double least = 0.0005;  // is shown as 0.1 %
     if (savings.SampleShare() < least) return "";
@@ -63,7 +63,7 @@ void PrintShares(const std::vector<double>& shares) {
     Say("\n");
 }
 
-// Prints which blocks went to the cap, what their rule found there, and which cap would do.
+// Prints the blocks at the cap, their rule's value there, and a sufficient cap.
 void PrintCapped(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
@@ -86,8 +86,8 @@ void PrintCapped(const Provenance& provenance, const RenderResult& result) {
         Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
 }
 
-// Prints what was missing when the time was up. The noise of blocks is not known within their first
-// pass, nor before the next one after a render was resumed.
+// Prints the shortfall at the deadline. The noise of blocks is not known within their first pass,
+// nor before the next one after a render was resumed.
 void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);

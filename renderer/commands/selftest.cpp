@@ -1,4 +1,4 @@
-// `lull selftest`: checks on the user's own machine that the program computes what it should.
+// `lull selftest`: checks known answers on the user's own machine.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -78,7 +78,7 @@ void PrintTheme(const std::string& theme, bool markdown) {
         fmt::print("{}\n", theme);
 }
 
-// Shows what rules make of samples of which the few that matter come seldom.
+// Shows the bias of rules on samples whose few important values are rare.
 void PrintHeavyTails(const SelftestOptions& options) {
     fmt::print(
         "\n## Bias of stopped images\n\n"
@@ -106,10 +106,8 @@ void PrintHeavyTails(const SelftestOptions& options) {
                        tail.rarity > 0 ? fmt::format("{:.1f}", 100 * outcomes[i].unseen) : "-");
     }
     fmt::print(
-        "\n`lnoise` does not see fireflies that saturate the display: where the mean of a pixel is "
-        "beyond white it takes the\nnoise there for invisible, also if only one half of the "
-        "samples "
-        "is beyond.\n");
+        "\n`lnoise` does not see fireflies that saturate the display. Where the mean of a pixel or "
+        "of one half of its samples\nis beyond white, it takes the noise for invisible.\n");
 }
 
 ExitCode RunSelftest(const SelftestOptions& options) {
@@ -156,9 +154,8 @@ void AddSelftestCommand(CLI::App& app, Command* command) {
                      "Use this model of `learned` for that table [the bundled one]")
         ->type_name("MODEL.h5");
     selftest->footer(
-        "A check passes if what lull computes is at most the tolerance from the answer. What is\n"
-        "random has a tolerance of 4.5 standard errors, as measured: one run in 10,000 or so "
-        "fails\n"
+        "A check passes if the result is at most the tolerance from the answer. Random results\n"
+        "have a tolerance of 4.5 standard errors, as measured: about one run in 10,000 fails\n"
         "by chance, and passes with another --seed. Exit code 1 if a check fails.\n"
         "Example: lull selftest");
     selftest->callback([=] { *command = [=] { return RunSelftest(*options); }; });

@@ -17,8 +17,8 @@ namespace lull {
 
 void PrepareStreams() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
-    // What is opened gets the lowest number that is free. Only that for errors takes what is
-    // written: results that go nowhere are an error.
+    // A new file gets the lowest free number. Only the stream of errors is opened for writing:
+    // results that go nowhere are an error.
     constexpr std::pair<int, int> kStreams[] = {{0, O_RDONLY}, {1, O_RDONLY}, {2, O_WRONLY}};
     for (const auto& [stream, mode] : kStreams)
         if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", mode) < 0) return;

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// Readies the three streams of the program: writing to a pipe that nobody reads, or more to a file
+// Readies the three streams of the program: writing to a pipe without a reader, or more to a file
 // than is allowed, is an error and not the end, and a stream that is closed is /dev/null, so that
 // no file of results takes its place.
 void PrepareStreams();
@@ -20,7 +20,7 @@ bool HasLostResults();
 // Prints a message as a line of its own on stderr, after the program's name.
 void PrintTalk(const std::string& message);
 
-// Messages on stderr, beside the results: as text or, for programs, as JSON
+// Messages on stderr, separate from the results: as text or, for programs, as JSON
 // objects, one a line, of which each has an "event".
 struct Talk {
     bool isJson = false;

@@ -12,7 +12,7 @@ constexpr float kDarkest = 1e-3f;     // squared luminance below which errors ar
 constexpr float kLeastNoise = 1e-4f;  // relative variance, squared, below which pixels count alike
 constexpr float kDoubt = 2;           // standard deviations
 
-// Holds what all candidates' errors are measured with.
+// Scale and weights of all candidates' errors.
 struct ErrorScale {
     Planes ofSquares;  // makes squared errors relative
     Planes weight;     // of pixels
@@ -58,8 +58,8 @@ Planes ErrorOf(const Planes& made, const Planes& other, const Planes& judge, con
     return error;
 }
 
-// Returns the squared error of the samples, which is their variance, and what the errors of others
-// may be above the truth by chance.
+// Returns the squared error of the samples, which is their variance, and the chance error of the
+// others' estimates.
 Planes ErrorOfNoise(const Planes& variance, const ErrorScale& scale) {
     Planes error(variance.width, variance.height, 1), doubt = error;
     for (size_t i = 0; i < error.Area(); ++i) {

@@ -24,8 +24,8 @@ Planes Channel(const Planes& image, int c) {
     return channel;
 }
 
-// Scales a channel of the variance to what the halves differ by in the pixels around, since points
-// that fill space evenly have less noise than their squares say.
+// Scales a channel of the variance to the difference of the halves in the pixels around, since
+// stratified samples have less noise than their squares suggest.
 void ScaleVariance(const Halves& colour, int c, Planes* variance) {
     const Planes said = BoxMean(Channel(*variance, c), kNoiseRadius);
     const Planes seen =
@@ -35,8 +35,8 @@ void ScaleVariance(const Halves& colour, int c, Planes* variance) {
             std::clamp(seen.values[i] / std::max(said.values[i], 1e-12f), 0.2f, 5.f);
 }
 
-// Estimates the variance of a pixel of either half: what the samples' squares say of the luminance,
-// shared out by colour, and scaled.
+// Estimates the variance of a pixel of either half: by the samples' squares of luminance, shared
+// out by colour, and scaled.
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
     if (ofMean.count == 0) return BoxMean(BoxMean(VarianceOf(colour.a, colour.b), 1), 1);
     Planes variance(ofMean.width, ofMean.height, kColours);

@@ -1,16 +1,16 @@
-// Takes the noise out of a picture, and says how wrong it may still be.
+// Removes the noise of an image, and estimates the remaining error.
 //
-// Colours are fitted to features (regression.h) twice: those of one half of the samples by weights
-// that the other half gives, and the other way round. So each half can judge what was made of the
-// other, and the judgement sees what is blurred as well as what is left of the noise. As the
-// samples grow, weights become so selective that the result goes to the mean of the samples.
+// Colours are fitted to features (regression.h) twice: each half of the samples by weights from the
+// other half. Each filtered half is compared with the samples of the other, which measures blur as
+// well as residual noise. With more samples, weights become so selective that the result converges
+// to the mean of the samples.
 #pragma once
 
 #include "renderer/denoise/feature_filter.h"
 
 namespace lull {
 
-// Holds what is known of a picture. All images have one size.
+// Inputs of the denoiser. All images have one size.
 struct NoisyPicture {
     Halves colour;    // R, G, B: means of two halves of the samples, independent of each other
     Planes features;  // albedo, normal and 1 / depth, as FilterFeatures() has made them
@@ -21,7 +21,7 @@ struct NoisyPicture {
 
 struct DenoisedPicture {
     Planes picture;   // R, G, B; finite and not negative
-    Halves halves;    // what was made of either half; their mean is the picture without fireflies
+    Halves halves;    // each half denoised; their mean is the picture without fireflies
     Halves noisy;     // the halves of the samples without fireflies, which judge them
     Planes variance;  // of a pixel of these, R, G, B
 };

@@ -44,7 +44,7 @@ Planes HighPassed(const Planes& image) {
     return result;
 }
 
-// Sums over a tile, of what both halves have (a, b) and of half their difference squared.
+// Sums over a tile, of both halves (a, b) and of half their difference squared.
 struct TileSums {
     double aa = 0, bb = 0, ab = 0, ad = 0;
     double abBeside = 0, ddBeside = 0;  // products with the pixels to the right and below
@@ -99,7 +99,7 @@ bool IsOneColour(const Planes& image) {
     return true;
 }
 
-// Compares values bit by bit but for what counts as 0.
+// Compares values bit by bit, after Sane().
 bool AreSame(const Planes& a, const Planes& b) {
     for (size_t i = 0; i < a.values.size(); ++i)
         if (Sane(a.values[i]) != Sane(b.values[i])) return false;
@@ -111,8 +111,8 @@ bool AreSame(const Planes& a, const Planes& b) {
 std::string DependenceOf(const Halves& halves) {
     if (AreSame(halves.a, halves.b))
         return IsOneColour(halves.a) ? ""
-                                     : "both halves have the same colours, so that nothing tells "
-                                       "what is noise; render one of them with another seed";
+                                     : "both halves have the same colours, so that noise cannot be "
+                                       "estimated; render one of them with another seed";
     const Planes a = HighPassed(LightnessOf(halves.a)), b = HighPassed(LightnessOf(halves.b));
     int seen = 0, common = 0;
     Mean ofCommon, ofDifference, shareOfA;
@@ -137,7 +137,7 @@ std::string DependenceOf(const Halves& halves) {
     };
     if (common >= kShare * seen &&
         (isLike(kWhite) || (ofDifference.count > 0 && isLike(ofDifference.Value()))))
-        return "both halves have the same noise, beside which they hardly differ; render one of "
+        return "both halves have the same noise, and hardly differ otherwise; render one of "
                "them with another seed";
     if (shareOfA.count < kLeastTiles) return "";
     const double most = 1 - kOneSided + kShareDoubt * shareOfA.StandardError();

@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// Returns L, in [0, 100], of what a display shows, and the slope by which luminance changes it,
-// which is 0 above white.
+// Returns the lightness L, in [0, 100], of the displayed value of a luminance, and its derivative
+// by luminance, which is 0 above white.
 inline LightnessSlope<float> DisplayedLightness(float y) {
     return y < 1 ? LightnessAt(y) : LightnessSlope<float>{100, 0};
 }

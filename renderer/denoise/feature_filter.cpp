@@ -10,7 +10,7 @@ namespace {
 
 constexpr PatchOptions kFeaturePatches{.radius = 5, .patchRadius = 3};
 constexpr int kVarianceRadius = 1;
-// From so far away pixels take part in what is made of one.
+// Distance up to which pixels contribute to one.
 constexpr int kReach = kFeaturePatches.radius + kFeaturePatches.patchRadius + kVarianceRadius;
 constexpr float kLeastFeatureVariance = 1e-6f;  // below it noise is of no importance
 constexpr int kBand = 64;                       // rows that are in memory at a time
@@ -45,7 +45,7 @@ void ScaleFeatures(float median, Planes* half) {
     }
 }
 
-// Adds half of what the weights of `guide` make of a tile of an image.
+// Adds half of a tile of an image, filtered by the weights of `guide`.
 void AddFiltered(const Planes& image, const PatchGuide& guide, const ImageTile& tile,
                  Planes* result) {
     PatchWeights weights(guide, tile, 0, kFeaturePatches);

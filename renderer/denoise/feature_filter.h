@@ -9,16 +9,16 @@ namespace lull {
 
 inline constexpr int kFeatures = 7;  // albedo R, G, B, normal X, Y, Z, 1 / depth
 
-// Returns what stands for a depth among the features: one over it, and 0 where there is nothing.
+// Returns the feature of a depth: its reciprocal, and 0 where there is nothing.
 inline float DisparityOf(float depth) { return depth > 0 ? 1 / std::max(depth, 1e-12f) : 0; }
 
 // Returns the rows [y0, y1) of kFeatures means of both halves of the samples. So that these, which
 // are large, need not be in memory a second time, they are asked for rows as they are needed.
 using FeatureReader = std::function<Halves(int y0, int y1)>;
 
-// Returns the mean of both halves, each filtered by non-local means with the weights that the other
-// half has, and scaled to [-1, 1]. Noise comes from lenses, motion and glossy ways; where there is
-// none, nothing is changed. What is not a number counts as 0.
+// Returns the mean of both halves, each filtered by non-local means with weights from the other
+// half, and scaled to [-1, 1]. Noise comes from lenses, motion and glossy paths; without noise,
+// nothing is changed. NaN counts as 0.
 Planes FilterFeatures(int width, int height, const FeatureReader&);
 
 }  // namespace lull

@@ -15,12 +15,12 @@ constexpr PatchOptions kPatches{.radius = 7, .patchRadius = 3};
 constexpr std::array kBandwidths = {0.5f, 1.4f};
 constexpr int kScales = 3;      // of which each has half the size of that before
 constexpr int kLeastSide = 20;  // pixels of a picture that is looked at in half of its size
-// From so far away pixels take part in what is chosen for one, twice, with the coarse part in
+// Distance up to which pixels contribute to the choice of one, twice, with the coarse part in
 // between: even, so that a crop is halved as the whole is.
 constexpr int kMargin = 2 * kChoiceReach + 4;
 static_assert(kMargin % 2 == 0);
 
-// Holds what the picture of one scale is made from.
+// Inputs of one scale.
 struct Level {
     const Halves& noisy;
     const Planes& features;
@@ -36,7 +36,7 @@ Halves CropHalves(const Halves& halves, const ImageTile& tile) {
     return {Crop(halves.a, tile), Crop(halves.b, tile)};
 }
 
-// Holds some rows of the pictures made with each bandwidth.
+// Some rows of the candidates of all bandwidths.
 struct CandidateRows {
     int first = 0;  // the row of the picture that is their first
     std::vector<Halves> pictures;

@@ -72,7 +72,7 @@ void GiveBack(const std::vector<Firefly>& fireflies, Planes* picture) {
     const auto spread = [](Planes image) {
         return BoxSum(BoxSum(std::move(image), kSpreadRadius), kSpreadRadius);
     };
-    // What a pixel had is divided among its neighbours by their share of the brightness around.
+    // The energy of a pixel is divided among its neighbours in proportion to brightness.
     const Planes around = spread(share);
     for (int c = 0; c < kColours; ++c) {
         Planes given(share.width, share.height, 1);

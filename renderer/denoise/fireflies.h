@@ -9,14 +9,14 @@ namespace lull {
 
 // The energy removed from the mean of both half buffers.
 struct Firefly {
-    size_t pixel;  // may be that of others too
+    size_t pixel;  // several fireflies may share it
     Rgb excess;    // not negative
 };
 
 // Scales down each pixel of a half (R, G, B) that is brighter than the same pixel of the other half
 // by more than `limit` times the standard deviation of such differences around, and brighter than
-// all of its neighbours are there, to that limit. So what is bright in both halves stays as it is,
-// and as the samples grow, what is taken vanishes as their noise does. Values are finite and not
+// all of its neighbours are there, to that limit. So a pixel bright in both halves stays unchanged,
+// and with more samples, the energy removed vanishes as their noise does. Values are finite and not
 // negative.
 std::vector<Firefly> TakeFireflies(float limit, Halves*);
 

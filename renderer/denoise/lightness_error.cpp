@@ -23,12 +23,12 @@ constexpr double kLeastDoubt = 0.01;  // of the mean doubt
 constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
 constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of products of noise
-// The error over what of it still changes, and how much that varies, over 53 pictures of
-// nine scenes (tests/measurements/denoising.md).
+// Total error / difference of the halves, and its standard deviation, over 53 pictures of nine
+// scenes (tests/measurements/denoising.md).
 constexpr double kUsual = 1.27;
 constexpr double kUsualDoubt = 0.25;
-// The bound is not below this share of what the samples by themselves allow, for what is hidden
-// under the noise of unusual pictures.
+// The bound is not below this fraction of the samples' own bound, because of errors hidden under
+// the noise of unusual pictures.
 constexpr double kTrust = 0.8;
 
 // Sums up a sub-block.
@@ -44,7 +44,7 @@ struct Sums {
         variance += d * d;
         least += error.least.values[i];
     }
-    // Returns the square of what an observer sees of a difference in lightness.
+    // Returns the square of the visible part of a difference in lightness.
     double Seen() const {
         const NoiseVisibility visibility;
         const double mean = lightness / count;
@@ -73,10 +73,10 @@ struct Belief {
     }
 };
 
-// Returns what the samples say. By Cauchy's inequality the square is at most mean(1 / w) mean(w s),
-// for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s). Of s
-// itself little is known, of the doubts much, which go with s; and what one sub-block of much noise
-// does not know weighs less so.
+// Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
+// s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
+// Little is known of s itself, but much of its variances, which are correlated with it; noisier
+// sub-blocks get smaller weights, so that their uncertainty does not dominate.
 Belief FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
     double doubts = 0;
@@ -92,15 +92,15 @@ Belief FromSamples(std::span<const Squares> all) {
     return {inverse * mean, inverse * inverse * variance};
 }
 
-// Returns what is usual where the halves of the denoised picture differ by this.
+// Returns the usual error for this difference of the denoised halves.
 Belief Usual(double least) {
     const double mean = Sqr(kUsual * least);
     return {mean, Sqr(2 * kUsualDoubt * mean)};
 }
 
-// Returns what both say together, each by its doubt. As far as the samples contradict what is usual
-// beyond chance, this picture is an unusual one, of which less is known beforehand (DerSimonian and
-// Laird's estimate of what two differ by).
+// Returns the combination of both, weighted by inverse variance. Where the samples contradict the
+// usual ratio beyond chance, this picture is an unusual one, and the usual ratio gets the larger
+// variance (DerSimonian and Laird's estimate for two studies).
 Belief Together(const Belief& samples, Belief usual) {
     usual.variance +=
         std::max(0.0, Sqr(samples.mean - usual.mean) - samples.variance - usual.variance);
@@ -153,7 +153,7 @@ EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     };
     const Halves &halves = denoised.halves, &noisy = denoised.noisy;
     add(halves.a, halves.b, 0.25f, &error.least);
-    // The noise of both halves, and of what is made of them, is in it as products of the two.
+    // The noise of both halves, and of the filtered ones, is in it as products of the two.
     add(halves.a, noisy.b, 0.5f, &error.squared);
     add(halves.b, noisy.a, 0.5f, &error.squared);
     add(noisy.a, noisy.b, -0.5f, &error.squared);

@@ -19,13 +19,13 @@ struct EstimatedError {
 // Measures it as it is seen (AsSeen).
 EstimatedError MeasureError(const DenoisedPicture&);
 
-// Makes what is coarse in differences in lightness, blotches of several pixels, as much stronger as
-// the eye is more sensitive to it. Noise without correlation between pixels stays as strong.
+// Scales coarse differences in lightness, blotches of several pixels, by the higher sensitivity of
+// the eye to them. Noise without correlation between pixels keeps its strength.
 Planes AsSeen(Planes difference);
 
 // The error of a block: the mean over its 10 x 10 sub-blocks of the root mean square in lightness,
-// as it is seen, times what an observer sees of a difference there (NoiseVisibility: flare and
-// detail). Structure that is missing is not in it.
+// as it is seen, times its visibility there (NoiseVisibility: flare and detail). Missing structure
+// is not in it.
 struct LightnessError {
     double estimate = 0;
     double upper = 0;  // not exceeded in 95 of 100 blocks
@@ -36,7 +36,7 @@ struct LightnessError {
 LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
-// with what is missing of structure (EstimatedError::structure).
+// with that of missing structure (EstimatedError::structure).
 Planes StandardError(const DenoisedPicture&, const Planes& structure);
 
 }  // namespace lull

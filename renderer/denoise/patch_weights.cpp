@@ -20,7 +20,7 @@ PatchWeights::PatchWeights(const PatchGuide& guide, const ImageTile& tile, int m
       radius(options.radius),
       patchRadius(options.patchRadius),
       imageHeight(guide.image.height),
-      // Row y is compared with those below it; what is above has been compared with it already.
+      // Row y is compared with those below it; rows above have been compared with it already.
       area{tile.x0 - margin - radius, tile.y0 - margin, tile.x1 + margin + radius,
            tile.y1 + margin + radius},
       image(area.Grown(radius + patchRadius), guide.image),
@@ -73,7 +73,7 @@ void PatchWeights::AddRow(int y) {
     }
 }
 
-// Makes the distances of row y of what AddRow() has made of the rows of its patches.
+// Makes the distances of row y from the sums of AddRow() over the rows of its patches.
 void PatchWeights::MeasureRow(int y) {
     const int length = area.x1 - area.x0 + kLanes;
     const float norm = 1.f / float(sumRows * sumRows * image.Count());

@@ -1,5 +1,5 @@
-// Says how alike the surroundings of pixels are: the weights of non-local means (Buades, Coll and
-// Morel 2005), with the noise of each pixel taken into account (Rousselle, Knaus and Zwicker 2012).
+// Computes the similarity of the neighbourhoods of pixels: the weights of non-local means (Buades,
+// Coll and Morel 2005), corrected for the noise of each pixel (Rousselle, Knaus and Zwicker 2012).
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Holds an image that pixels are compared by, and the variance of each of its values.
+// Image by which pixels are compared, and the variance of each of its values.
 struct PatchGuide {
     const Planes& image;
     const Planes& variance;
@@ -19,9 +19,9 @@ struct PatchOptions {
     int patchRadius = 3;  // by the (2 patchRadius + 1)^2 pixels around them
 };
 
-// Measures, row by row of a tile and what lies around it, how far the patches of two pixels are
-// apart: the mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average where
-// noise is all that differs. Only the rows are kept that the one asked for is compared with.
+// Measures, row by row of a tile and its border, the distance of the patches of two pixels: the
+// mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average for patches that
+// differ by noise only. Only the rows are stored that the current one is compared with.
 class PatchWeights {
   public:
     struct Offset {
@@ -72,7 +72,7 @@ class PatchWeights {
     int radius, patchRadius, imageHeight;
     ImageTile area;
     Cutout image, variance;
-    size_t stride;                         // of a row in what follows, whose first is at area.x0
+    size_t stride;                         // of a row of the buffers below; the first is at area.x0
     std::vector<float> beyond;             // 0 at columns within the image, kBeyond outside
     int distanceRows, sumRows;             // that the rings have
     std::vector<float> distances;          // of the first half of the offsets

@@ -39,10 +39,10 @@ inline float LuminanceOf(const Planes& image, size_t i) {
 
 inline constexpr float kLargest = 1e18f;  // its square is finite
 
-// Returns 0 for what is negative or not a number, and at most kLargest.
+// Returns 0 for negative values and NaN, and at most kLargest.
 inline float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
 
-// Returns the values pixel by pixel, all channels of one beside each other.
+// Returns the values pixel by pixel, with adjacent channels.
 std::vector<float> Interleaved(const Planes&);
 
 // Returns half the squared difference of two images: of a value of either, where they differ by
@@ -50,8 +50,8 @@ std::vector<float> Interleaved(const Planes&);
 Planes VarianceOf(const Planes& a, const Planes& b);
 
 // Return the mean or the sum of each channel over the (2 radius + 1)^2 pixels around, those within
-// the image. Each sum is made afresh, so that a part of an image has the same bits as the whole,
-// and what is bright leaves no trace farther away.
+// the image. Each sum is computed afresh, so that a part of an image has the same bits as the
+// whole, and bright pixels leave no rounding errors farther away.
 Planes BoxMean(Planes, int radius);
 Planes BoxSum(Planes, int radius);
 

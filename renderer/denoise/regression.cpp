@@ -20,8 +20,8 @@ constexpr int kAtOnce = 4;          // neighbours for which each sum is loaded a
 
 static_assert(kUnknowns % 2 == 0);
 
-// The normal equations, one a row: sums of w xi xj, then of w xi c. What is left of the diagonal is
-// not used.
+// The normal equations, one a row: sums of w xi xj, then of w xi c. The part left of the diagonal
+// is not used.
 using Equations = std::array<std::array<Lanes, kColumns>, kUnknowns>;
 
 // Adds neighbours with these weights to the rows i and i + 1, which have their values loaded once;
@@ -76,7 +76,7 @@ void Solve(Equations* equations) {
         }
 }
 
-// Says where a neighbour is.
+// Position of a neighbour.
 struct Neighbour {
     int x, y;            // relative to the pixel
     ptrdiff_t distance;  // in memory
@@ -88,7 +88,7 @@ float Largest(const Lanes& values) {
     return std::max(std::max(of4[0], of4[1]), std::max(of4[2], of4[3]));
 }
 
-// Fits sixteen pixels at a time, and adds what each fit says to the pixels that it was made from.
+// Fits sixteen pixels at a time, and adds each fit to the pixels that it was made from.
 class TileFits {
   public:
     TileFits(const RegressionInput& in, const ImageTile& tile)
@@ -161,8 +161,8 @@ class TileFits {
         Spread(x, y, &sums[bandwidth]);
     }
 
-    // Finds those whose weights matter, column by column: so Spread() does not load what it has
-    // just stored at another place, for which processors have to wait.
+    // Finds those whose weights matter, column by column: so Spread() does not load values just
+    // stored at another place, which would stall the processor.
     void FindNeighbours(float bandwidth) {
         count = 0;
         const int side = 2 * radius + 1;
@@ -180,7 +180,7 @@ class TileFits {
         }
     }
 
-    // Sets what the equations have of a neighbour. Features are relative to the pixel's.
+    // Sets the terms of a neighbour in the equations. Features are relative to the pixel's.
     void Look(const Neighbour& at, const float* featuresHere, const float* coloursHere,
               std::array<Lanes, kColumns>* values) const {
         (*values)[0] = Lanes::Ones();
@@ -193,8 +193,8 @@ class TileFits {
             (*values)[kUnknowns + c] = LanesIn(coloursHere + c * colour.PlaneSize() + at.distance);
     }
 
-    // Adds what the fit at (x, y) says of its neighbours within the tile, by their weights, which
-    // are the same both ways.
+    // Adds the prediction of the fit at (x, y) for its neighbours within the tile, by their
+    // weights, which are the same both ways.
     void Spread(int x, int y, Cutout* to) {
         const auto unknown = [&](size_t i, size_t c) -> Lanes& {
             return equations[i][kUnknowns + c];
@@ -227,7 +227,7 @@ class TileFits {
     const RegressionInput& in;
     ImageTile tile;
     int radius;
-    float scale;  // pixels to what the slopes along x and y are of
+    float scale;  // pixels to the units of the slopes along x and y
     Cutout colour, features;
     PatchWeights weights;
     std::vector<Cutout> sums;      // for each bandwidth: R, G, B and 1, times weights

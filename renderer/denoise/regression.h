@@ -11,12 +11,12 @@
 
 namespace lull {
 
-// Holds what is fitted, and how. All images are of one size, and finite.
+// Image to fit, its features and options. All images are of one size, and finite.
 struct RegressionInput {
     const Planes& colour;
     const Planes& features;
-    // Weights are those of the guide (PatchWeights::Of), which is the other half of the samples, so
-    // that they do not depend on the noise of what is fitted.
+    // The other half of the samples, from which weights come (PatchWeights::Of), so that they do
+    // not depend on the noise of `colour`.
     PatchGuide guide;
     PatchOptions patches;
     std::span<const float> bandwidths;
@@ -25,8 +25,8 @@ struct RegressionInput {
     int rowsPerFit = 1;
 };
 
-// Returns for each bandwidth what the features make of the colours of a tile, which lies within the
-// image.
+// Returns for each bandwidth the fit of the colours of a tile, which lies within the image, to its
+// features.
 std::vector<Planes> RegressTile(const RegressionInput&, const ImageTile&);
 
 }  // namespace lull

@@ -8,7 +8,7 @@ namespace lull {
 // Returns the means of 2 x 2 pixels each; at an odd border, of those that are there.
 Planes Halved(const Planes&);
 
-// Returns `fine` with its coarse part, which is what Halved() makes of it, replaced by `coarse`.
+// Returns `fine` with its coarse part, Halved(fine), replaced by `coarse`.
 Planes WithCoarsePart(Planes fine, const Planes& coarse);
 
 }  // namespace lull

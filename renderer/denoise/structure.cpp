@@ -67,7 +67,7 @@ std::vector<Kernel> AllKernels() {
     return kernels;
 }
 
-// What is known of the residual of the mean of both halves in lightness, and its sums over boxes.
+// Residual of the mean of both halves in lightness, its variance, and sums over boxes.
 struct Residual {
     enum Channel {
         kValue,
@@ -153,7 +153,7 @@ KernelSum SumOver(const Residual& residual, const Kernel& kernel, int x, int y) 
     return {value, value.square() / variance.max(difference).max(around).max(1e-30f)};
 }
 
-// Appends what is found in the pixels [x, x + kLanes) of a row, those below `end`.
+// Appends the structure found in the pixels [x, x + kLanes) of a row, those below `end`.
 void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x, int y, int end,
             std::vector<Found>* found) {
     KernelSum best{Lanes::Zero(), Lanes::Constant(Sqr(kDoubtful))};

@@ -13,8 +13,8 @@
 namespace lull {
 
 // Adds to the middle of each square, line and bar the mean of its residual where that is structure,
-// round by round. Each half gets that of its own samples, and stays within their range
-// (sample_range.h). The variance is that of a pixel of either half. The same bits for any number of
+// round by round. Each half gets the mean of its own samples, and stays within their range
+// (sample_range.h). `variance` is of a pixel of either half. The same bits for any number of
 // threads.
 void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* picture);
 

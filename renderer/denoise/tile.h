@@ -64,8 +64,8 @@ inline void Paste(const Planes& image, const ImageTile& tile, int x, int y, Plan
                         to->Row(c, y + v - tile.y0) + x);
 }
 
-// Holds the part of an image that a tile covers, copied so that rows can be read up to 4 kLanes
-// past their end; where the tile lies beyond the image, the border is repeated.
+// Copy of the part of an image that a tile covers, whose rows can be read up to 4 kLanes past their
+// end; where the tile lies beyond the image, the border is repeated.
 class Cutout {
   public:
     Cutout(const ImageTile& tile, int count)

@@ -19,7 +19,7 @@ namespace lull {
 
 namespace fs = std::filesystem;
 
-// What AtomicFile holds. It has linkage, and so must these.
+// Members of AtomicFile. It has linkage, and so must these.
 namespace file_io {
 
 // Owns a descriptor and, while `temporary` is not empty, the file of that name.
@@ -38,7 +38,7 @@ struct OutputFile {
     }
 };
 
-// What is at the end of the links of `path`: the place to write to, and its status.
+// The end of the links of `path`: the place to write to, and its status.
 struct Target {
     fs::path path;
     fs::file_status status;
@@ -88,20 +88,20 @@ bool CreateLocked(const fs::path& name, OutputFile* file) {
     return false;
 }
 
-// Removes what a writer that was killed has left; returns false where somebody is writing to it, or
-// that cannot be known.
+// Removes the file that a killed writer has left; returns false if another process is writing to
+// it, or that cannot be determined.
 bool RemoveLeftover(const fs::path& name) {
     OutputFile old;
     old.fd = open(name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (old.fd < 0) return errno == ENOENT;
     if (flock(old.fd, LOCK_EX | LOCK_NB) != 0) return false;
-    // What was locked may have been given its final name in the meantime.
+    // The locked file may have been given its final name in the meantime.
     return !IsNamed(old.fd, name) || unlink(name.c_str()) == 0;
 }
 
-// Creates a new file beside `target`. It has always the same name, so that what is left where
-// writers are killed does not grow; where another writer has that, or the file system knows no
-// locks, one of its own.
+// Creates a new file in the folder of `target`. It has always the same name, so that files left by
+// killed writers do not accumulate; where another writer has that, or the file system has no locks,
+// a name of its own.
 void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
     const fs::path common = BesideTarget(target, "tmp");
     for (int attempt = 0; attempt < 10; ++attempt) {
@@ -116,7 +116,7 @@ void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* 
     FailWithErrno(path);
 }
 
-// Calls write(bytes, done), which returns what it has written, until all is.
+// Calls write(bytes, done), which returns the number of bytes written, until all are.
 template <typename Write>
 void WriteAll(const std::string& path, std::span<const std::byte> bytes, const Write& write) {
     for (size_t done = 0; done < bytes.size();) {
@@ -185,7 +185,7 @@ struct AtomicFile::State {
     std::string path;
     Target target;
     OutputFile file;                // the new one; none where the target is special
-    std::vector<std::byte> direct;  // what a special target is to get
+    std::vector<std::byte> direct;  // of a special target
 };
 
 AtomicFile::AtomicFile(const std::string& path) : state(std::make_unique<State>()) {

@@ -11,11 +11,11 @@
 
 namespace lull {
 
-// Replaces the file at `path` by `bytes` at one stroke: they are written to a new file beside it,
-// synced to disk and renamed, so that an interrupted or failed write leaves the old file as it
-// was. Links are followed; character devices are written directly, and what is neither they nor a
-// regular file is refused. Throws Error with the reason, with nothing left behind; a program
-// that is killed leaves one hidden file, which the next that writes removes.
+// Replaces the file at `path` by `bytes` atomically: they are written to a new file in its folder,
+// synced to disk and renamed, so that an interrupted or failed write leaves the old file unchanged.
+// Links are followed; character devices are written directly, and other files that are not regular
+// are refused. Throws Error with the reason, with nothing left behind; a program that is killed
+// leaves one hidden file, which the next that writes removes.
 void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes);
 void WriteFileAtomically(const std::string& path, std::string_view text);
 

@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Exclusive access to the file at a path, among all who ask for it in this way, until it is
-// destroyed. What is locked is a hidden file beside it, ".NAME.lock", which is there as long.
+// Exclusive access to the file at a path, among all users of this class, until it is destroyed. The
+// lock is on a hidden file in its folder, ".NAME.lock", which exists as long.
 class FileLock {
   public:
     // Waits until no other process has it; calls onWait() once before, if it has to wait. Throws

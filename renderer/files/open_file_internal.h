@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// Returns whether the name is still that of the open file: who had its lock before may have removed
-// it or given it another.
+// Returns whether the name is still of the open file: an earlier holder of its lock may have
+// removed or renamed it.
 bool IsNamed(int fd, const std::string& name);
 
 }  // namespace lull

@@ -17,12 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds files again, by their names with all links followed and, where they exist, by what they
-// are.
+// Finds files again, by their names with all links followed and, where they exist, by device and
+// inode.
 class FoundFiles {
   public:
-    // Returns the file that is the same as this one, null for none, and keeps this one. What is no
-    // regular file is never found.
+    // Returns the file that is the same as this one, null for none, and keeps this one. Files that
+    // are not regular are never found.
     const NamedFile* FindOrAdd(const NamedFile& file) {
         struct stat status;
         const bool exists = stat(file.path.c_str(), &status) == 0;

@@ -20,7 +20,7 @@ inline constexpr float kAovFarAway = 1e10f;
 //   materialID       matte without mixed edges; 0 where nothing was hit
 //   noise            the standard error of the pixel in lightness: that of its luminance Y, from
 //                    the samples' squares as if they were independent (for `sobol`, an upper
-//                    bound), times the derivative of L = 116 cbrt(Y) - 16, which goes on above
+//                    bound), times the derivative of L = 116 cbrt(Y) - 16, which continues above
 //                    white; 100 where there are less than two samples
 std::vector<ExrChannel> MakeAovChannels(const AovFilm&, const Film&);
 

@@ -1,4 +1,4 @@
-// Sums up the first hits of paths: the layers beside the image that denoisers and compositors read
+// Sums up the first hits of paths: the AOVs that denoisers and compositors read
 // ("arbitrary output variables").
 #pragma once
 

@@ -44,8 +44,8 @@ DisplayAddress ParseDisplayAddress(const std::string& text) {
     return address;
 }
 
-// What the thread needs; it is the thread's as well, so that a look-up of a name that takes long
-// holds up nobody.
+// State of the thread; the thread shares it, so that a slow look-up of a name does not
+// block.
 struct Display::State {
     State(const DisplayAddress& address, const std::string& name, const PixelRect& region,
           std::function<void(const std::string&)> warn)
@@ -132,7 +132,7 @@ struct Display::State {
         deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
         ended = true;
         changed.notify_all();
-        // Beyond it, for what is under way.
+        // Beyond it, for a transfer under way.
         changed.wait_for(lock, time + Seconds(0.5), [&] { return over; });
     }
 
@@ -144,7 +144,7 @@ struct Display::State {
     Snapshot::Update update;
     bool hasWarned = false;
 
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards the members below
     std::condition_variable changed;
     std::atomic<bool> ended = false;
     bool over = false;

@@ -34,7 +34,7 @@ class Display {
     Display(const Display&) = delete;
     Display& operator=(const Display&) = delete;
 
-    // Copies pixels of the region, which nobody may change meanwhile. Can be called from any
+    // Copies pixels of the region, which must not change meanwhile. Can be called from any
     // thread; takes about a nanosecond per number, whatever the viewer does.
     void Show(const PixelRect& pixels, const Film& film);
     // Shows colours, R, G, B of each pixel, row by row, from now on in place of the film's means.

@@ -29,7 +29,7 @@ struct FeaturePixel {
     bool operator==(const FeaturePixel&) const = default;
 };
 
-// These pixels of the region that a Film beside it has: 60 bytes a pixel.
+// These pixels of the region that its Film has: 60 bytes a pixel.
 using FeatureFilm = PixelPlane<FeaturePixel>;
 
 }  // namespace lull

@@ -32,7 +32,7 @@ int CountOf(const std::vector<int>& tiles) { return tiles.empty() ? 0 : tiles.ba
 }  // namespace
 
 uint32_t HalfCount(uint32_t count) {
-    // Two of every four; of what is left over, the first or the second pair.
+    // Two of every four; of the rest, the first or the second pair.
     const uint32_t whole = count & ~3u, rest = count & 3u;
     const uint32_t inFirstPair = std::min(rest, 2u);
     return whole / 2 + (InHalf(whole) ? inFirstPair : rest - inFirstPair);

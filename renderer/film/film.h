@@ -125,7 +125,7 @@ class Film {
         return {TileOf(pixels.min), TileOf(pixels.max - Vec2i(1, 1)) + Vec2i(1, 1)};
     }
 
-    std::vector<int> columns, rows;  // of tiles: that of each column and row of pixels
+    std::vector<int> columns, rows;  // tile of each column and row of pixels
     PixelPlane<TileSamples> tiles;
     Sums sums;
     std::optional<Sums> halfSums;

@@ -46,7 +46,7 @@ void ForEachPlane(AnyFilm& film, const Layers& layers, const PixelRect& pixels,
     if (layers.mattes->crypto) visit("crypto", *layers.mattes->crypto, pixels);
 }
 
-// Append the pixels of whole tiles, and set them to what was appended for the same planes.
+// Append the pixels of whole tiles, and set them from bytes appended for the same planes.
 // GetPlanes() throws std::runtime_error where the bytes end too early.
 void PutPlanes(const Film&, const Layers&, const PixelRect& pixels, StateWriter*);
 void GetPlanes(StateReader*, const PixelRect& pixels, Film*, const Layers&);

@@ -94,7 +94,7 @@ void DrawLegend(Canvas& canvas, int top, int barHeight, int dot, int lowest, int
         canvas.Fill({{x, top}, {x + 1, top + barHeight}},
                     Viridis(width > 1 ? float(x) / float(width - 1) : 1));
 
-    int usedFrom = width, usedTo = 0;  // what is free of numbers lies between usedTo and usedFrom
+    int usedFrom = width, usedTo = 0;  // no numbers between usedTo and usedFrom
     auto draw = [&](int spp, bool isEnd) {
         const std::string number = std::to_string(spp);
         const int textWidth = TextWidth(number, dot);

@@ -20,7 +20,7 @@ inline int Choose(int first, int sum, float* u) {
     return choice;
 }
 
-// What the density grows by in a quadrant.
+// Factor of the density in a quadrant.
 inline float Gain(const QuadNode& node, int q) {
     return float(node.share[size_t(q)]) * (4.f / QuadNode::kWhole);
 }

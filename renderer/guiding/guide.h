@@ -22,7 +22,7 @@ struct QuadNode {
     static constexpr int kWhole = 1 << 16;
 
     std::array<uint16_t, 4> share = {1 << 14, 1 << 14, 1 << 14, 1 << 14};  // > 0; sum kWhole
-    uint16_t children = 0;  // from the first node of the tree on: those of its quadrants, in turn
+    uint16_t children = 0;  // from the first node of the tree on: nodes of its quadrants, in turn
     uint16_t isCut = 0;     // bit q: quadrant q has a node of its own; else it is even
 
     bool IsCut(int q) const { return (isCut >> q) & 1; }

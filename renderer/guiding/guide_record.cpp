@@ -6,8 +6,8 @@ namespace lull {
 
 namespace {
 
-// What is found lies in [2^-20, 2^16] times what is usual, or is cut: fireflies would bend the
-// guide and no sum can overflow before 2^23 records of the largest cost.
+// Records are clamped to [2^-20, 2^16] times the usual value: fireflies would bend the guide, and
+// no sum can overflow before 2^23 records of the largest cost.
 constexpr float kScale = 0x1p20f, kLargest = 0x1p16f;
 constexpr float kBits = 16, kLeastRatio = 0x1p-16f;  // of a density over another, either way
 

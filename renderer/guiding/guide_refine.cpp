@@ -23,7 +23,7 @@ std::array<uint16_t, 4> SharesOf(const Masses& mass) {
     std::array<int, 4> share;
     for (size_t q = 0; q < 4; ++q)
         left -= share[q] = std::max(1, int(mass[q] / sum * QuadNode::kWhole + 0.5));
-    *std::max_element(share.begin(), share.end()) += left;  // what rounding has left over
+    *std::max_element(share.begin(), share.end()) += left;  // the rounding error
     for (size_t q = 0; q < 4; ++q) node.share[q] = uint16_t(share[q]);
     return node.share;
 }
@@ -65,7 +65,7 @@ class TreeBuilder {
         return first;
     }
 
-    // Fills in a node of these masses, and makes what is below: as below `old`, the node that was
+    // Fills in a node of these masses, and makes its subtree: as below `old`, the node that was
     // there before, or even where there was none (null).
     void Fill(size_t place, const Masses& mass, const QuadNode* old, int depth) {
         QuadNode node{.share = SharesOf(mass)};
@@ -145,7 +145,7 @@ class Refinement {
         Place(to, leaf, double(sums.vertices), 1, tree);
     }
 
-    // Puts a leaf at a node, cut as often as its vertices ask for; `part` is what it has of the old
+    // Puts a leaf at a node, split by its number of vertices; `part` is its fraction of the old
     // one.
     void Place(uint32_t node, GuideLeaf leaf, double vertices, double part, const Quadtree& tree) {
         if (cuts && vertices > options.leafVertices && leaf.depth < Guide::kMaxDepth) {

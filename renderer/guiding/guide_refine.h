@@ -17,9 +17,9 @@ struct GuideState {
     GuideRecord record;  // of all that has been found so far
 };
 
-// Returns a guide whose densities are those of the record, and whose trees have been cut, and
-// uncut, to suit them. The light of the record is in the new one, for what is recorded next to add
-// to; its costs are not, which are the old guide's.
+// Returns a guide whose densities are those of the record, and whose trees have been refined and
+// coarsened to suit them. It keeps the recorded light, to which later records add, but not the
+// recorded costs, which belong to the old guide.
 GuideState Refine(const GuideState& state, const RefineOptions& options);
 
 // Returns the guide alone, with trees no finer than the record.

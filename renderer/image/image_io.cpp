@@ -28,7 +28,7 @@ constexpr size_t kSignature = 8;  // tells PNG and EXR from the rest
     throw Error(OneLine(fmt::format("cannot read image \"{}\": {}", path, reason)));
 }
 
-// Refuses what no honest file holds before any memory is taken for it.
+// Refuses implausible sizes before any memory is allocated.
 void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape) {
     const std::string size = fmt::format("{}x{}x{}", shape.width, shape.height, shape.channels);
     if (shape.width < 1 || shape.height < 1 || shape.channels < 1 || shape.width > kMaxSide ||
@@ -80,7 +80,7 @@ std::unique_ptr<ImageFile> Open(const std::string& type, std::span<const std::by
     return OpenOtherFormat("memory." + type, bytes);
 }
 
-// Reads what `open` opens. Errors get the name here that no reader knows.
+// Reads an image by `open`. Errors get the name here, which readers do not know.
 template <typename Open>
 Image Read(const std::string& name, size_t fileSize, const Open& open) try {
     const std::unique_ptr<ImageFile> file = open();
@@ -102,7 +102,7 @@ Image Read(const std::string& name, size_t fileSize, const Open& open) try {
     FailToRead(name, e.what());
 }
 
-// Turns a picture into what an EXR of its values would be.
+// Converts a picture to an EXR of its values.
 ExrImage ExrOf(const Image& picture) {
     ExrImage image;
     image.width = picture.width;

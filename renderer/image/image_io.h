@@ -54,14 +54,14 @@ struct ExrImage {
 // Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
 int64_t WriteExr(const std::string& path, const ExrImage& image);
 
-// Fills in row `y` of an image, 0 at the top, the channels of a pixel beside each other.
+// Fills in row `y` of an image, 0 at the top, with adjacent channels.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
 // Does the same with channels of `image` that have no values: they come row by row, from the top.
 int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
-// Reads an EXR with all its channels and those attributes that ExrAttribute can hold; of another
-// format what ReadImage() reads, as channels R, G, B, A or Y, A. Throws Error as that does.
+// Reads an EXR with all its channels and those attributes that ExrAttribute can hold; other formats
+// as ReadImage() does, as channels R, G, B, A or Y, A. Throws Error as that does.
 ExrImage ReadExr(const std::string& path);
 
 // Encodes linear RGB, rows from the top, as an 8-bit sRGB PNG: 255 times the transfer curve,

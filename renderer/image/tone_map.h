@@ -9,7 +9,7 @@ enum class ToneMap { None, Filmic };
 
 // Applies the curve of J. Hable ("Filmic Tonemapping Operators", 2010; from Uncharted 2) to a
 // linear component: toe and shoulder of film, with his constants, an exposure bias of 2 and a
-// linear white of 11.2, which becomes 1. At least 0; NaN and what is negative become 0.
+// linear white of 11.2, which becomes 1. At least 0; NaN and negative values become 0.
 inline float FilmicToneMap(float linear) {
     const auto curve = [](double x) {
         constexpr double A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30;

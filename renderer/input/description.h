@@ -141,7 +141,7 @@ struct InstanceEntity {
 struct TransformPair {
     std::array<Mat4d, 2> at = {Mat4d::Identity(), Mat4d::Identity()};
 
-    // What differs only by rounding does not move.
+    // Differences within rounding are no motion.
     bool IsAnimated() const { return at[0].cast<float>() != at[1].cast<float>(); }
 };
 

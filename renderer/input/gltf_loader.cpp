@@ -33,8 +33,8 @@ struct PosedMesh {
     }
 };
 
-// What a mesh becomes: shapes in its own space, or in the world if it has a skin, and, where
-// that is wanted, points on their outline.
+// Shapes of a mesh: in its own space, or in the world if it has a skin, and, on request, points on
+// their outline.
 struct MeshShapes {
     std::vector<ShapeEntity> shapes;
     std::vector<Vec3f> outline;
@@ -137,7 +137,7 @@ std::string NameOf(const GltfDocument& document, const Placement& placement) {
 }
 
 // Puts a mesh into the world: once as it is, more often, or where it moves, as instances of an
-// object. What emits is copied instead, since every light is a triangle of the world at rest.
+// object. Emitters are copied instead, since every light is a triangle of the world at rest.
 void AddShapes(const GltfDocument& document, MeshShapes mesh,
                const std::vector<Placement>& placements, Description* description,
                Warnings& warnings) {
@@ -150,7 +150,7 @@ void AddShapes(const GltfDocument& document, MeshShapes mesh,
             object.shapes.push_back(std::move(shape));
             continue;
         }
-        if (moves) warnings.Add(shape.loc, "what emits light is not blurred by its motion");
+        if (moves) warnings.Add(shape.loc, "moving emitters have no motion blur");
         for (size_t i = 0; i < placements.size(); ++i) {
             ShapeEntity copy = i + 1 < placements.size() ? shape : std::move(shape);
             copy.worldFromObject = placements[i].worldFromMesh;

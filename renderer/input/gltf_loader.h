@@ -33,7 +33,7 @@ struct GltfOptions {
 };
 
 // Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, for
-// whatever is wrong, or required but not supported; what is unsupported but optional leads to
+// anything wrong, or required but not supported; unsupported optional features lead to
 // warnings.
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings);
 

@@ -13,7 +13,7 @@ namespace lull {
 // in any order and type; of "face" the list vertex_indices (or vertex_index) and face_indices.
 // Quads 0123 become 012 and 023. Faces with other counts are skipped and normals or uvs that are
 // not finite become 0, each with a counted warning. `loc` is named for a file that cannot be read;
-// all other errors name the PLY file. Throws Error at what is malformed or truncated, vertices that
+// all other errors name the PLY file. Throws Error for malformed or truncated files, vertices that
 // are not finite, indices out of range, and files without vertices or faces.
 MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc = {});
 

@@ -11,8 +11,8 @@ namespace lull {
 void SetExposure(double stops, Description* description);
 
 // Surrounds the scene by an image of the radiance from all directions, in latitude-longitude form,
-// instead of what surrounded it. The image's top is turned to glTF's up, or to the axis of the
-// scene that is nearest to the camera's up; `rotation` turns it around that axis, in degrees,
+// in place of its environment. The image's top is turned to glTF's up, or to the axis of the scene
+// that is nearest to the camera's up; `rotation` turns it around that axis, in degrees,
 // counterclockwise as seen from the top. `file` is relative to the current directory.
 void SetEnvironment(const std::string& file, double rotation, Description* description);
 

@@ -33,7 +33,7 @@ std::vector<std::byte> Pack(const T& what) {
     return std::move(writer.bytes);
 }
 
-// Returns what has arrived, and from whom; nothing if there is nothing of that kind.
+// Returns the next value of this type and its sender; nothing if none has arrived.
 template <typename T>
 std::optional<std::pair<int, T>> Receive(Peers* peers) {
     while (const std::optional<PeerMessage> message = peers->Receive()) {

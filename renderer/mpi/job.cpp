@@ -19,7 +19,7 @@ namespace {
 // Seconds that ranks are waited for.
 constexpr double kLeastPatience = 5, kMostPatience = 60;
 
-// Returns how many processes mpirun or srun has started, from what they tell each.
+// Returns the number of processes that mpirun or srun has started, from their variables.
 int LaunchedProcesses() {
     for (const char* name :
          {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS"})
@@ -67,7 +67,7 @@ Job::Job() {
     Silence(2);
 }
 
-// What was left already is not waited for again.
+// A rank that has left is not waited for again.
 Job::~Job() {
     peers.reset();
     EndMpi(kLeastPatience);
@@ -100,7 +100,7 @@ void Job::Begin(const std::string& what) {
     }
     throw Error(
         fmt::format("rank {} is about to render something else: the version of lull, the "
-                    "scene and what it refers to have to be the same everywhere",
+                    "scene and its files have to be the same everywhere",
                     all.different));
 }
 

@@ -24,15 +24,15 @@ class Job {
 
     int Rank() const { return rank; }
     int Count() const { return count; }
-    // Returns what talks to the others; null if there are none.
+    // Returns the connection to the other ranks; null if there are none.
     Peers* ThePeers() { return peers.get(); }
 
     // Waits until all ranks are ready to begin, and checks that all are about to render the same
-    // thing, which `what` describes completely. Who has given no sign of life for longer than rank
-    // 0 was busy before, and a minute, is not waited for: it may still join. Throws Error, or
+    // thing, which `what` describes completely. A rank that has been silent for longer than rank 0
+    // was busy before, and a minute, is not waited for: it may still join. Throws Error, or
     // OtherRankFailed.
     void Begin(const std::string& what);
-    // Has a tenth of what the clock says to be left, but at least five seconds, be that minute.
+    // Replaces that minute by a tenth of the time left by the clock, but at least five seconds.
     void SetClock(std::function<double()> secondsLeft) { clock = std::move(secondsLeft); }
     // Declares that the others are not needed until the next Begin().
     void End();

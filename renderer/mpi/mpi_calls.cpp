@@ -32,7 +32,7 @@ bool WaitFor(MPI_Request request, double patience = INFINITY) {
     }
 }
 
-// What is sent stays here until it has left.
+// Messages stay here until they have been sent.
 class MpiPeers final : public Peers {
   public:
     MpiPeers() {
@@ -74,7 +74,7 @@ class MpiPeers final : public Peers {
         return message;
     }
 
-    // What a rank given up has not taken has to stay where it is.
+    // A message that a rank given up has not taken must stay where it is.
     void Flush() override {
         std::erase_if(sent, [&](Sent& entry) {
             if (!givenUp.contains(entry.to)) WaitFor(entry.request);

@@ -3,7 +3,7 @@
 
 const isNumber = v => typeof v === "number" && isFinite(v);
 
-// Formats with about `digits` significant digits; "-" for what is not known.
+// Formats with about `digits` significant digits; "-" for unknown values.
 function show(v, digits = 4) {
   if (!isNumber(v)) return "\u2013";
   if (v === 0 || (Math.abs(v) >= 1e-3 && Math.abs(v) < 1e6)) return String(+v.toPrecision(digits));
@@ -51,7 +51,7 @@ function viridis(t) {
   const c = viridisTable[i].map((v, k) => Math.round(v + (x - i) * (viridisTable[i + 1][k] - v)));
   return `rgb(${c.join(",")})`;
 }
-// Blue by white to orange, for what can be less or more.
+// Blue by white to orange, for values with a sign.
 function diverging(t) {
   const x = Math.min(1, Math.max(0, t)) * 2 - 1, end = x < 0 ? [58, 134, 200] : [224, 130, 40];
   return `rgb(${end.map(v => Math.round(247 + Math.abs(x) * (v - 247))).join(",")})`;

@@ -203,7 +203,7 @@ function startViewer(data) {
     view.b = data.images.filter(i => i.src).length - 1;
   }
   const second = makeChoice("and", pictures, view.b, v => { view.b = +v; update(); });
-  const over = makeChoice("Over it", overlays, view.overlay, v => { view.overlay = v; update(); });
+  const over = makeChoice("Overlay", overlays, view.overlay, v => { view.overlay = v; update(); });
   const showSecond = () => { second.hidden = view.mode === "one"; };
   const setMode = mode => {
     view.mode = mode;

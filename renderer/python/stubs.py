@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the types of the functions that run commands from what the program says of itself.
+"""Writes the types of the functions that run commands, from the help of the program.
 
 stubs.py LULL FILE: reads `LULL COMMAND --help-all` and writes FILE, commands.pyi of the module `lull`.
 """
@@ -46,7 +46,7 @@ FUNCTIONS = {"render": ("scene: Path, *, progress: Progress = None", "Rendering"
 
 
 def type_of(option):
-    """Returns how Python writes what an option takes."""
+    """Returns the Python type of an option."""
     if option.value is None:
         return "bool"
     name = option.value.partition(":")[0].partition("=")[0]

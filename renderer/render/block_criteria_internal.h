@@ -26,7 +26,7 @@ class BlockCriteria {
 
     // Returns the inputs of criterion and clock for a block.
     ViewNeed NeedAt(int block, int spp) const;
-    // Checks a block whose pass has come to `spp`, and whose samples took so many seconds so far.
+    // Checks a block whose pass has come to `spp`, and whose samples took `seconds` so far.
     // `complete`, if any, fills in the pixels of the view that other ranks have rendered.
     BlockCheck Check(int index, const Block&, int spp, double seconds,
                      const std::function<void(int block, FilmView*)>& complete);

@@ -21,7 +21,7 @@ constexpr std::string_view kFormat = "lull checkpoint 2", kOlderFormat = "lull c
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
-// Packs the block's books: where it is, what it cost, and what its criterion said.
+// Packs the block's state: its samples, its cost, and its criterion's decision.
 std::vector<std::byte> PackBooks(const BlockResult& result) {
     StateWriter writer;
     const PixelRect& r = result.block.pixels;

@@ -14,8 +14,8 @@ namespace lull {
 void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
                      const Film&, const Layers& = {}, std::span<const std::byte> guide = {});
 
-// Settings that may differ from those of the checkpoint: none, or those that decide when blocks
-// stop, which is the rule, with its model, and the cap.
+// Settings that may differ from the checkpoint's: none, or the settings that decide when blocks
+// stop, which are the rule, with its model, and the cap.
 enum class MayDiffer { Nothing, Stops };
 
 // Fills the film, which has no samples yet, and the layers, and returns the state; `guide`, if
@@ -23,7 +23,7 @@ enum class MayDiffer { Nothing, Stops };
 // other way round. Throws Error if the file cannot be read, is damaged, or was written by another
 // render: the message names the difference.
 //
-// With a larger cap blocks that were at the cap go on. With another rule all do; the state then has
+// With a larger cap blocks at the old cap continue. With another rule all do; the state then has
 // neither criteria nor decisions: each starts again, at the sample count of its block.
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity&, Film*,
                            const Layers& = {}, std::vector<std::byte>* guide = nullptr,

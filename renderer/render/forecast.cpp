@@ -34,7 +34,7 @@ T MedianOf(std::vector<T>* values) {
     return *middle;
 }
 
-// Bounds a slope to what there can be; probabilities fall as fast as a network likes.
+// Bounds a slope to the plausible; probabilities fall as fast as a network likes.
 double Bounded(const StopTrend& trend, double slope) {
     return trend.IsOfOdds() ? std::clamp(slope, -40.0, -0.2) : std::clamp(slope, -2.0, -0.1);
 }
@@ -79,7 +79,7 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
         if (usualSlope == 0) return {stop, true};
         const double own = line.slope == 0 ? 0 : line.points / (line.points + kPointsOfOthers);
         double slope = Bounded(trend, std::lerp(usualSlope, line.slope, own));
-        // On the way to it: the mean of what was seen and what will be in the end.
+        // Before the asymptote: the mean of the observed slope and the final one.
         if (trend.Rule().saturates) slope = (slope - 0.5) / 2;
         stop = trend.SppAt(trend.Abscissa(stop) +
                            std::min(std::min(line.level, certain) / -slope, 50.0));

@@ -19,10 +19,10 @@ class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
-    // Adds a decision of the criterion at `spp` > 0, which increases.
-    // `variance` is what the criterion was told (BlockView); once it is another, what went before
-    // is forgotten. `noise` is Criterion::NoiseTold(): where that is followed, a decision without
-    // it (one from a checkpoint) says nothing.
+    // Adds a decision of the criterion at `spp` > 0, which increases. `variance` is that of the
+    // BlockView; a change of it discards all earlier decisions. `noise` is
+    // Criterion::NoiseTold(): for a rule that has it, a decision without it (one from a
+    // checkpoint) is ignored.
     void Add(int spp, const Decision& decision, double variance = 1,
              std::optional<double> noise = {});
 
@@ -41,8 +41,8 @@ class StopTrend {
     // Returns whether a level is of odds, which fall as fast as a network likes.
     bool IsOfOdds() const { return rule.kind == RuleTrend::Probability && rule.undecided == 0; }
 
-    // Converts spp to that over which levels are straight lines, and back: -log(1/spp - 1/N) for a
-    // rule that compares with a picture at N spp, else log(spp).
+    // Converts spp to the abscissa over which levels are straight lines, and back: -log(1/spp -
+    // 1/N) for a rule that compares with a picture at N spp, else log(spp).
     double Abscissa(double spp) const;
     double SppAt(double abscissa) const;
 
@@ -69,9 +69,9 @@ class StopTrend {
 };
 
 // Returns the spp at which each block stops: its own where it has stopped, a predicted one between
-// its spp and the cap where it has not, that of its leader where it does not vote. Blocks of which
-// nothing can be told go as far as the others in the median, at the least; nothing is returned if
-// none can. `trends` are those of the blocks.
+// its spp and the cap where it has not, its leader's where it does not vote. Blocks without a
+// prediction take at least the median of the others; nothing is returned if there is none at all.
+// `trends` has one for each block.
 //
 // The error of a Monte Carlo estimate falls as a power of the samples, with the exponent -1/2 if
 // they are independent: in logarithms a line. It is fitted by the median of the slopes between any

@@ -31,7 +31,7 @@ constexpr double kLeafVertices = 4000;
 constexpr int64_t kPathsOfRound = 1 << 20;
 constexpr int kShortest = 4, kLongest = 16, kLeadOfAuto = 16, kFirstDecision = 3, kLastDecision = 7;
 
-// What a vertex costs with a guide over without (renderer/docs/guiding.md).
+// Cost of a vertex, guided / unguided (renderer/docs/guiding.md).
 constexpr double kVertexCost = 1.2;
 
 // Cells that the first round has to record in.
@@ -45,7 +45,7 @@ double MeanLuminance(const Film& film) {
     return sum / double(std::max<int64_t>(1, film.Region().Area()));
 }
 
-// Adds what goes by until the end of its scope.
+// Adds the time until the end of its scope.
 class Stopwatch {
   public:
     explicit Stopwatch(double* seconds) : seconds(seconds) {}
@@ -160,13 +160,13 @@ bool GuideLearner::Decide(const Film& film) {
 
 bool GuideLearner::Learn(const Film& film) {
     if (IsTrial() && learning.round >= kFirstDecision && !Decide(film))
-        return Finish(false, "variance times work is not surely below what it is without");
+        return Finish(false, "variance times work is not significantly below that without guiding");
     GuideFigures& figures = learning.figures;
     const bool isUsed = options.mode == GuideMode::On || learning.decided > 0;
     const int most = options.isShort ? kMostWithClock : kMost;
     const bool isLast = isUsed && (learning.paths >= kPathsEnough || figures.samples >= most);
-    // The old state and the new are there at the same time. What shares of guided paths would have
-    // been worth is known of a guide that has been used.
+    // The old state and the new exist at the same time. The best fraction of guided paths is known
+    // only for a guide that has been used.
     const double millions = double(learning.paths) / double(1 << 20);
     const RefineOptions refine{.leafVertices = kLeafVertices * std::sqrt(std::max(1., millions)),
                                .maxBytes = (size_t(options.megabytes) << 20) / 2,
@@ -180,8 +180,8 @@ bool GuideLearner::Learn(const Film& film) {
     figures.bytes = int64_t(guide.Bytes());
     figures.leaves = int(guide.leaves.size());
     figures.why = options.mode == GuideMode::On ? "as asked for"
-                  : isUsed                      ? "variance times work is below what it is without"
-                                                : "too few samples to decide";
+                  : isUsed ? "variance times work is below that without guiding"
+                           : "too few samples to decide";
     return !isLast || Finish(true, figures.why);
 }
 

@@ -1,17 +1,17 @@
 // Learns where light comes from, from the image's own samples.
 //
-// A render is cut into rounds. No block begins a pass of the next round before all that go on have
-// come to the end of this one; then, with no thread at work, what the round has recorded becomes
-// the next guide. So sample k of a pixel is a function of seed, pixel, index and what was learned
-// from samples before k, and, given that, has the mean it always has: every sample counts, and the
-// mean of all of them stays what it is. A guide depends on which blocks had stopped at the ends of
+// A render is cut into rounds. No block begins a pass of the next round before all active blocks
+// have completed this one; then, with no thread at work, the record of the round becomes the next
+// guide. So sample k of a pixel is a function of seed, pixel, index and the guide learned from
+// samples before k, and its expectation, given these, is unchanged: every sample counts, and the
+// mean of all of them stays unbiased. A guide depends on which blocks had stopped at the ends of
 // rounds, and on nothing else: blocks stop by their own samples, and sums are integers.
 //
 // `on` records from 4 spp on, in rounds of 4, 8, 16, ... spp, the first of them without a guide.
-// `auto` begins late, so that what stops early does not pay for it, with short rounds: one without
-// a guide, the others with. It goes on with the guide as soon as a round was surely enough less
-// noisy than the first for what it cost in vertices, and without it once that is surely not so, or
-// not known after a few.
+// `auto` begins late, so that blocks that stop early do not pay for it, with short rounds: one
+// without a guide, the others with. It keeps the guide once a round had significantly less
+// variance, times its vertices, than the first, and drops it once that is significantly not so, or
+// undecided after a few rounds.
 #pragma once
 
 #include <optional>
@@ -60,7 +60,7 @@ struct LearningOptions {
     bool isShort = false;
 };
 
-// All that is needed to go on learning, to the same bits.
+// All that is needed to continue learning, to the same bits.
 struct Learning {
     int round = 0;        // 0: nothing was recorded yet
     int decided = 0;      // of auto: the round after which it was known that guides pay; 0: none
@@ -71,7 +71,7 @@ struct Learning {
     GuideState state;     // empty while nothing is recorded
     Guide guide;          // when learning is done and it is to be used
     GuideTally tally;     // of auto, until it has decided
-    std::vector<TileNoise> noise;  // what the tally then said, where guides pay
+    std::vector<TileNoise> noise;  // of the tally then, where guides pay
     GuideFigures figures;
 
     bool IsDone() const { return end == kNoRoundEnd; }
@@ -83,7 +83,7 @@ std::optional<std::string> WhyNotGuided(const Scene&, Estimator);
 // Returns a summary of learning, in one line.
 std::string TextOf(const GuideFigures&, GuideMode);
 
-// Learns in the course of a render (RenderOptions::learner), and says how its paths are traced.
+// Learns in the course of a render (RenderOptions::learner), and has the options of its paths.
 class GuideLearner {
   public:
     // The scene, of which WhyNotGuided() says nothing, must outlive it.
@@ -91,25 +91,25 @@ class GuideLearner {
     GuideLearner(const GuideLearner&) = delete;
     GuideLearner& operator=(const GuideLearner&) = delete;
 
-    // Return how paths of this round are traced, and the spp at which it ends: no block goes beyond
+    // Return the options of this round's paths, and the spp at which it ends: no block goes beyond
     // it before EndRound(). kNoRoundEnd: there are no more rounds.
     const PathOptions& Paths() const { return paths; }
     int RoundEnd() const { return learning.end; }
     bool IsDone() const { return learning.IsDone(); }
 
-    // Returns the variance of a sample in a part of the film, as things are now, over that without
-    // a guide, see VarianceOf(); 1 where that is not known, as with `on`.
+    // Returns the present variance of a sample in a part of the film over that without a guide, see
+    // VarianceOf(); 1 where that is not known, as with `on`.
     double Variance(const Film&, const PixelRect& part) const;
 
-    // Returns where the samples of this round are to be counted, by tiles of the film; null: nobody
-    // wants to know. Has to be asked once a pass, with no thread at work in that tile.
+    // Returns the counters of this round's samples, by tiles of the film; null: none are needed.
+    // Has to be asked once a pass, with no thread at work in that tile.
     SampleSpread* SpreadOf(const Film&, const PixelRect& tile);
     // With no thread at work: learns from the round, and begins the next.
     void EndRound(const Film&);
 
     const GuideFigures& Figures() const { return learning.figures; }
-    // Return and take up what has been learned, for a film with as many tiles. Take() throws
-    // std::runtime_error for what Save() has not made.
+    // Return and restore the state of learning, for a film with as many tiles. Take() throws
+    // std::runtime_error for bytes that are not of Save().
     std::vector<std::byte> Save() const;
     void Take(std::span<const std::byte>, const Film&);
 

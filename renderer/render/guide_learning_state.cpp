@@ -38,7 +38,7 @@ void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
     }
 }
 
-// Finds what would take a walk through the trees out of bounds.
+// Finds indices that would take a walk through the trees out of bounds.
 void CheckGuide(const Guide& guide) {
     if (guide.nodes.empty()) {
         if (!guide.leaves.empty() || !guide.quads.empty()) Refuse();

@@ -12,8 +12,8 @@ namespace lull {
 // Packs all of it, with the layout of the machine it runs on.
 std::vector<std::byte> SaveLearning(const Learning&);
 
-// Throws std::runtime_error if the bytes are not what SaveLearning() makes: trees that lead
-// nowhere, or in circles, are found.
+// Restores the result of SaveLearning(). Throws std::runtime_error if the bytes are not of that:
+// trees that lead nowhere, or in circles, are found.
 Learning RestoreLearning(std::span<const std::byte>);
 
 }  // namespace lull

@@ -12,7 +12,7 @@ namespace lull {
 struct SampleSpread {
     double squares = 0;    // of luminance, about the means of its pixels
     int64_t freedom = 0;   // how many of these are independent
-    int64_t vertices = 0;  // of paths, beside the camera
+    int64_t vertices = 0;  // of paths, without the camera
     int64_t samples = 0;
 };
 
@@ -40,9 +40,9 @@ struct GuideTally {
     GuideComparison Compare(std::span<const TileNoise> noise) const;
 };
 
-// Returns the variance of guided samples over that of unguided ones in a part of the film, whose
-// tiles are `noise`, and its standard error on top: in (0, 1], and 1 where fewer than kTilesEnough
-// say so.
+// Returns the variance of guided samples over that of unguided ones in a part of the film, with the
+// tiles `noise`, plus its standard error: in (0, 1], and 1 where fewer than kTilesEnough tiles have
+// an estimate.
 double VarianceOf(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
 inline constexpr int kTilesEnough = 8;
 

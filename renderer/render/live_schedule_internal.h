@@ -1,5 +1,5 @@
-// A schedule that threads share, with what belongs to its passes: a clock that can end them, what
-// their pixels were before, and a viewer that is shown where blocks have stopped.
+// A schedule that threads share, with the state of its passes: a clock that can end them, earlier
+// values of their pixels, and a viewer that shows where blocks have stopped.
 #pragma once
 
 #include <mutex>
@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// How a block goes on after a pass.
+// Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = kUnknownNoise;
@@ -49,14 +49,14 @@ class LiveSchedule {
         return look(static_cast<const Schedule&>(schedule));
     }
 
-    // With no task at work: begins anew where blocks are, so that passes under way are given out
-    // once more, of which pixels keep what they have; and puts back the samples of passes that the
-    // time did not suffice for. Undo() returns their blocks.
+    // With no task at work: restarts from the given state of blocks, so that passes under way are
+    // given out again, in which complete pixels keep their samples; and restores the samples before
+    // passes for which the time did not suffice. Undo() returns their blocks.
     void Restart(std::span<const BlockStart> starts, TileShare);
     std::vector<int> Undo();
 
-    // Shows the schedule without a lock: with no task at work, or what cannot change, which is
-    // where blocks are and, after the last tile of a pass and before the decision, that block.
+    // Return the schedule without a lock: with no task at work, or for constant parts: positions of
+    // blocks and, after the last tile of a pass and before the decision, that block.
     const Schedule& Unlocked() const { return schedule; }
     const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
     const TileShare& Share() const { return share; }
@@ -71,7 +71,7 @@ class LiveSchedule {
     TileShare share;
     const bool hasClock;
 
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards the members below
     Schedule schedule;
     PassUndo undo;  // for renders that have a clock
     bool timeCalled = false;

@@ -11,9 +11,9 @@
 //       asks the criterion when the parts    <-   Part: the means of its pixels; or before
 //       of all ranks are there                    it Pixels, their sums, where the rule looks
 //                                                 at more than means
-//       Answer: stop or go on                ->   begins the block's next pass
+//       Answer: stop or continue                ->   begins the block's next pass
 //
-// No rank waits for another block. To write a checkpoint, to deal out the tiles anew, or to end,
+// No rank waits for another block. To write a checkpoint, to reassign the tiles, or to end,
 // rank 0 says
 //
 //       Pause                                ->   finishes the tiles under way
@@ -25,11 +25,11 @@
 // With Start, tiles go to where there is time: the sums of those that have another owner are sent
 // to it, and it adds to them as the one before would have.
 //
-// While a guide is learned from the image's samples, rank 0 has all tiles; then it tells the others
-// what it knows by Guide, and deals the tiles out to all.
+// While a guide is learned from the image's samples, rank 0 has all tiles; then it sends its
+// state to the others by Guide, and deals the tiles out to all.
 //
-// Rank 0 asks those it hears nothing of for a sign of life. Who gives none for long is given up:
-// its tiles go to the others, who take its samples again from where rank 0 has its sums.
+// Rank 0 pings ranks that are silent. A rank that does not answer for long is given up: its tiles
+// go to the others, which repeat its samples from the sums that rank 0 has.
 #pragma once
 
 #include <cstddef>
@@ -49,11 +49,11 @@ class Peers {
     virtual ~Peers() = default;
     virtual int Rank() const = 0;   // 0 decides
     virtual int Count() const = 0;  // > 0
-    // Sends without waiting for anybody. What one rank sends to another arrives in this order.
+    // Sends without waiting. Messages from one rank to another arrive in order.
     virtual void Send(int to, std::vector<std::byte> message) = 0;
     // Returns the next message that has arrived; nothing if there is none.
     virtual std::optional<PeerMessage> Receive() = 0;
-    // Waits until all that was sent has left, but for what was sent to ranks given up.
+    // Waits until all messages have left, except those to ranks given up.
     virtual void Flush() = 0;
     // Nothing more is sent to this rank, and nothing waits for it any more.
     virtual void GiveUp(int rank) = 0;

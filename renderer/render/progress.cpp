@@ -13,8 +13,8 @@ namespace lull {
 namespace {
 
 struct TimeLeft {
-    // To all that there is to do, to the end as predicted, to that of blocks that all go to the
-    // cap, or to a time limit at which what is adaptive ends at the latest.
+    // The end of all work, the predicted end, the end of blocks that all go to the cap, or a time
+    // limit, at which adaptive renders end at the latest.
     enum class End { Work, Prediction, Cap, Limit };
 
     double seconds;
@@ -147,8 +147,8 @@ void ProgressPrinter::Print(const RenderProgress& p) {
     if (style == ProgressStyle::Json) {
         SayTo(stream, "{}\n", ProgressJson(state));
     } else if (style == ProgressStyle::Line) {
-        // Return to the start of the line and, at its end, erase what was there before. A line that
-        // is full would go on in the next.
+        // Return to the start of the line and, at its end, erase the earlier text. A line that is
+        // full would continue in the next.
         SayTo(stream, "\r{}\x1b[K", ProgressText(state, ColumnsOf(stream) - 1));
     } else {
         SayTo(stream, "{}\n", ProgressText(state));

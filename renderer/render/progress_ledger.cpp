@@ -8,7 +8,7 @@ namespace lull {
 
 namespace {
 
-// Follows the decisions so far. Of several ranks, none knows what all blocks have cost.
+// Follows the decisions so far. Of several ranks, none knows the costs of all blocks.
 std::vector<StopTrend> MakeTrends(const RenderOptions& options,
                                   const std::vector<BlockResult>& results) {
     if (!options.trend || !options.events.onProgress || options.peers) return {};
@@ -120,8 +120,8 @@ RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
     return progress;
 }
 
-// Predicts what is left. A sample of a block costs what its samples have cost so far, and the
-// seconds of processors go by as fast as they did.
+// Predicts the remaining time. A sample of a block costs as much as its samples so far, and CPU
+// time passes at the same rate.
 void ProgressLedger::Predict(const Schedule& schedule, RenderProgress* progress) const {
     const std::span<const Block> blocks = schedule.Blocks();
     const auto stops = PredictStops(trends, blocks, options.schedule.cap);

@@ -40,9 +40,9 @@ class ProgressLedger {
     // With no task at work, sets the samples to those that the film has after all.
     void SetSamples(int64_t);
 
-    // Tells onProgress how far the render is, if that is due, from one thread at a time.
+    // Calls onProgress, if that is due, from one thread at a time.
     void Report(LiveSchedule*);
-    // With no task at work, return what there is of each block, and the result so far.
+    // With no task at work, return the results of blocks, and of the render, so far.
     const std::vector<BlockResult>& Blocks(const Schedule&);
     RenderResult Result(const Schedule&);
 
@@ -57,8 +57,8 @@ class ProgressLedger {
     const Clock::time_point start = Clock::now();
     const double secondsBefore;  // of the runs before this one
 
-    // Guards what follows, but for criteria's seconds and decisions in `results`, which one thread
-    // at a time has to do with.
+    // Guards the members below, except for criteria's seconds and decisions in `results`, which
+    // belong to one thread at a time.
     std::mutex mutex;
     std::vector<BlockResult> results;
     std::vector<StopTrend> trends;  // of the blocks; empty: nothing is predicted

@@ -21,7 +21,7 @@ struct Provenance {
     uint64_t seed = 0;
     SamplerKind sampler = SamplerKind::Sobol;
     Estimator estimator = Estimator::Combined;
-    std::string criterion, checksum;  // the stopping rule and that of its file, if any
+    std::string criterion, checksum;  // the stopping rule; of its file, if any
     std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
     RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
@@ -37,8 +37,8 @@ struct Provenance {
     GuideFigures guideFigures = {};  // of learning; not part of the identity
 };
 
-// Names a scene in thresholds files: the file without folder and extension, or the folder where
-// the file is called scene.pbrt. Not empty, without what the format has no room for.
+// Names a scene in thresholds files: the file without folder and extension, or the folder where the
+// file is called scene.pbrt. Not empty, without characters that the format reserves.
 std::string SceneName(const std::string& file);
 
 // A part of the provenance, by its name in each of the places that tell it; null: not told there.
@@ -49,15 +49,15 @@ struct NamedProvenance {
     std::variant<bool, int, uint64_t, std::string, Vec2i, PixelRect> value;
 };
 
-// Returns all parts, in the order of reports: the one list of what is told of an image beside its
-// results. Not in it: the hash of the scene, and of guides what came of them.
+// Returns all parts, in the order of reports: the only list of properties stated of an image
+// besides its results. Without the hash of the scene, and the results of guides.
 std::vector<NamedProvenance> PartsOf(const Provenance&);
 
 // Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".
 std::string TextOf(const NamedProvenance&);
 
-// Settings that decide the pixels and the inputs of criteria, beside the samples: scene, seed,
-// rule, ... A render goes on only if all of it is the same.
+// Settings that decide the pixels and the inputs of criteria, besides the samples: scene, seed,
+// rule, ... A render continues only if all of it is the same.
 using RenderIdentity = std::map<std::string, std::string>;
 
 // Returns the parts that have a name there, and the hash of the scene (SceneHash()).

@@ -28,11 +28,11 @@ struct BlockResult {
     std::vector<DecisionRecord> decisions;  // those for which the block was checked
 };
 
-// With the film, all that is needed to go on with a render: the pixels will be the
+// With the film, all that is needed to continue a render: the pixels will be the
 // same bits as without the interruption. A pass may be under way, for some of its pixels.
 struct RenderState {
     std::vector<BlockResult> blocks;
-    // Of each block, as Criterion::Save() has it; empty: all begin anew.
+    // Of each block, as Criterion::Save() has it; empty: all begin again.
     std::vector<std::vector<std::byte>> criteria;
     double seconds = 0;  // since the start of the first run
 };
@@ -46,15 +46,15 @@ struct RenderOptions {
     uint64_t seed = 0;
     int threads = 0;  // 0: all
 
-    // Makes each block's own stopping criterion; empty: all go on to the cap.
+    // Makes each block's own stopping criterion; empty: all continue to the cap.
     std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
     // How the numbers in their decisions go, from which progress predicts the end; nothing: it does
     // not.
     std::optional<RuleTrend> trend;
-    // Is asked before every tile; true ends the render after the tiles under way. Can be empty.
+    // Called before every tile; true ends the render after the tiles under way. Can be empty.
     std::function<bool()> isCancelled;
     RenderEvents events;
-    // Is shown every tile when it has been rendered, and every block that stops. Null: none.
+    // Receives every tile when it has been rendered, and every block that stops. Null: none.
     Display* display = nullptr;
 
     // The processes that share the work, each with the same scene and options (peers.h). Null: this
@@ -84,8 +84,8 @@ using SampleSource =
 
 // Saves the state of a render, to resume it after an interruption.
 struct Checkpointing {
-    // Is shown the state, with no thread at work, every `interval` seconds and when the render is
-    // cancelled. Can be empty.
+    // Called with the state, with no thread at work, every `interval` seconds and when the render
+    // is cancelled. Can be empty.
     std::function<void(const RenderState&)> write = {};
     double interval = 60;
     bool atEnd = false;  // also when every block has stopped
@@ -100,23 +100,23 @@ struct RenderContext {
     // Where an interrupted render left film, layers and state; null: from the start. A block whose
     // `stopped` is set in a state without samples is left out.
     const RenderState* interrupted = nullptr;
-    // Learns from the samples, in rounds, of which the source heeds what it has learned
-    // (guide_learning.h). Null: nothing is learned.
+    // Learns from the samples, in rounds; the source samples by its guide (guide_learning.h). Null:
+    // nothing is learned.
     GuideLearner* learner = nullptr;
-    // A clock: returns the seconds that are left, and is asked before every tile. Can be empty.
+    // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
     // given the next pass. Then the render ends after the tiles under way: passes that are not
-    // complete by then are undone, but the first of each block is always completed. What criteria
-    // say of a block does not depend on the clock.
+    // complete by then are undone, but the first of each block is always completed. Decisions of
+    // criteria do not depend on the clock.
     std::function<double()> secondsLeft = {};
     Checkpointing checkpoints = {};
 };
 
-// Renders the film's region. The pixels are the same bits for any number of threads and ranks and,
-// at equal samples per pixel, for any size of blocks and length of passes. A clock decides how many
-// samples blocks get that have not stopped, and nothing else. Passes on what criteria and callbacks
-// throw; throws std::invalid_argument for layers of another region, and for a display on several
-// ranks.
+// Renders the film's region. The pixels are the same bits for any number of threads and ranks
+// and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
+// nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
+// callbacks; throws std::invalid_argument for layers of another region, and for a display on
+// several ranks.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the

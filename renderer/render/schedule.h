@@ -1,5 +1,5 @@
 // Decides which samples are taken next. Pure book-keeping, without threads or pixels: render.cpp
-// carries out what is decided here.
+// executes the decisions.
 #pragma once
 
 #include <limits>
@@ -24,11 +24,11 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (block_grid.h)
-    // For renders that somebody looks at while they go on: the first pass is taken in steps of 1,
+    // For renders that are viewed in progress: the first pass is taken in steps of 1,
     // 2, 4, ... spp.
     bool inSteps = false;
-    // For renders that have a clock: the next pass is that of the block with the most visible
-    // noise, so that at any moment the worst block is as good as it can be, after a first pass in
+    // For renders that have a clock: the next pass is that of the block with the most
+    // visible noise, which minimises the largest noise at any moment, after a first pass in
     // steps.
     bool worstFirst = false;
     // Samples per pixel that no block exceeds before the next round has begun.
@@ -47,7 +47,7 @@ inline TileGrid GridOf(const ScheduleOptions& options) {
     return {options.blockSize, options.tileSize};
 }
 
-// The noise of a block of which nobody knows it: more than that of any other.
+// Noise not yet estimated; compares above any estimate.
 inline constexpr double kUnknownNoise = std::numeric_limits<double>::infinity();
 
 struct Block {
@@ -100,18 +100,18 @@ struct Tile {
 // Cuts a region into blocks, row by row.
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 
-// Knows how far every block is. Blocks are independent of each other: a block's next pass is
+// Tracks the passes of all blocks. Blocks are independent of each other: a block's next pass is
 // ready as soon as its last one has been decided on. Of the tiles that are ready, those of the
 // block with the fewest samples come first, so that an interrupted image is even; or, with
 // `worstFirst`, those of a pass that is under way, then those of the noisiest block. A block that
-// has less than a sixteenth of the samples of that one goes before it, whatever its noise, since
-// an estimate from few samples does not know of what is rare.
+// has less than a sixteenth of that block's samples goes before it, whatever its noise, since an
+// estimate from few samples misses rare, bright paths.
 //
 // A block too small to vote takes the passes that its leader has finished, and ends at the same
-// samples per pixel; so that depends on no order of execution either.
+// samples per pixel, which are thus independent of the order of execution too.
 class Schedule {
   public:
-    // `starts` is empty, or has as many as there are blocks: to go on where an earlier schedule
+    // `starts` is empty, or has as many as there are blocks: to continue an earlier schedule
     // was, or to leave blocks out.
     // Only tiles of the share are given out and waited for.
     Schedule(const PixelRect& region, const ScheduleOptions&,
@@ -136,8 +136,8 @@ class Schedule {
     // Notes that a tile has been rendered. Returns true if that was the last of its block's pass:
     // the block then has its new spp, and waits for Decide().
     bool Finish(const Tile&);
-    // Tells whether `block`, whose pass has just been finished, stops here, which is ignored for
-    // blocks that do not vote, and how much noise it shows. Makes the tiles of the next pass ready
+    // Decides whether `block`, whose pass has just been finished, stops here, which is ignored for
+    // blocks that do not vote; `noise` is its visible noise. Makes the tiles of the next pass ready
     // (its own and those of followers).
     void Decide(int block, bool stop, double noise = kUnknownNoise);
     // Gives out no more tiles, but those of passes that have to be finished: the first, or its

@@ -120,8 +120,8 @@ void Session::SetClock() {
 }
 
 void Session::SetSource() {
-    // A denoiser does best with what is seen in mirrors and through glass; layers, which are of the
-    // same hits, come first.
+    // A denoiser does best with features seen in mirrors and through glass; layers, which are of
+    // the same hits, take precedence.
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
     context.source =
@@ -138,8 +138,8 @@ void Session::KeepCheckpoints() {
                            options.checkpoint.interval, options.checkpoint.isKept};
 }
 
-// Warns of a checkpoint that could not be written, and returns of what; "" if it was. What `said`
-// holds is not said again: a disk stays full for more than one attempt.
+// Warns of a checkpoint that could not be written, and returns the warning; "" if it was. The
+// warning `said` is not repeated: a disk stays full for more than one attempt.
 std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
     WriteCheckpoint(options.checkpoint.file, options.identity, state, film, context.layers,
                     learner ? learner->Save() : std::vector<std::byte>());

@@ -1,5 +1,5 @@
-// Runs a render as a user asks for it: about Render() there are a film, layers, checkpoints, paths
-// that are guided, a clock, a viewer and other ranks. Messages go to callbacks.
+// Runs a render as a user configures it: Render() with its film, layers, checkpoints, path guiding,
+// clock, viewer and other ranks. Messages go to callbacks.
 //
 //     Session session(scene, region, options);
 //     session.Resume();
@@ -15,31 +15,31 @@ namespace lull {
 struct CheckpointOptions {
     std::string file;        // empty: none
     double interval = 60;    // seconds
-    bool resume = false;     // goes on from the file, if it is there
+    bool resume = false;     // continues from the file, if it exists
     bool isKept = false;     // also when every block has stopped
     bool isImplied = false;  // named by the command, which resumes without being told to
     MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
-// Returns the bytes a pixel that such layers, and features, take beside the film, with what is made
-// of them in the end.
+// Returns the bytes a pixel of such layers, and features, in addition to the film, with the
+// channels made of them in the end.
 int64_t BytesOfLayers(const AovSet& wanted, bool features);
 
 struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
-    AovSet aovs;            // layers beside the film
+    AovSet aovs;            // AOVs to collect
     bool features = false;  // inputs of the denoiser; the film has to keep its half buffer
     GuideOptions guide;
     CheckpointOptions checkpoint;
-    // What decides the pixels, for checkpoints and for ranks, which have to agree on it; the
-    // session adds its layers.
+    // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them;
+    // the session adds its layers.
     RenderIdentity identity;
-    // Returns the seconds until the files of the image have to be there. Can be empty.
+    // Returns the seconds until the files of the image are due. Can be empty.
     std::function<double()> clock;
-    // Waits until all ranks are about to render the same, of which `what` is a text that says it
-    // all. Can be empty.
+    // Waits until all ranks are about to render the same, which `what` describes completely. Can be
+    // empty.
     std::function<void(const std::string& what)> agree;
 };
 
@@ -55,8 +55,8 @@ class Session {
 
     // Restores the checkpoint, if it is to be resumed. Throws as ReadCheckpoint().
     void Resume();
-    // Before that: lets `show` look at the film and how far things are, every so many seconds, with
-    // no thread at work; called at all ranks, of which the first is shown.
+    // Before that: calls `show` with the film and the progress, every `seconds`, with no thread at
+    // work; called at all ranks, of which the first is shown.
     void Preview(double seconds, std::function<void(const RenderResult&)> show);
     // Renders, once. Of several ranks, the first has the image. Throws as Render() does.
     RenderResult Run(const RenderFunction& render = Render);
@@ -67,7 +67,7 @@ class Session {
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
     const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
     const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
-    // Frees them, once the render is done and nobody asks for them.
+    // Frees them, once the render is done, to free memory.
     void DropFeatures();
     // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;

@@ -1,5 +1,5 @@
-// Runs the tasks of a render: those of tiles, of which each does the same, and works that have to
-// be done beside them.
+// Runs the tasks of a render: identical tasks for tiles, and single works such as decisions on
+// blocks.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -14,11 +14,11 @@
 
 namespace lull {
 
-// The thread sanitizer sees the order that a mutex gives, but not that of what oneTBB hands over:
+// The thread sanitizer sees the order that a mutex gives, but not the order of tasks within oneTBB:
 // hence the first thing that a task reads is a TaskOrder.
 class TaskSet {
   public:
-    // What a task throws goes to `take`, or where that is empty to Wait().
+    // Exceptions of tasks go to `take`, or where that is empty to Wait().
     TaskSet(std::function<void()> doTile, std::function<void(std::exception_ptr)> take)
         : doTile(std::move(doTile)), take(std::move(take)) {}
 

@@ -1,4 +1,4 @@
-// Reads until when a render may take.
+// Parses durations and times of day, and estimates the time of the last steps.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ double ParseDuration(const std::string& text);
 // Throws std::invalid_argument for anything else.
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
-// Return the seconds to leave for the files of an image: twice what they take of a core that nobody
-// shares (renderer/docs/rendering.md); and for what denoises it on so many threads.
+// Return the seconds to leave for the files of an image: twice their CPU time on an idle core
+// (renderer/docs/rendering.md); and for its denoiser on `threads` threads.
 double SecondsToWrite(int64_t pixels);
 double SecondsToDenoise(int64_t pixels, int threads);
 

@@ -1,4 +1,4 @@
-// Writes where the blocks of a render have stopped: files beside its image.
+// Writes the stops of the blocks of a render: files next to its image.
 #pragma once
 
 #include "renderer/render/provenance.h"

@@ -10,11 +10,11 @@
 
 namespace lull {
 
-// Where a rule stopped a block, and at what cost, in seconds of processors.
+// Where a rule stopped a block, and at what cost, in CPU time.
 struct RuleStop {
     int spp = 0;             // 0: it has not
     double seconds = 0;      // that the samples took until then; 0 if it has not stopped
-    double ruleSeconds = 0;  // spent on the rule so far, and on what it was shown
+    double ruleSeconds = 0;  // spent on the rule and its views so far
 };
 
 // The pixels of a block, row by row.
@@ -43,7 +43,7 @@ struct ObserverOptions {
     bool goesOn = false;     // to the cap, rather than until all rules have stopped the block
 };
 
-// Runs several rules over one block; its own decisions are those of the first rule until that
+// Runs several rules over one block; its own decisions are the first rule's until that
 // stops.
 class BlockObserver final : public Criterion {
   public:

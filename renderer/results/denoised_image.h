@@ -30,7 +30,7 @@ inline constexpr const char* kDenoisedNote =
 // Returns channels R, G, B of a layer, "noisy." for instance, from the values of each pixel.
 std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb);
 
-// Returns the channels that an EXR has beside R, G, B that are denoised: noisy.R .G .B, the mean of
+// Returns the channels of an EXR besides the denoised R, G, B: noisy.R .G .B, the mean of
 // the samples (R, G, B of each pixel), and `error`.
 std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage&, std::span<const float> noisy);
 

@@ -51,7 +51,7 @@ void Copy(const ChannelsOf<kColours>& channels, Planes* to) {
     for (int c = 0; c < kColours; ++c) std::copy_n(channels[size_t(c)], to->Area(), to->Plane(c));
 }
 
-// Filters the features of an image, of which the last becomes what `disparityOf` makes of it.
+// Reads the features of an image; the last is converted by `disparityOf`.
 Planes ReadFeatures(
     const ExrImage& image, const ChannelsOf<kFeatures>& a, const ChannelsOf<kFeatures>& b,
     float (*disparityOf)(float) = [](float d) { return d; }) {

@@ -20,9 +20,9 @@ struct CollectedLayers {
     const MatteFilm* mattes;
 };
 
-// Returns the layers, and in the attributes "objectNames" and "materialNames", each a JSON object
-// of the numbers in the image and what they stand for: names where the scene has them, else kind,
-// file and line. Cryptomattes have the same names.
+// Returns the layers, and in the attributes "objectNames" and "materialNames", each a JSON object,
+// the name of every number in the image: as in the scene, else kind, file and line. Cryptomattes
+// have the same names.
 ExtraLayers MakeExtraLayers(const CollectedLayers&, const Film&, const Description&, const Scene&);
 
 }  // namespace lull

@@ -115,9 +115,9 @@ float ShareOfForeground(double mean, double background) {
     return mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
 }
 
-// Returns the rows without the light of samples that met nothing, multiplied by alpha therefore.
-// Denoised colours, of which no sample tells, are split as the mean of the samples is: what is left
-// is neither negative nor more than there was.
+// Returns the rows without the light of samples that hit nothing, premultiplied by alpha therefore.
+// Denoised colours, which no sample has, are split as the mean of the samples is: the rest is
+// neither negative nor more than the whole.
 RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& film,
                             const MatteFilm& mattes) {
     return [&, rows, isDenoised](int y, std::span<float> row) {

@@ -37,7 +37,7 @@ Json BlockJson(const BlockResult& result, int cap, bool timeUp,
     return json;
 }
 
-// Adds what was missing when the time was up; nobody knows that of blocks within their first pass.
+// Adds the shortfall at the deadline; it is unknown for blocks within their first pass.
 void AddShortfall(const Provenance& provenance, const RenderResult& result, Json* report) {
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     const auto unknown =

@@ -81,8 +81,8 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
     }
     if (const auto stops = PredictStops(trends, blocks, mostCap))
         for (CappedBlock& c : capped) {
-            // A prediction that is no more than what it has is of a block of which nothing is
-            // known.
+            // A prediction that is no more than its sample count is of a block without a
+            // trend.
             const int had = blocks[size_t(c.block)].spp;
             const double spp = std::ceil((*stops)[size_t(c.block)]);
             if (spp < mostCap && (spp > had || c.value <= c.threshold))

@@ -28,7 +28,7 @@ struct CappedBlock {
 };
 
 // Returns the blocks at the cap, the furthest from stopping first: none for a rule that counts
-// samples. What the rule compares is taken to go on as it went (forecast.h).
+// samples. The value of the rule is extrapolated (forecast.h).
 std::vector<CappedBlock> FindCapped(const RenderResult&, const RuleTrend&);
 
 // Returns a cap at which all of them have probably stopped, above the one they had, in round

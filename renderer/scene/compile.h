@@ -15,8 +15,8 @@ struct CompileOptions {
     int threads = 0;  // for the acceleration structure; 0: all
 };
 
-// Throws Error, with file and line, for what is wrong or not supported, and what parsing left in
-// `warnings`: for all of it, as Warnings::ThrowErrors() has it.
+// Throws Error, with file and line, for anything wrong or unsupported, and the errors that parsing
+// left in `warnings`: for all of it, as Warnings::ThrowErrors() has it.
 std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
 
 }  // namespace lull

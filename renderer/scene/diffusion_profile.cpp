@@ -13,8 +13,8 @@ constexpr int kDepths = 100;  // of the beam, by the exponential of its extincti
 
 double DepthOf(int sample) { return -std::log(1 - (sample + 0.5) / kDepths); }
 
-// What leaves at distance r after many scatterings: a dipole for each depth at which light may have
-// become diffuse (eq. 15.24 to 15.32). `sigmaS` + `sigmaA` is 1.
+// Radiant exitance at distance r after many scatterings: a dipole for each depth at which light may
+// have become diffuse (eq. 15.24 to 15.32). `sigmaS` + `sigmaA` is 1.
 double MultipleScattering(double sigmaS, double sigmaA, double g, double eta, double r) {
     const double reducedS = sigmaS * (1 - g), reducedT = sigmaA + reducedS;
     const double albedo = reducedS / reducedT;
@@ -38,7 +38,7 @@ double MultipleScattering(double sigmaS, double sigmaA, double g, double eta, do
     return sum / kDepths;
 }
 
-// What leaves at distance r after one scattering, at the depths from where it is not reflected
+// Radiant exitance at distance r after one scattering, at the depths from where it is not reflected
 // totally (15.5.4).
 double SingleScattering(double sigmaS, double g, double eta, double r) {
     const double least = r * std::sqrt(Sqr(eta) - 1);

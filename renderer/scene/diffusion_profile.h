@@ -47,8 +47,8 @@ class DiffusionProfile {
     Rgb sigmaT, albedo;
 };
 
-// Represents what Burley 2015, "Extending the Disney BRDF to a BSDF with Integrated Subsurface
-// Scattering", fits to measured and simulated profiles.
+// Represents the profile that Burley 2015, "Extending the Disney BRDF to a BSDF with Integrated
+// Subsurface Scattering", fits to measured and simulated ones.
 class BurleyProfile {
   public:
     // `albedo` is the integral of the profile, `distance` >= 0 the mean free path, both 1 per

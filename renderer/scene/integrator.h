@@ -30,7 +30,7 @@ int MaxDepth(const Integrator&);
 bool CanBeGuided(const Integrator&);
 
 // Reads a scene's directive, with a warning if it substitutes another kind.
-// `maxDepth`, unless negative, replaces that of the scene, which may be `isVolumetric`. Throws
+// `maxDepth`, unless negative, replaces the scene's, which may be `isVolumetric`. Throws
 // Error for bad parameters.
 Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, Warnings&);
 

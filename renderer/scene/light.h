@@ -6,7 +6,7 @@
 //     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const
 //         returns light that may arrive at `from`, nothing where none does;
 //     Rgb Power() const
-//         returns W; of lights without a place, what crosses the disk of the scene's radius;
+//         returns W; of lights without a place, the power across the disk of the scene's radius;
 //     std::optional<LightBounds> Bounds() const
 //         returns where it is and where it shines; nothing if it has no place,
 //

@@ -240,7 +240,7 @@ float LightHierarchy::Importance(const Node& node, const Receiver& receiver) {
         if (cosLeaving <= node.cosEmission / kUnit || cosLeaving <= 0) return 0;
     }
 
-    // What lies partly behind the receiver still gives something.
+    // Lights partly behind the receiver still contribute.
     constexpr float kLeast = 0.1f;
     const auto arriving = [&](float h, float r) { return std::max(h, kLeast * (h + r)); };
     // Powers and distances are kept apart from the ends of float: sums of two are finite.

@@ -108,8 +108,8 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
-// Reads what a mesh's emission varies by: "emission", multiplying L, looked up with the second
-// texture coordinates where "emissionuv" is 1, and what cuts holes into the mesh. Returns null
+// Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
+// texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
 // where neither is.
 std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
                                                    const TextureTable& textures) {

@@ -24,7 +24,7 @@
 namespace lull {
 namespace {
 
-// What a kind has to provide is in materials/material_inputs.h.
+// The functions of a kind are listed in materials/material_inputs.h.
 using MaterialKind =
     std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
                  Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface>;
@@ -62,7 +62,7 @@ struct Material {
     MaterialTraits traits;  // of the lobes
     SurfaceTilt tilt;
     bool isTilted = false;
-    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of what tilts
+    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
 
     // The lobes where they are constant, so that a hit costs no more than their copy.
     std::vector<Lobe> constantLobes{};
@@ -142,7 +142,7 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     return m;
 }
 
-// Makes the material of an entity; a matte one substitutes what cannot be rendered.
+// Makes the material of an entity; a matte one substitutes unsupported ones.
 Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name

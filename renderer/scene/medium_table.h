@@ -32,7 +32,7 @@ struct MediumTable {
     MediumTable(const Description&, Warnings&);
 
     // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;
-    // `current` is that of the ray that hit it.
+    // `current` is the medium of the ray that hit it.
     int Beyond(int shape, bool onNormalSide, int current) const {
         if (ofShapes.empty()) return current;
         const Sides& sides = ofShapes[shape];

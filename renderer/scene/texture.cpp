@@ -93,7 +93,7 @@ constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
     {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},
 };
 
-// Makes one texture, or what stands for one of a kind that is not supported.
+// Makes one texture, or a substitute for one of an unsupported kind.
 template <typename Node, size_t N>
 TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
                                         const TextureInput& input, Nodes<Node>* nodes) {

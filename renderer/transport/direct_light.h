@@ -39,7 +39,7 @@ template <typename Media, typename Vertex, typename Guiding>
                               ? Rgb(sight.share * context.scene.lights.Radiance(index, *light))
                               : sight.share;
         if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * share;
-        // What no ray can reach keeps pbrt-v3's weight, too.
+        // Light that no ray can reach keeps pbrt-v3's weight, too.
         const float evenly = PowerHeuristic(light->pdf, v.EvaluateEvenly(light->wi).pdf);
         return sight.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *

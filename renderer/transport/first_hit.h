@@ -1,4 +1,4 @@
-// The first hit of a path, for layers beside the image.
+// The first hit of a path, for AOVs.
 #pragma once
 
 #include "renderer/base/math.h"

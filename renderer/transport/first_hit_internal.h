@@ -13,33 +13,33 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
                                            : scene.shapes.worldShapeCount + found.instance);
 }
 
-// Stands where nobody asks, and in a recorder for what it does not need.
+// The default for all callbacks: records nothing.
 struct NoRecorder {
-    // Whether a path at its greatest depth has to go on for the recorder.
+    // Whether a path at its greatest depth has to continue for the recorder.
     static constexpr bool Wanted() { return false; }
-    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface of which the
-    // BSDF is not known yet, or is scattered by a medium at p, so far away. The path has found what
-    // is emitted there.
+    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
+    // not yet known, or is scattered by a medium at p, at this distance. The path has found the
+    // emission there.
     static void LeaveScene(const Path&) {}
     static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
     static void MeetMedium(const Path&, float, const Vec3f&) {}
     // It has come to a surface of this BSDF.
     static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
-    // It goes on; `isTransmission` says whether through the surface, or medium.
+    // It is scattered; `isTransmission`: through the surface, or medium.
     static void Scatter(const Path&, bool) {}
     static void End(const Path&) {}
 };
 
 class FirstHitRecorder : public NoRecorder {
   public:
-    // `direction` is that of the camera's ray at `time`.
+    // `direction` is of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
                      float time, FirstHit* hit)
         : scene(scene), options(options), direction(direction), time(time), hit(hit) {}
 
     bool Wanted() const { return !done; }
 
-    // What shines from there stands for the albedo.
+    // The environment's radiance stands for the albedo.
     void LeaveScene(const Path& path) {
         if (done) return;
         done = true;

@@ -35,8 +35,8 @@ class Guided {
     }
     void Enter(const MediumVertex& v) { LookUp(v.p, true); }
 
-    // Returns the density of sampling w where that of the BSDF, or phase function, alone is `pdf`.
-    // What these cannot sample is not sampled.
+    // Returns the density of sampling w, where `pdf` is that of the BSDF, or phase function, alone.
+    // Directions that these cannot sample are not sampled.
     float Pdf(float pdf, const Vec3f& w) const {
         if (fraction == 0 || !(pdf > 0)) return pdf;
         return fraction * guide.Pdf(leaf, w) + (1 - fraction) * pdf;
@@ -76,8 +76,8 @@ class Guided {
         return true;
     }
 
-    // Ends paths by what they would carry without a guide: directions with much light are sampled
-    // so often that each path there carries little.
+    // Ends paths by the throughput that they would have without a guide: directions with much light
+    // are sampled so often that each path there carries little.
     bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
         return lull::SurvivesRoulette(threshold, sampler, path, density);
     }
@@ -90,7 +90,7 @@ class Guided {
         }
     }
 
-    // Returns how many vertices the path had, beside the camera.
+    // Returns the number of vertices of the path, without the camera.
     int Vertices() const { return vertices; }
 
   private:

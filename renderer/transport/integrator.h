@@ -26,21 +26,21 @@ struct PathOptions {
     const Guide* guide = nullptr;
     GuideRecord* record = nullptr;  // of the guide; receives the vertices of paths; or null
     float usual = 1;                // the luminance that a path usually brings, > 0, for the record
-    // Lets the albedo of a FirstHit be that of what is seen times what mirrors and glass leave of
-    // it, and its depth go on by the way behind them, as if they were windows.
+    // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
+    // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;
 };
 
 struct PathSample {
     Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
     bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
-    int vertices = 0;  // that the path had beside the camera; counted of guided paths alone
+    int vertices = 0;  // of the path, without the camera; of guided paths alone
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,
-// index) alone, whatever the thread or the order. `firstHit`, if given, receives what the path has
-// met first; one that is at its greatest depth, or ends before it finds something, has found
-// nothing.
+// index) alone, whatever the thread or the order. `firstHit`, if given, receives the first hit
+// of the path; a path that is at its greatest depth, or ends before it finds something, has
+// none.
 PathSample RenderSample(const Scene&, const PathOptions&, Sampler&, const Vec2i& pixel,
                         uint32_t index, FirstHit* firstHit = nullptr);
 

@@ -1,5 +1,5 @@
-// How a sample starts and ends whatever the integrator, and what each kind of Integrator is asked
-// for in between.
+// Start and end of a sample, the same for all integrators, and the function of each kind of
+// Integrator in between.
 #pragma once
 
 #include "renderer/base/color.h"
@@ -27,7 +27,7 @@ struct SampleStart {
     return start;
 }
 
-// Refuses what is no radiance, limits it, and applies the weights.
+// Rejects invalid radiance, limits it, and applies the weights.
 [[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
                                                   PathSample sample) {
     Rgb& L = sample.radiance;
@@ -39,7 +39,7 @@ struct SampleStart {
 }
 
 // Return an estimate of the radiance along the camera's ray, without these weights. `firstHit` is
-// null, or gets all of a FirstHit but what it says of the sample itself.
+// null, or gets all of a FirstHit except the data of the sample itself.
 PathSample Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
               FirstHit* firstHit);
 

@@ -16,8 +16,8 @@ struct PathStep {
     Vec3f position = Vec3f::Zero();     // world; for the sky, the ray's direction
     Vec3f normal = Vec3f::Zero();       // surfaces: geometric, unit
     uint32_t object = 0, material = 0;  // numbers as in FirstHit
-    Rgb throughput = Rgb::Ones();       // of the path that arrives: what light from here counts
-    Rgb emitted = Rgb::Zero();          // counted here of what shines at the camera
+    Rgb throughput = Rgb::Ones();       // of the path that arrives here
+    Rgb emitted = Rgb::Zero();          // radiance emitted here, weighted by throughput
     Rgb direct = Rgb::Zero();           // of light that arrives here directly, counted
     bool goesOn = false;                // the path was scattered; then:
     Vec3f direction = Vec3f::Zero();    // unit, world

@@ -3,7 +3,7 @@
 namespace lull {
 namespace {
 
-// Follows a ray through interfaces and adds up what its media leave of the light.
+// Follows a ray through interfaces and multiplies the transmittances of their media.
 class Beam {
   public:
     Beam(const PathContext<Media>& context, const Ray& ray, int medium)

@@ -65,7 +65,7 @@ struct NoMedia {
         path->wentThrough = true;
         return true;
     }
-    // Is told that the path leaves a surface.
+    // Called when the path leaves a surface.
     static void Leave(const SurfaceVertex&, const Vec3f&) {}
 };
 
@@ -118,7 +118,7 @@ class Media {
                index;
     }
 
-    // What lies behind an interface still belongs to the last vertex, whose shadow rays see it;
+    // Surfaces behind an interface still belong to the last vertex, whose shadow rays see them;
     // rays that count in full end there, as with pbrt-v3.
     static bool LooksBehind(SurfaceNeeds needs) { return needs & kIsInterface; }
     bool GoThrough(const SurfaceInteraction& hit, int shape, bool isLast, Path* path) {

@@ -30,7 +30,7 @@ struct Path {
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
     LightChoice choice{};          // of lights there
-    bool wentThrough = false;      // an interface, where the ray goes on but nothing scatters
+    bool wentThrough = false;      // an interface, where the ray continues unscattered
 };
 
 // Returns the weight of emission that the path's own ray has found on light `index`, where light

@@ -72,8 +72,8 @@ template <typename Media, typename Guiding>
         context.media.Leave(v, path->ray.d);
         return true;
     }
-    // Works on copies, as all that is not inlined here: what it has a pointer to would lie in
-    // memory all along.
+    // Works on copies, as all functions that are not inlined here: anything it has a pointer to
+    // would lie in memory all along.
     PathContext<Media> contextBelow = context;
     Path below = *path;
     const bool goesOn = ScatterBelow(&contextBelow, v, guiding, &below);
@@ -82,9 +82,9 @@ template <typename Media, typename Guiding>
     return goesOn;
 }
 
-// Follows a path along `ray`, the camera's, and returns the radiance that it finds. Compiled for
-// each kind of Media, Guiding and Recorder, so that what a scene does not have and nobody asks for
-// costs nothing.
+// Follows a path along `ray`, the camera's, and returns its radiance. Compiled for each kind of
+// Media, Guiding and Recorder, so that features which a scene does not have and nobody asks for
+// cost nothing.
 template <typename Media, typename Guiding, typename Recorder>
 [[gnu::noinline]] Rgb Trace(PathContext<Media> context, const Ray& ray, Guiding& guiding,
                             Recorder& recorder) {
@@ -136,7 +136,7 @@ template <typename Media, typename Guiding, typename Recorder>
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.camera, context.camera, &hit);
 
-        // Add what the surface emits.
+        // Add the emission of the surface.
         if (hit.areaLight >= 0) path.L += path.beta * Emission(scene, estimator, path, &hit, found);
         recorder.ReachSurface(path, found, hit);
         if (endsHere) break;
@@ -176,7 +176,7 @@ template <typename Media, typename Guiding, typename Recorder>
     return path.L;
 }
 
-// Chooses the loop that the options and what is asked for need.
+// Chooses the loop that the options and the recorder need.
 template <typename Media>
 PathSample TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
                      FirstHit* firstHit) {

@@ -25,7 +25,7 @@ float ProbePdf(const SubsurfaceProfile& profile, const Frame& frame, const Vec3f
 // Represents the segment of a probe ray, and how its hits are chosen among.
 struct Probe {
     Vec3f from, to;
-    float u;  // what is left of the number that chose axis and channel
+    float u;  // the rest of the number that chose axis and channel
 };
 
 std::optional<Probe> ChooseProbe(const SubsurfaceProfile& profile, const Frame& frame,
@@ -62,8 +62,8 @@ std::optional<SubsurfaceExit> SampleSubsurface(const Scene& scene, Sampler& samp
         ChooseProbe(profile, bsdf.Shading(), hit.p, u, sampler.Get2D(), scene.shapes.reach);
     if (!probe) return {};
 
-    // Choose one of all hits of this material with even chances: each new one takes the place of
-    // the one before with probability 1 / count, by what is left of the same number.
+    // Choose one of all hits of this material with equal probability: each new one replaces the one
+    // before with probability 1 / count, by the rest of the same number.
     std::optional<SubsurfaceExit> exit;
     int count = 0;
     float rest = probe->u;
@@ -93,7 +93,7 @@ Bsdf ExitBsdf(const SubsurfaceExit& exit, float eta) {
     Frame frame{{}, {}, exit.hit.ns};
     CoordinateSystem(frame.n, &frame.s, &frame.t);
     Bsdf bsdf(frame, exit.hit.n, eta);
-    // eta^2 takes back what refraction into the solid has scaled radiance by.
+    // eta^2 undoes the scaling of radiance by refraction into the solid.
     const float norm = float(1 - 2 * FresnelMoment1(1 / double(eta)));
     bsdf.Add(DiffuseExit{Rgb(Rgb::Constant(Sqr(eta) / norm)), eta});
     return bsdf;

@@ -11,7 +11,7 @@ namespace lull {
 struct SubsurfaceExit {
     SurfaceInteraction hit;
     int shape;
-    Rgb weight;  // of what is scattered on from there, by the BSDF of an exit
+    Rgb weight;  // of the path from there, scattered by the BSDF of an exit
 };
 
 // Chooses a point of the same material near `hit`, whose BSDF `bsdf` has let the path in, as the

@@ -17,7 +17,7 @@ struct Plane {
 // (2 x, 2 y) was.
 Plane Reduce(const Plane&);
 
-// Interpolates back to `width` x `height`, of which the image is what Reduce() returns the size of.
+// Interpolates to `width` x `height`, where the image has the size of Reduce() of such a one.
 Plane Expand(const Plane&, int width, int height);
 
 }  // namespace lull

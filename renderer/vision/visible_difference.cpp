@@ -118,8 +118,8 @@ struct ContrastBand {
     std::vector<float> luminance;
 };
 
-// Divides what the next level lacks by its luminance, and leaves the next level in `planes`. Bands
-// between the finest and the coarsest are twice as high, as their kernel halves a grating.
+// Divides the detail missing from the next level by its luminance, and leaves that level in
+// `planes`. Inner bands are twice as high, as their kernel halves a grating.
 ContrastBand TakeBand(int level, Planes* planes) {
     ContrastBand band;
     Planes next;
@@ -140,7 +140,7 @@ ContrastBand TakeBand(int level, Planes* planes) {
     return band;
 }
 
-// Divides what is left of the pyramid by its mean luminance.
+// Divides the residual of the pyramid by its mean luminance.
 ContrastBand TakeBase(Planes planes) {
     double sum = 0;
     for (const float v : planes[0].values) sum += std::max(double(v), kLeastLuminance);
@@ -180,7 +180,7 @@ float PowerOf(float base, double exponent) {
     return base > 0 ? std::pow(base, float(exponent)) : 0;
 }
 
-// Returns what masks each channel: contrast that both pictures have around a place, in any channel.
+// Returns the masks of each channel: contrast of both pictures around a place, in any channel.
 Planes Masks(const Planes& image, const Planes& reference) {
     const int width = image[0].width, height = image[0].height;
     const std::vector<double> around = GaussianKernel(kMaskSigma, int(2 * kMaskSigma));

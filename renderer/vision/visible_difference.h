@@ -21,7 +21,7 @@ struct VisibleBand {
     std::array<Plane, kOpponentChannels> difference;
 };
 
-// From fine to coarse; the last band is what is left of the pyramid.
+// From fine to coarse; the last band is the residual of the pyramid.
 struct VisibleDifference {
     int width = 0, height = 0;  // of the pictures
     std::vector<VisibleBand> bands;
@@ -47,8 +47,8 @@ VisibleReference PrepareReference(std::span<const float> reference, int width, i
 // Compares two pictures of linear RGB (row-major triples), as ColorVideoVDP compares still ones:
 // Mantiuk, Hanji, Ashraf, Asano, Chapiro: ColorVideoVDP: A visual difference predictor for image,
 // video and display distortions, ACM TOG 43(4), 2024, with the constants of its version 0.5.6.
-// Sensitivity is that of castleCSF itself. The pictures are looked at on a display; beyond what it
-// shows, values are clamped, and NaN is black. Throws Error if sizes do not fit.
+// Sensitivity is castleCSF's own. The pictures are seen on a display; values are clamped
+// to its range, and NaN is black. Throws Error if sizes do not fit.
 VisibleDifference FindVisibleDifference(std::span<const float> image,
                                         std::span<const float> reference, int width, int height,
                                         const DisplayModel&);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes what room.pbrt and room-night.pbrt include: the things in the room, and the images on them.
+"""Makes the files that room.pbrt and room-night.pbrt include: the things in the room, and the images on them.
 
 room.py [FOLDER]: writes to FOLDER (this one by default). room.py --gltf FOLDER: writes room.glb and room-night.glb
 there, the same room as glTF. Everything is a function of the numbers below, so that
@@ -25,7 +25,7 @@ PLANKS, SHADES, COVERS = 9, 6, 12                               # kinds of plank
 
 
 def walls(s):
-    """Walls, ceiling, mouldings, windows; what is seen outside."""
+    """Walls, ceiling, mouldings, windows; the view outside."""
     outer = LEFT - WALL
     s.shape('ceiling', box((LEFT - .3, HEIGHT, FRONT - .3), (RIGHT + .3, HEIGHT + .1, BACK + .3), 0))
     s.shape('limewash', box((LEFT - .3, -.05, BACK), (RIGHT + .3, HEIGHT, BACK + .2), 0))

@@ -13,17 +13,17 @@ struct BlockView {
     // finite (other values lead to no NaN, but to meaningless results). The half mean is the mean
     // over one fixed half of the samples.
     std::span<const float> mean = {}, halfMean = {};
-    // The variance of a sample over that of samples as people judged them, in lightness, where it
+    // Variance of a sample over that of the samples that observers judged, in lightness, where it
     // is known to be less: in (0, 1].
     double variance = 1;
-    // What the samples so far and this view have cost, in seconds of processors, for those who
-    // measure rules. A rule that used them would not give the same image twice.
+    // CPU time of the samples so far and of this view, in seconds, for measurements of rules. A
+    // rule that used them would not be deterministic.
     double seconds = 0, viewSeconds = 0;
 };
 
-// Which spans of a BlockView are read; the others may be left empty. Measured: both, and what
-// the program itself measures (RuleContext::measures in rules/criterion.h), which has to have all
-// that it keeps of the block's samples. Each needs what those before it do.
+// Spans of a BlockView that are read; the others may be left empty. Measured: both, and the
+// program's own measurements (RuleContext::measures in rules/criterion.h), for which it needs all
+// of the block's samples. Each needs those before it.
 enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };
 
 // Checks that a view has a size, samples and the spans in `need`. Throws std::invalid_argument.

@@ -46,7 +46,7 @@ void CheckSeal(uLong crc, const std::string& seal) {
     if (seal == expected) return;
     if (seal.substr(0, 10) != expected.substr(0, 10))
         throw std::runtime_error("it is cut short, or is not of this version of the program");
-    throw std::runtime_error("it is damaged: its content is not what its checksum says");
+    throw std::runtime_error("it is damaged: its content does not match its checksum");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Identifies the file that a rule has read, in the headers of what was rendered with it, and finds
-// files that are damaged.
+// Identifies files read by rules, for the headers of images, and finds damaged
+// files.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@ namespace lull {
 // apart and is no protection against forgery. Throws std::runtime_error if it cannot be read.
 std::string FileChecksum(const std::string& path);
 
-// Appends a seal to the content of a file: a mark, and the CRC-32 of all that is before it, which
-// any flipped bit changes. HDF5 does not mind what follows the end of its files.
+// Appends a seal to the content of a file: a mark, and the CRC-32 of all bytes before it, which any
+// flipped bit changes. HDF5 ignores bytes after the end of its files.
 void Seal(std::vector<std::byte>* content);
 
 // Throws std::runtime_error, which does not name the file, if it cannot be read, or is not as it
 // was when it was sealed.
 void CheckSeal(const std::string& path);
-// Does the same with what was read; returns what was sealed.
+// Checks the content of a file; returns it without the seal.
 std::span<const std::byte> CheckSeal(std::span<const std::byte> content);
 
 }  // namespace lull

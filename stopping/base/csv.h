@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// Returns whether a spreadsheet would take a text for a formula, and do what it says.
+// Returns whether a spreadsheet would evaluate a text as a formula.
 inline bool IsFormula(const std::string& text) {
     if (text.empty() || std::string("=+-@\t\r").find(text[0]) == std::string::npos) return false;
     char* end;

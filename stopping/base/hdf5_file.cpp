@@ -58,8 +58,8 @@ std::vector<int64_t> ShapeOf(hid_t space) {
     return {shape.begin(), shape.end()};
 }
 
-// Fails where a file says that an array is in it which is larger than what deflate could make of
-// all of it: no memory is taken for what cannot be there.
+// Fails if a file declares an array larger than deflate could make of the whole file: no memory is
+// allocated for data that cannot be there.
 void CheckSize(hid_t data, size_t count, size_t elementSize, const std::string& what) {
     constexpr double kMostCompressed = 1100;
     const Handle file(H5Iget_file_id(data), H5Fclose, what);
@@ -73,7 +73,7 @@ size_t Count(hid_t space) {
     return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
 }
 
-// How the library names what C++ calls T. (Its names are variables, set when it starts.)
+// The library's name of the C++ type T. (Its names are variables, set when it starts.)
 template <typename T>
 struct ElementType;
 template <>

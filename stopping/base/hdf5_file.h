@@ -14,8 +14,8 @@ namespace lull {
 enum class Hdf5Storage { Plain, Compressed };
 
 // Represents a group of an open file; the first one is its root. Copies represent the same group,
-// and the file is closed with the last of them. All functions throw std::runtime_error saying what
-// could not be done; none of the messages names the file.
+// and the file is closed with the last of them. All functions throw std::runtime_error naming the
+// failed operation; none of the messages names the file.
 class Hdf5Group {
   public:
     // Opens a file for reading, or creates one (replacing an old one) for writing.

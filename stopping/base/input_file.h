@@ -1,4 +1,4 @@
-// Opens the files that a user names, and quotes what they say.
+// Opens the files that a user names, and quotes their contents.
 #pragma once
 
 #include <fstream>

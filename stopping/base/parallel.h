@@ -19,7 +19,7 @@ class TaskOrder {
 };
 
 // Runs body(0) ... body(count - 1), in any order and concurrently on as many threads as
-// RunWithThreads() allows; may be nested. Rethrows what a body throws.
+// RunWithThreads() allows; may be nested. Rethrows exceptions of the body.
 void ForEachIndex(int count, const std::function<void(int)>& body);
 
 // Returns how many threads `threads` stands for: 0 for one per core, and no more than oneTBB gives.

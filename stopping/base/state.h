@@ -1,4 +1,4 @@
-// Packs the state of a criterion, or whatever else, into bytes and back, in the layout of this
+// Serialises the state of a criterion, or other data, to bytes and back, in the layout of this
 // machine.
 #pragma once
 
@@ -37,8 +37,8 @@ class StateWriter {
     std::vector<std::byte> bytes;
 };
 
-// Reads what a StateWriter has written, in the same order. All calls throw std::runtime_error if
-// the bytes end too early; `what` says there what they are.
+// Reads the values of a StateWriter in the same order. All calls throw std::runtime_error if the
+// bytes end too early; `what` names them in the message.
 class StateReader {
   public:
     explicit StateReader(std::span<const std::byte> bytes, const char* what = "the saved state")
@@ -58,8 +58,8 @@ class StateReader {
         if (!values.empty()) std::memcpy(values.data(), rest.data(), values.size_bytes());
         rest = rest.subspan(values.size_bytes());
     }
-    // Reads what PutVector() has written. Throws std::runtime_error(damaged), before allocating
-    // memory, for more values than the bytes can hold.
+    // Reads a vector of PutVector(). Throws std::runtime_error(damaged), before allocating memory,
+    // for more values than the bytes can hold.
     template <typename T>
     std::vector<T> GetVector(const char* damaged) {
         const auto size = Get<uint64_t>();

@@ -82,10 +82,8 @@ void CheckPicture(const lull_picture& picture, int width, int height, bool needs
     CheckRows(picture);
     if (needsHalf && !picture.half)
         throw std::invalid_argument(
-            "the stopping rule compares with a half of the samples, which the picture does not "
-            "have; "
-            "show it, or choose a rule that looks at the picture alone, such as the model "
-            "'entropy'");
+            "the stopping rule needs a half buffer, which the picture does not have; pass it, or "
+            "choose a rule that needs none, such as the model 'entropy'");
 }
 
 std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,

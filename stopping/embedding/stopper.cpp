@@ -80,7 +80,7 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
     return uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// Returns what a saved state belongs to.
+// Returns the identity of a saved state: its settings, rule and blocks.
 std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;
@@ -162,7 +162,7 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
     PictureValues values;
     for (int i = 0; i < int(states.size()); ++i)
         if (states[size_t(i)].criterion) values.Add(CheckValues(i, picture, RectOf(i), spp));
-    // What is left of a picture once blocks have stopped may be its brightest part.
+    // The rest of a picture once blocks have stopped may be its brightest part.
     if (std::ranges::none_of(states, [](const BlockState& s) { return s.answer.stop == 1; })) {
         const std::string fault = FaultOfExposure(values);
         Require(fault.empty(), fault);
@@ -207,8 +207,8 @@ void Stopper::NoteChannels(const lull_picture& picture) {
     if (!HasFourthChannel(picture)) return;
     const std::lock_guard lock(warningLock);
     channelWarning =
-        "pixels seem to have a fourth channel (pixel_stride), and R, G and B are looked at as they "
-        "are; show what people see, over its background";
+        "pixels seem to have a fourth channel (pixel_stride), and R, G and B are used without it; "
+        "show the image over its background";
 }
 
 void Stopper::NoteSpacing(BlockState* state) {
@@ -218,8 +218,9 @@ void Stopper::NoteSpacing(BlockState* state) {
     if (!spacingWarning.empty()) return;  // the first is enough
     spacingWarning =
         "pictures at " + pictures +
-        " spp lie too far apart for this rule, which compares them: it has not looked at the last "
-        "and will never stop so; show pictures every 20 or 40 spp, or at most 1.4 times the spp of "
+        " spp lie too far apart for this rule, which compares them: the last was not checked, "
+        "and no block will ever stop; show pictures every 20 or 40 spp, or at most 1.4 times the "
+        "spp of "
         "the one before";
 }
 
@@ -267,7 +268,7 @@ void Stopper::Check(int block, const lull_picture& picture, const lull_rect& par
     NoteSpacing(&state);
 }
 
-// The state begins with what it belongs to and ends with a checksum.
+// The state begins with its identity and ends with a checksum.
 std::vector<std::byte> Stopper::Save() const {
     const auto all = LockAll();
     StateWriter writer;

@@ -7,7 +7,7 @@
 The first takes PNG files (needs Pillow) at any samples per pixel, which are the last number in their names
 (frame-64.png, frame-90.png, ...), in any order.
 The second shows the whole loop: samples are only taken in blocks that go on, the picture is shown, and
-what is not needed any more is not computed. Replace `sample()` by a call of your renderer.
+stopped blocks are not computed. Replace `sample()` by a call of your renderer.
 """
 import argparse
 import pathlib

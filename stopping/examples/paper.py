@@ -5,7 +5,7 @@
 
 FOLDER has PNG files (which needs Pillow) of one scene at increasing samples per pixel; the last number in a
 name is its spp: kitchen_20.png, kitchen_40.png, ... The result is a line of a thresholds file: the spp at which
-each block stopped, row by row. With --human also the critical error against people's thresholds.
+each block stopped, row by row. With --human also the critical error, by human thresholds.
 
 docs/paper.md has each step, the function behind it and its test. MODEL is "paper", lull's own small network, or a
 file of `lull train --preset paper` or of Keras. It fixes k, n, the sub-blocks, H, H1 or H2, bnorm and snorm.
@@ -66,7 +66,7 @@ def thresholds_of(pictures, model="paper", block=200):
 
 
 def critical_error(human, stops, margin=2, grid=40):
-    """The share of spp at which a stop is wrong (Table 3): `margin` % of the cap around people's thresholds is free."""
+    """The share of spp at which a stop is wrong (Table 3): `margin` % of the cap around human thresholds is free."""
     half = PASS * int(CAP / PASS * margin / 200)
     x = np.arange(PASS, CAP + 1, grid)
     shares = []

@@ -1,4 +1,4 @@
-// What the examples know of pictures: PNG files whose names say their samples per pixel (spp).
+// Reads PNG files whose names contain their samples per pixel (spp).
 #pragma once
 
 #include <png.h>
@@ -25,7 +25,7 @@ inline int SppOf(const std::string& file) {
     return end - begin > 0 && end - begin < 9 ? std::stoi(stem.substr(begin, end - begin)) : 0;
 }
 
-// Adds a picture to those by spp: 9 before 20, which comes before 100. Returns what is wrong, or
+// Adds a picture to `files`, by spp: 9 before 20, which comes before 100. Returns an error, or
 // "".
 inline std::string Add(const std::string& file, std::map<int, std::string>* files) {
     const int spp = SppOf(file);
@@ -34,7 +34,7 @@ inline std::string Add(const std::string& file, std::map<int, std::string>* file
     return other.second ? "" : "has as many samples as " + other.first->second + ", by their names";
 }
 
-// Reads a picture. Returns what is wrong, or "".
+// Reads a picture. Returns an error, or "".
 inline std::string Read(const std::string& file, Picture* picture) {
     png_image png = {};
     png.version = PNG_IMAGE_VERSION;

@@ -36,7 +36,7 @@ bool NeedsStatistics(const ModelSettings& settings) {
                        [](Feature f) { return HasSubBlocks(f) && !IsEntropy(f) && !IsDrop(f); });
 }
 
-// Measures what is seen in the display image.
+// Measures the features of the display image.
 void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
     if (Needs(settings, Feature::Attributes26)) {
@@ -77,7 +77,7 @@ double Pooled(const Pool& pool, const std::vector<double>& values) {
                               : std::pow(v.abs().pow(pool.exponent).mean(), 1.0 / pool.exponent);
 }
 
-// Returns what is added to noise before its logarithm is taken.
+// Returns the constant added to noise before its logarithm is taken.
 double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.1 : 0.001; }
 
 // Brings values near the unit interval, or to where differences mean the same everywhere.

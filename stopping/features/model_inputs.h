@@ -29,8 +29,8 @@ struct BlockMeasures {
 // Returns the inputs of MeasureBlock().
 ViewNeed NeedOf(const ModelSettings& settings);
 
-// Measures what the settings ask for; for drops, which BlockMemory completes, the entropies and the
-// lightness that they are made of. Throws as CheckView() and SubBlockEntropies() do.
+// Measures the features of the settings; for drops, which BlockMemory completes, their entropies
+// and lightness. Throws as CheckView() and SubBlockEntropies() do.
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
 
 // Which places in the input of a network belong to a feature.

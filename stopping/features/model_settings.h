@@ -9,11 +9,11 @@
 
 namespace lull {
 
-// Names what can be measured of a block: the entropies of each of m sub-blocks (the paper's
-// features, see svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h),
-// the fall of the entropies H since half as many samples and the noise that it makes visible (see
-// entropy_drop.h; for m = 100), how much filters remove from the whole block (see
-// attributes26.h), and the logarithm of the spp, one number.
+// Measurements of a block: the entropies of each of m sub-blocks (the paper's features, see
+// svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h), the fall of the
+// entropies H since half as many samples and the noise that it makes visible (see entropy_drop.h;
+// for m = 100), the differences to filtered versions of the whole block (see attributes26.h), and
+// the logarithm of the spp, one number.
 enum class Feature {
     H,
     H1,
@@ -51,8 +51,8 @@ inline bool IsNormalized(Feature feature) {
 // Returns whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
 
-// Summarises the values of all sub-blocks in one number, a power mean. What is seen anywhere in a
-// picture adds up with exponents of 3 to 4 (probability summation; Quick 1974, Watson 1979).
+// Summarises the values of all sub-blocks in one number, a power mean. Visibility adds up over a
+// picture with exponents of 3 to 4 (probability summation; Quick 1974, Watson 1979).
 struct Pool {
     int exponent = 1;  // 1: the mean, 2: the root mean square
 

@@ -14,16 +14,16 @@ namespace lull {
 // equal. At least one value; they and their spread must be finite.
 Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values);
 
-// Adds an InputVector() and forgets what no later window can need. Throws std::invalid_argument
-// if it does not have InputCount() values, and as History::Add() does.
+// Adds an InputVector() and discards steps that no later window can need. Throws
+// std::invalid_argument if it does not have InputCount() values, and as History::Add() does.
 void AddInputs(int spp, std::vector<double> inputs, const ModelSettings& settings,
                History<double>* history);
 
-// Returns the window that ends at `spp`, InputCount() x k, the oldest step first, its entropies
-// and attributes normalised as the settings say (for other features the level matters); nothing
-// unless there are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the steps
-// are those that are nearest to spp / ratio, spp / ratio^2, ... of what is kept, eight an octave:
-// for k steps 2 + 8 (k - 1) log2(ratio) inputs at most; `spp` is the last one added.
+// Returns the window that ends at `spp`, InputCount() x k, the oldest step first, its entropies and
+// attributes normalised as the settings say (for other features the level matters); nothing unless
+// there are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the steps are the
+// stored ones nearest to spp / ratio, spp / ratio^2, ..., eight an octave: for k steps 2 + 8 (k -
+// 1) log2(ratio) inputs at most; `spp` is the last one added.
 std::optional<Eigen::MatrixXf> WindowOf(const History<double>& history,
                                         const ModelSettings& settings, int spp);
 

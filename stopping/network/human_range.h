@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// The spp at which the human thresholds end: nobody was shown more.
+// The spp at which the human thresholds end: observers were shown no more.
 inline constexpr int kJudgedCap = 10000;
 
 // How a rule's stops S relate to the thresholds T of people on blocks that it had not seen: the

@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int kMostCount = 16384;  // a bound on what a damaged file can ask for
+constexpr int kMostCount = 16384;  // a bound for damaged files
 
 const std::array<std::pair<const char*, Activation>, 4> activationNames = {
     {{"linear", Activation::Linear},
@@ -131,7 +131,7 @@ KerasModel ParseKerasConfig(const std::string& json, const std::string& version)
     try {
         return Parse(Json::parse(json), version);
     } catch (const Json::exception& error) {
-        throw std::runtime_error(std::string("model_config is not what Keras writes: ") +
+        throw std::runtime_error(std::string("model_config is not in the format of Keras: ") +
                                  error.what());
     }
 }

@@ -7,7 +7,7 @@
 
 namespace lull {
 
-// HardSigmoid is that of Keras 2: clip(0.2 x + 0.5, 0, 1).
+// HardSigmoid is Keras 2's: clip(0.2 x + 0.5, 0, 1).
 enum class Activation { Linear, Sigmoid, HardSigmoid, Tanh };
 
 // One long short-term memory layer (Hochreiter, Schmidhuber 1997). The weights are Keras'

@@ -18,8 +18,8 @@ namespace lull {
 
 namespace {
 
-// Maps what the weights of a layer are called ("kernel", "recurrent_kernel", "bias") to where they
-// are: the last part of their name, between "/" and ":0", whatever scopes come before it.
+// Maps the names of a layer's weights ("kernel", "recurrent_kernel", "bias") to their paths: they
+// are the last part of these, between "/" and ":0", whatever scopes come before it.
 std::map<std::string, std::string> WeightPaths(const Hdf5Group& layer) {
     std::map<std::string, std::string> paths;
     for (const std::string& path : layer.Strings("weight_names")) {
@@ -29,8 +29,8 @@ std::map<std::string, std::string> WeightPaths(const Hdf5Group& layer) {
     return paths;
 }
 
-// Reads the weights of one layer. What Keras stores row by row is column by column here, so that
-// its arrays arrive transposed without being moved.
+// Reads the weights of one layer. Keras' rows are columns here, so that its arrays arrive
+// transposed without being moved.
 class LayerReader {
   public:
     LayerReader(const Hdf5Group& root, const std::string& name)
@@ -121,7 +121,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     if (!saysM) s.m = int(inputs);
     CheckSettings(s);
     if (InputCount(s) != inputs || (timeSteps > 0 && s.k != timeSteps))
-        throw std::runtime_error("/lull says " + std::to_string(s.k) + " steps of " +
+        throw std::runtime_error("/lull has " + std::to_string(s.k) + " steps of " +
                                  std::to_string(InputCount(s)) + " values, but the network takes " +
                                  (timeSteps > 0 ? std::to_string(timeSteps) : "any number of") +
                                  " steps of " + std::to_string(inputs) + " values");

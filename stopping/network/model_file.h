@@ -24,8 +24,8 @@ struct Model {
 // bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, and the
 // strings spacing, feature and pool, the last two lists with commas. Absent ones (all, in a
 // published model) have their defaults, but k and m follow the shape of the network's input. Throws
-// std::runtime_error beginning with the path and naming what is missing, not supported, of the
-// wrong shape, NaN or infinite.
+// std::runtime_error beginning with the path and naming the parts that are missing, not supported,
+// of the wrong shape, NaN or infinite.
 Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; a new file replaces an old

@@ -1,4 +1,4 @@
-// Makes exceptions of what the C interface says.
+// Converts errors of the C interface to exceptions.
 #pragma once
 
 #include <lull/stopping.h>

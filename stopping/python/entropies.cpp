@@ -53,7 +53,7 @@ void BindEntropies(py::module_& module) {
                                 .attr("namedtuple")("SvdEntropy", "h h1 h2", "module"_a = "lull");
     type.attr("__doc__") =
         "The SVD-entropies of the parts of a picture: arrays of their rows x columns, in [0, 1];\n"
-        "h = h1 + h2, of which h1 is that of the first quarter of the singular values.";
+        "h = h1 + h2, where h1 has the terms of the first quarter of the singular values.";
     module.attr("SvdEntropy") = type;
     module.def(
         "svd_entropy",

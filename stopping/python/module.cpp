@@ -1,4 +1,4 @@
-// What the Python module `lull` has of stopping: the C interface with numpy arrays and exceptions.
+// The stopping part of the Python module `lull`: the C interface with numpy and exceptions.
 #include <lull/stopping.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -278,16 +278,16 @@ void BindStopper(py::module_& module) {
             "models"_a = py::none(), "block"_a = 200, "pass_spp"_a = 0, "cap"_a = 0,
             "caution"_a = 1.0)
         .def("observe", &Stopper::Observe, "image"_a, "spp"_a, "half"_a = py::none(),
-             "Shows the picture after more samples, and decides.\n\n"
+             "Checks the picture after more samples.\n\n"
              "Args:\n"
              "    image: an array of height x width x 3, float32 (linear; 1 is white) or uint8\n"
-             "        (sRGB), with any strides; what has stopped is not looked at.\n"
+             "        (sRGB), with any strides; stopped blocks are not read.\n"
              "    spp: its samples per pixel, more than at the last call.\n"
              "    half: the mean of a fixed half of the samples, for rules that compare it.\n\n"
              "Returns:\n"
              "    An Answer.\n\n"
              "Raises:\n"
-             "    ValueError: for another shape or type, values that no picture has, an spp that "
+             "    ValueError: for another shape or type, invalid values, an spp that "
              "is\n"
              "        not above the last, or a half that is missing. Nothing has changed then.\n\n"
              "Warns:\n"
@@ -302,22 +302,22 @@ void BindStopper(py::module_& module) {
              "Returns:\n"
              "    A BlockAnswer.\n\n"
              "Raises:\n"
-             "    ValueError: as observe(), and for a block that there is not.")
+             "    ValueError: as observe(), and for an unknown block.")
         .def("answer", &Stopper::Last,
              "Returns the last answer again.\n\nReturns:\n    An Answer; its spp are 0 before the "
              "first picture.")
         .def_property_readonly("blocks", &Stopper::Blocks,
-                               "Where the blocks lie: (x, y, width, height), row by row.")
+                               "The rectangles of the blocks: (x, y, width, height), row by row.")
         .def_property_readonly("active", &Stopper::Active,
                                "An array of height x width: True where more samples are needed.")
         .def_property_readonly("done", &Stopper::Done, "Whether all blocks have stopped.")
         .def_property_readonly("needs_half", &Stopper::NeedsHalf,
-                               "Whether the rule has to be shown a half of the samples.")
+                               "Whether the rule needs a half buffer.")
         .def("save", &Stopper::Save,
-             "Saves all that has been noted, for a checkpoint of the renderer.\n\n"
+             "Serialises the state, for a checkpoint of the renderer.\n\n"
              "Returns:\n    bytes, which this version on this machine can restore.")
         .def("restore", &Stopper::Restore, "state"_a,
-             "Takes up what save() has returned.\n\n"
+             "Restores a state of save().\n\n"
              "Args:\n    state: bytes of a stopper with the same settings.\n\n"
              "Raises:\n    OSError: if they are damaged or of other settings; nothing has changed "
              "then.")
@@ -332,7 +332,7 @@ void BindStopper(py::module_& module) {
 
 PYBIND11_MODULE(_stopping, module) {
     module.doc() =
-        "Says when a picture that is being rendered has had enough samples.\n\n"
+        "Decides when a picture that is being rendered has enough samples.\n\n"
         "    stopper = lull.Stopper(width, height, model='entropy')\n"
         "    while not stopper.done:\n"
         "        ...  # render more where stopper.active\n"

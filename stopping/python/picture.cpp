@@ -18,8 +18,8 @@ py::array ToPixels(const py::array& array, const std::string& name, int width, i
                               " x 3: rows, columns, R G B");
     if (array.shape(2) > 3)
         Warn(name + " has " + std::to_string(array.shape(2)) +
-             " channels, of which R, G and B are judged as they are; give " + name +
-             "[..., :3] of what people see, over its background");
+             " channels, of which R, G and B are used without alpha; give " + name +
+             "[..., :3] of the image over its background");
     if (py::isinstance<py::array_t<uint8_t>>(array)) return array;
     if (array.dtype().kind() != 'f')
         throw py::value_error(name + " has the type " + py::str(array.dtype()).cast<std::string>() +

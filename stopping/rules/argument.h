@@ -10,8 +10,8 @@
 
 namespace lull {
 
-// Parses all of `text` as a number > 0, finite. Throws std::invalid_argument saying that it is not
-// what is `needed`.
+// Parses all of `text` as a number > 0, finite. Throws std::invalid_argument with `needed`, the
+// noun of such a number.
 template <typename T>
 T ParsePositive(const std::string& text, const std::string& needed) {
     T value = 0;

@@ -1,4 +1,4 @@
-// Provides the rules that lull's own is compared with: fixed spp, and what other renderers do.
+// Provides the rules that lull's own is compared with: fixed spp, and rules of other renderers.
 //
 // All error estimates compare the mean I of all samples with the mean A of one fixed half of
 // them. With B the mean of the other half, I - A = (B - A) / 2; for independent samples it has
@@ -41,13 +41,13 @@ int CyclesMinimumSpp(double threshold);
 
 // Stops a block as Cycles stops an image: beyond the minimum, at every multiple of 20 spp, tests
 // the active pixels (at first all). One is converged if its error is < 5 * threshold; the pixels
-// around one that is not are active again (3 x 3 dilation: what makes a test of single pixels
-// safe, as it has 75 % relative spread). The block stops when none is active. The decision's
-// value is the largest error of the pixels tested / 5. It remembers pixels, so that recordings have
-// only where it stopped, at kCyclesThresholds.
+// around one that is not are active again (3 x 3 dilation, which makes a test of single pixels
+// safe, as it has 75 % relative spread). The block stops when none is active. The decision's value
+// is the largest error of the pixels tested / 5. It remembers pixels, so that recordings have only
+// where it stopped, at kCyclesThresholds.
 Rule CyclesRule(double threshold);
 
-// Returns what it tests: CyclesPixelError() / 5.
+// Returns the pixel errors that it tests: CyclesPixelError() / 5.
 PixelErrors CyclesErrors(const BlockView& view);
 
 // The thresholds at which the rule runs along while blocks are recorded.

@@ -1,4 +1,4 @@
-// Cuts pictures into the blocks that rules decide on, for whoever shows them: the same picture has
+// Cuts pictures into the blocks that rules decide on, for all programs: the same picture has
 // the same blocks, and so the same decisions, everywhere.
 #pragma once
 
@@ -24,9 +24,9 @@ struct BlockGrid {
     std::vector<int> leaders = {};
 };
 
-// Cuts width x height pixels, none if one of them is 0, into blocks of `side` > 0 pixels; what is
-// left at the right and at the bottom are smaller ones. Those with a side below `smallestSide` are
-// not checked.
+// Cuts width x height pixels, none if one of them is 0, into blocks of `side` > 0 pixels; the
+// remainder at the right and at the bottom makes smaller ones. Those with a side below
+// `smallestSide` are not checked.
 BlockGrid CutIntoBlocks(int width, int height, int side, int smallestSide = kSmallestVotingSide);
 
 }  // namespace lull

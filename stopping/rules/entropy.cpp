@@ -37,7 +37,7 @@ class EntropyStatistic final : public Statistic {
     History<float> history;
 };
 
-// Returns what is measured: entropies, and the lightness that makes their falls visible.
+// Returns the measurements: entropies, and the lightness that makes their falls visible.
 ModelSettings MeasuredSettings() {
     return {.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}};
 }

@@ -1,4 +1,4 @@
-// Stops blocks by what noise adds to their SVD-entropy: lull's own rule with one number.
+// Stops blocks by the noise in their SVD-entropy: lull's own rule with one number.
 #pragma once
 
 #include <span>
@@ -19,8 +19,8 @@ Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSp
 Rule ReadEntropy(const std::string& argument, const RuleContext& context);
 
 // Returns its checks: after the first pass and every 40 spp from then on, or every pass if passes
-// are longer, which is what recordings have (see recording.h); with a passSpp of 0, at whatever
-// comes 40 spp or more after the last check.
+// are longer, as in recordings (see recording.h); with a passSpp of 0, at the first picture 40 spp
+// or more after the last check.
 Checks EntropyChecks(int passSpp);
 
 // Returns the number that is compared with the threshold.

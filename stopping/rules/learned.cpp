@@ -82,8 +82,8 @@ void CheckFits(const Model& model, int passSpp) {
                                     " outputs; one, the probability of noise, is needed");
     if (passSpp < 0 ||
         (passSpp > 0 && (settings.n % passSpp != 0 || settings.voteSpacing % passSpp != 0)))
-        throw std::invalid_argument("the model looks at a block every " +
-                                    std::to_string(settings.n) + " spp (and votes every " +
+        throw std::invalid_argument("the model checks a block every " + std::to_string(settings.n) +
+                                    " spp (and votes every " +
                                     std::to_string(settings.voteSpacing) +
                                     "; 0: each pass), which must be multiples of the pass of " +
                                     std::to_string(passSpp) + " spp");

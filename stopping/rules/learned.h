@@ -1,4 +1,4 @@
-// Stops blocks by a network on the history of what an observer sees of them: lull's own rule.
+// Stops blocks by a network on the history of their visible noise: lull's own rule.
 #pragma once
 
 #include <memory>

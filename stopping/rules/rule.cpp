@@ -107,7 +107,8 @@ std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule
 const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule) {
     const auto measure = context.measures.find(rule);
     if (measure == context.measures.end())
-        throw std::invalid_argument("it looks at more of a block than this program shows it");
+        throw std::invalid_argument(
+            "it needs measurements of blocks that this program does not make");
     return measure->second;
 }
 

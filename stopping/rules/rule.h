@@ -1,9 +1,9 @@
 // Defines stopping rules: "the number of a block was below a threshold at three checks in a row".
 //
-// A Rule says what is measured of a block, at which of its Checks, and what the number is compared
-// with. A Statistic makes that number of what is measured. A Criterion is a rule at work on one
-// block: it counts the checks in a row that were below the threshold. Renders measure a block; on
-// a recording what was measured is read, and decided on in the same way.
+// A Rule defines the measurement of a block, the Checks at which it is made, and the threshold. A
+// Statistic computes the compared number from the measurements. A Criterion is a rule at work on
+// one block: it counts the checks in a row that were below the threshold. Renders measure a block;
+// recordings have its measurements, on which the same decisions are made.
 #pragma once
 
 #include <cstdint>
@@ -23,31 +23,31 @@
 
 namespace lull {
 
-// Makes the number of one block from its signals, and remembers what that takes.
+// Computes the number of one block from its signals, and stores the state this needs.
 class Statistic {
   public:
     virtual ~Statistic() = default;
 
-    // Takes note of the signals at a check, whose spp increase. Returns the number, at least 0 and
-    // not NaN; nothing where there is nothing yet to compare with. Throws std::invalid_argument.
+    // Adds the signals of a check, whose spp increase. Returns the number, at least 0 and not NaN;
+    // nothing where there is no earlier check to compare with. Throws std::invalid_argument.
     virtual std::optional<double> Add(int spp, Signals signals) = 0;
 
-    // Returns the noise that the last number was made of, where it was made of nothing else.
+    // Returns the noise of the last number, if that depends on nothing else.
     virtual std::optional<double> Noise() const { return {}; }
 
-    // Write and read what Add() has left behind. Restore() throws std::runtime_error if it is
+    // Write and read the state after Add(). Restore() throws std::runtime_error if it is
     // damaged.
     virtual void Save(StateWriter*) const = 0;
     virtual void Restore(StateReader*) = 0;
 };
 
-// Measures what a rule looks at in a block.
+// Measures the signals of a rule in a block.
 using SignalMeasure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
 
 struct Rule {
     std::string text = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that it reads; empty if it reads none
-    // How its stops lie to those of people, see network/human_range.h; empty: not known.
+    // Quantiles of log(human threshold / stop), see network/human_range.h; empty: unknown.
     std::vector<double> logRatios = {};
     RuleTrend trend = {};
     // Pixels a side below which a block is not checked, but follows a neighbour (block_grid.h).
@@ -59,20 +59,20 @@ struct Rule {
     int votes = 0;  // checks in a row below it that stop a block; 0: one does, and none is counted
     ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
     SignalMeasure measure = {};
-    // Returns from a recording what `measure` would have; empty: that is not recorded.
+    // Returns the result of `measure` from a recording; empty: that is not recorded.
     std::function<Signals(int spp, const RecordedValues& values)> recall = {};
-    // Empty: the number is what is measured.
+    // Empty: the number is the measurement itself.
     std::function<std::unique_ptr<Statistic>()> makeStatistic = {};
     double valueBefore = 0;  // the number of a block that has none yet
-    int spacing = 0;         // spp between two states that it compares; 0: it takes what there is
+    int spacing = 0;         // spp between two states that it compares; 0: any
 
-    // In place of all these, where rules that only count samples stop a block, in spp, before the
-    // end of the pass is waited for. Throws std::invalid_argument for a block that the rule has no
-    // answer for.
+    // In place of all these, for rules that only count samples: the spp at which a block stops,
+    // known before the pass has ended. Throws std::invalid_argument for a block that the rule has
+    // no answer for.
     std::function<int(const BlockInfo&)> stopAt = {};
 };
 
-// Returns the rule that stops blocks where `stopAt` says.
+// Returns the rule that stops blocks at `stopAt`.
 Rule CountingRule(std::function<int(const BlockInfo&)> stopAt);
 
 // Applies a rule with a threshold to one block.
@@ -94,7 +94,7 @@ class RuleCriterion final : public Criterion {
   private:
     std::shared_ptr<const Rule> rule;
     BlockInfo block;
-    std::unique_ptr<Statistic> statistic;  // null: the number is what is measured
+    std::unique_ptr<Statistic> statistic;  // null: the number is the measurement
     double value;                          // the last number
     int last = 0;                          // spp of the last check; 0: there was none
     int votes = 0;                         // checks in a row below the threshold
@@ -104,10 +104,10 @@ class RuleCriterion final : public Criterion {
 std::unique_ptr<Criterion> MakeCriterion(std::shared_ptr<const Rule> rule,
                                          const BlockInfo& block = {});
 std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {});
-// Returns what makes those of all blocks of an image, from any thread.
+// Returns a factory of the criteria of all blocks of an image, for any thread.
 std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule);
 
-// What a rule can depend on beside its own text.
+// Context of a rule, in addition to its text.
 struct RuleContext {
     int passSpp = 20;            // spp of a pass, also of the first; 0: any (see Checks)
     int blockCount = 0;          // blocks in the image; 0: not known
@@ -118,12 +118,12 @@ struct RuleContext {
     // only for rules that have such a threshold.
     double caution = 1;
     NoiseVisibility visibility = {};  // to the rule `entropy`
-    // By the name of a rule, what the program measures for it that a BlockView does not show. A
-    // rule that needs that is refused where it is missing.
+    // Measurements of the program that a BlockView does not contain, by the name of the rule. A
+    // rule that needs one is refused where it is missing.
     std::map<std::string, SignalMeasure> measures = {};
 };
 
-// Returns what the program measures for a rule. Throws std::invalid_argument if it does not.
+// Returns the program's measurement for a rule. Throws std::invalid_argument if there is none.
 const SignalMeasure& SuppliedMeasure(const RuleContext& context, const std::string& rule);
 
 }  // namespace lull

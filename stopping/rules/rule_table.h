@@ -1,5 +1,5 @@
-// Lists the stopping rules: their names, what they say of themselves, how they are read and run on
-// recordings. Help, benchmarks, rivals and documents have them from here.
+// Lists the stopping rules: their names, descriptions, readers and replay on recordings. Help,
+// benchmarks, baselines and documents have them from here.
 #pragma once
 
 #include <span>
@@ -10,31 +10,31 @@
 
 namespace lull {
 
-// What a recording knows of a rule.
+// Contents of a recording that a rule needs.
 enum class Replay {
-    Decides,   // what it measures, so that it decides again (Rule::recall)
-    Counts,    // nothing is needed: it stops where it says
-    RanAlong,  // where it stopped at kCyclesThresholds
-    Unknown    // nothing
+    Decides,   // its measurements, from which it decides again (Rule::recall)
+    Counts,    // none: it only counts samples
+    RanAlong,  // its stops at kCyclesThresholds
+    Unknown    // not recorded
 };
 
-// With which settings a rule is compared with others.
+// Settings with which a rule is compared with others.
 struct RuleSweep {
     // For benchmarks, from where it stops at once to where it hardly ever does; empty: none.
     std::span<const double> bench = {};
     // For the choice of the best one: all between them in steps of 1 %, or those at which it
     // RanAlong. Both 0: none is chosen.
     double largest = 0, least = 0;
-    bool choosesMask = false;  // and once more with that of NoiseVisibility::mask
+    bool choosesMask = false;  // and again with a chosen NoiseVisibility::mask
 };
 
 struct RuleEntry {
     std::string_view name;
-    std::string_view argument;  // what follows the name, as help has it
+    std::string_view argument;  // after the name, as in help
     const char* standard;       // the argument where none is given; null: the rule says
     // Ends "a block stops"; '@' stands for the argument where none is given.
     std::string_view stops;
-    RuleTrend::Kind compares;  // what its number is
+    RuleTrend::Kind compares;  // kind of its number
     bool takesCaution;         // whether its threshold is one of visible noise
     Replay replay;
     RuleSweep sweep;
@@ -48,15 +48,15 @@ std::span<const RuleEntry> RuleTable();
 // The rule where none is asked for.
 inline constexpr const char* kDefaultRule = "learned";
 
-// Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument for
-// a bad rule and std::runtime_error for a bad file; the message says what is wrong and what would
-// be right.
+// Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument
+// for a bad rule and std::runtime_error for a bad file; the message has the fault and the
+// remedy.
 Rule ParseRule(const std::string& text, const RuleContext& context = {});
 
 // Returns the entry of a text NAME[:ARGUMENT]; null if there is no such rule.
 const RuleEntry* FindRule(std::string_view text);
 
-// Returns the argument of the text of a rule, or what stands for it where none is given.
+// Returns the argument in the text of a rule, or its default where none is given.
 std::string ArgumentOf(std::string_view text);
 
 // Returns when a block stops, in words.

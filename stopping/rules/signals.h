@@ -1,4 +1,4 @@
-// What rules are told of a block after a pass, whether it was measured in a render or
+// Inputs of rules after a pass of a block, whether it was measured in a render or
 // recorded.
 #pragma once
 
@@ -15,7 +15,7 @@ struct PixelErrors {
     std::vector<double> errors = {};
 };
 
-// Nothing but the spp; one number of the block; one of each pixel; what networks are given.
+// Nothing but the spp; one number of the block; one of each pixel; inputs of networks.
 using Signals = std::variant<std::monostate, double, PixelErrors, BlockMeasures>;
 
 }  // namespace lull

@@ -23,7 +23,7 @@ std::vector<std::string> Split(const std::string& line) {
     return fields;
 }
 
-// Parses one line; throws std::invalid_argument saying what is wrong with it.
+// Parses one line; throws std::invalid_argument with the reason.
 ThresholdsRow ParseRow(const std::string& line) {
     const std::vector<std::string> fields = Split(line);
     if (fields.empty() || fields[0].empty())

@@ -76,9 +76,9 @@ void Smooth(const PaddedImage& image, const Taps& taps, PaddedImage* rows,
     }
 }
 
-// Returns which pairs of n values to put in order, one after the other, so that the median comes to
-// the middle: Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2, Algorithm M) less what the median
-// does not depend on.
+// Returns the pairs of n values to put in order, one after the other, so that the median comes to
+// the middle: Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2, Algorithm M) without the pairs that
+// do not affect the median.
 std::vector<std::pair<int, int>> MedianNetwork(int n) {
     std::vector<std::pair<int, int>> pairs;
     for (int p = 1; p < n; p *= 2)

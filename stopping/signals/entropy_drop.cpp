@@ -15,8 +15,8 @@ namespace {
 constexpr double kDepth = 4;        // states are kept down to this part of the spp
 constexpr double kTolerance = 1.6;  // of half and a quarter of the spp
 
-// Returns the square of the weighted sum of the roots of what the entropies of two states differ
-// by: few sub-blocks with much noise must not decide.
+// Returns the square of the weighted sum of the roots of the entropies' differences between two
+// states: few sub-blocks with much noise must not decide.
 double Fall(const EntropyState& from, const EntropyState& to, std::span<const double> weights) {
     double sum = 0;
     for (size_t i = 0; i < to.values.size(); ++i)

@@ -1,11 +1,11 @@
-// Measures noise by what it adds to the SVD-entropy of a picture: an entropy alone says little, but
-// its fall since half as many samples is due to noise.
+// Measures noise by its contribution to the SVD-entropy of a picture: an entropy alone says little,
+// but its fall since half as many samples is due to noise.
 //
 // Noise of variance v in lightness, small against the mean lightness L, adds about c v / L^2 to the
 // entropy of a sub-block, with a c that hardly changes. As v falls as 1 / spp, the fall from n / 2
-// to n is what is left at n, and sqrt(fall) L is the noise's standard deviation, apart from the
-// factor sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's share of each
-// singular value. This needs only two displayed pictures.
+// to n equals the rest at n, and sqrt(fall) L is the noise's standard deviation, apart from the
+// factor sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's fraction of
+// each singular value. This needs only two displayed pictures.
 #pragma once
 
 #include <optional>
@@ -31,13 +31,13 @@ struct NoiseVisibility {
     double nearness = 0.5;
 };
 
-// Returns the visibility where renders end at `cap` spp (0: not known). What people compared with
-// is free of noise; where the cap is larger, that is the picture at the cap, and a smaller cap does
-// not change what they saw.
+// Returns the visibility where renders end at `cap` spp (0: not known). The observers' reference
+// counts as free of noise; where the cap is larger, the picture at the cap does, and a smaller cap
+// does not change the reference.
 NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
 
 // Returns the visibility for samples that have `variance`, in (0, 1], times the variance of those
-// that people judged: here, variance * N spp have as little noise as what they compared with.
+// that observers judged: here, variance * N spp have as little noise as their reference.
 NoiseVisibility VisibilityWith(double variance, NoiseVisibility visibility);
 
 // The entropies of the sub-blocks of a picture, row-major, at some spp.
@@ -50,7 +50,7 @@ double RateOfFall(const EntropyState& oldest, const EntropyState& before, const 
                   std::span<const double> weights);
 
 // Returns for each sub-block sqrt(|H(before) - H(now)| / ((n / n')^rate - 1)), where n, n' are the
-// spp of `now` and `before`: the root of what noise adds to the entropy now. Both have the same
+// spp of `now` and `before`: the root of the noise's part of the entropy now. Both have the same
 // length, and `before` has fewer spp. (Noise that happens to be correlated with detail moves an
 // entropy up or down, and rare events raise it when they occur: both count as noise.)
 std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
@@ -65,8 +65,8 @@ struct SubBlockLightness {
 // Throws as CheckView() does, and std::invalid_argument if the block cannot be cut into them.
 SubBlockLightness MeasureLightness(const BlockView& view, int subBlocks);
 
-// Returns how much smaller a difference in lightness around L looks on a screen that reflects
-// `flare`: the derivative of the lightness of (Y + flare) / (1 + flare) over that of Y. In (0, 1];
+// Returns the factor by which a screen that reflects `flare` reduces a difference in lightness
+// around L: the derivative of the lightness of (Y + flare) / (1 + flare) over that of Y. In (0, 1];
 // for the 0.05 of sRGB 0.3 in black, 0.6 at L = 25, 0.9 at 65.
 double FlareFactor(double lightness, double flare);
 
@@ -75,9 +75,9 @@ double FlareFactor(double lightness, double flare);
 std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,
                                 int spp, const NoiseVisibility& visibility);
 
-// Adds the entropies of the sub-blocks at `spp`, and keeps what later ones are compared with: about
-// eight states an octave down to a quarter of the spp, at most 19 (8 KB per block for 100
-// sub-blocks), however many samples there are. Throws as History::Add() does.
+// Adds the entropies of the sub-blocks at `spp`, and keeps the states that later ones need: about
+// eight an octave down to a quarter of the spp, at most 19 (8 KB per block for 100 sub-blocks),
+// however many samples there are. Throws as History::Add() does.
 void AddEntropies(int spp, std::span<const double> entropies, History<float>* history);
 
 // Returns EntropyDrop() of the last state since that nearest to half of its spp, corrected by

@@ -20,7 +20,7 @@ struct BlockState {
     std::vector<Real> values = {};
 };
 
-// States by increasing spp, all with as many values. Those who add states say what is kept.
+// States by increasing spp, all with as many values. The caller of Add() discards old ones.
 template <typename Real>
 class History {
   public:

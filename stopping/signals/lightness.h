@@ -1,4 +1,4 @@
-// Turns linear radiance into what an observer sees on a display: 8-bit sRGB, and its lightness.
+// Converts linear radiance to the colours of a display: 8-bit sRGB, and its lightness.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace lull {
 // The shares of linear R, G and B (Rec. 709 primaries) in the luminance Y, which is 1 at white.
 inline constexpr double kLuminanceWeights[3] = {0.212671, 0.715160, 0.072169};
 
-// Returns what a display shows of a linear component, in [0, 1]; 0 for NaN.
+// Clamps a linear component to the range of a display, [0, 1]; 0 for NaN.
 inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
 
 // Returns the linear value, in [0, 1], of a component in [0, 1] that follows the sRGB transfer
@@ -38,7 +38,7 @@ std::vector<double> LightnessOf(std::span<const float> linear);
 // The luminance below which L is linear in it.
 inline constexpr double kLinearLuminance = 0.008856;
 
-// L at a luminance, at least 0, and its derivative there; above white L goes on.
+// L at a luminance, at least 0, and its derivative there; above white L continues.
 template <typename Real>
 struct LightnessSlope {
     Real lightness, slope;

@@ -16,7 +16,7 @@ constexpr int kTextureRadius = 6;    // 13 x 13 pixels
 
 float Finite(float x) { return std::isfinite(x) ? x : 0; }
 
-// Whether a change of a component changes what is displayed.
+// Whether a change of a component changes the displayed one.
 bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
 float Luminance(float r, float g, float b) {
@@ -30,10 +30,10 @@ LightnessSlope<float> DisplayedLightness(float y) {
     return {std::min(100.f, at.lightness), at.slope};
 }
 
-// Answers what the values in rectangles of an image sum to.
+// Answers the sums of rectangles of an image.
 class SumTable {
   public:
-    // `value(i)` is that of pixel i, row-major.
+    // `value(i)` is for pixel i, row-major.
     template <typename Value>
     SumTable(int width, int height, const Value& value)
         : stride(size_t(width) + 1), sums(stride * (size_t(height) + 1)) {

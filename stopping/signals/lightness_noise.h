@@ -11,7 +11,7 @@ namespace lull {
 // Estimates for every pixel of a block, row-major.
 //
 // With A the mean of one half of the samples, B that of the other and M of all, (A - B) / 2 has the
-// standard deviation of the error of M. Lightness L is that of the displayed colour: components
+// standard deviation of the error of M. Lightness L is of the displayed colour: components
 // are clamped to [0, 1], but not rounded to 8 bits, which would add noise of its own.
 struct LightnessNoise {
     std::vector<float> lightness;  // L of M, in [0, 100]
@@ -21,7 +21,7 @@ struct LightnessNoise {
     std::vector<float> noise;
     std::vector<float> halfNoise;  // (L(A) - L(B)) / 2, bounded
     // Standard deviation of L in the surrounding 13 x 13 pixels (within the block), after smoothing
-    // L by 5 x 5 averages: what masks noise. Written t.
+    // L by 5 x 5 averages, which masks noise. Written t.
     std::vector<float> texture;
 };
 
@@ -33,7 +33,7 @@ std::vector<float> DisplayedLightness(std::span<const float> mean);
 // Reads both means of the view; values that are not finite count as 0. Throws as CheckView() does.
 LightnessNoise ComputeLightnessNoise(const BlockView& view);
 
-// Returns noise / (1 + t / 4): what remains visible of noise on texture.
+// Returns noise / (1 + t / 4): the noise that remains visible on texture.
 inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
 
 // Statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,

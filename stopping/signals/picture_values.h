@@ -18,10 +18,10 @@ struct PictureValues {
     void Add(const PictureValues&);
 };
 
-// Return what is wrong with a picture, or "": of its values, where more than a tenth of the pixels
-// are not finite, or more than a quarter negative; of its exposure, where more than half of what is
-// lit is brighter than four times white, as in pictures of 0 to 255. Of a part of a picture the
-// exposure says nothing: a block may show no more than a window.
+// Return the fault of a picture, or "": of its values, where more than a tenth of the pixels are
+// not finite, or more than a quarter negative; of its exposure, where more than half of the lit
+// pixels are brighter than four times white, as in pictures of 0 to 255. The exposure of a part of
+// a picture is no fault: a block may show no more than a window.
 std::string FaultOfValues(const PictureValues&);
 std::string FaultOfExposure(const PictureValues&);
 

@@ -60,7 +60,7 @@ TEST(Denoising, TakesNoiseOutAndSaysHowMuchIsLeft) {
     EXPECT_LT(p.block.upper, 3);  // of the samples: some 10
     for (size_t i = 0; i < kPixels; ++i) ASSERT_TRUE(p.error[i] >= 0 && p.error[i] < 20);
 
-    // What the albedo shows is not blurred; without it more is wrong, and known to be.
+    // Structure in the albedo is not blurred; without it the error is larger, and known to be.
     Pictures without;
     without.noisy.albedo = {};
     ASSERT_EQ(lull_denoise(&without.noisy, &without.output), nullptr);

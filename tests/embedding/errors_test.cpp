@@ -1,4 +1,4 @@
-// What is wrong is said, and changes nothing.
+// Errors have a message, and change nothing.
 #include <cstdlib>
 #include <limits>
 #include <thread>

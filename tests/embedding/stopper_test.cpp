@@ -1,4 +1,4 @@
-// What other programs are answered: the same as lull itself, however they show their pictures.
+// Answers to other programs: the same as lull's own, whatever the layout of their pictures.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

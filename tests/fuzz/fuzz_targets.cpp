@@ -99,7 +99,7 @@ void FuzzImage(std::span<const char> bytes, std::string_view signature) {
 void FuzzPng(std::span<const char> bytes) { FuzzImage(bytes, "\x89PNG\r\n\x1a\n"); }
 void FuzzExr(std::span<const char> bytes) { FuzzImage(bytes, "\x76\x2f\x31\x01"); }
 
-// What the parameters of a scene are read into, without the structure that rays are traced in.
+// Compiles the parameters of a scene, without the acceleration structure.
 void FuzzScene(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings({}, true);
@@ -130,7 +130,7 @@ void FuzzKerasConfig(std::span<const char> bytes) {
         }
 }
 
-// What is read is written as it was, but for the ends of lines.
+// Thresholds are written as they were read, but for the ends of lines.
 void FuzzThresholds(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::vector<ThresholdsRow> rows;
@@ -148,7 +148,7 @@ void FuzzThresholds(std::span<const char> bytes) {
     if (!same) throw std::logic_error("thresholds change when written and read again");
 }
 
-// What is read can be collected and written.
+// Answers that can be read can be collected and written.
 void FuzzAnswers(std::span<const char> bytes) {
     ObserverAnswers answers;
     try {
@@ -165,7 +165,7 @@ void FuzzAnswers(std::span<const char> bytes) {
     WriteThresholds(out, ThresholdsOf(collected));
 }
 
-// What is read is an answer that somebody can have given.
+// An answer that can be read is possible.
 void FuzzSingleAnswers(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::vector<SingleAnswer> answers;
@@ -180,7 +180,7 @@ void FuzzSingleAnswers(std::span<const char> bytes) {
             throw std::logic_error("an answer that cannot be was taken");
 }
 
-// What is read is written so that it is read as the same display.
+// A display is written so that it is read as the same.
 void FuzzDisplay(std::span<const char> bytes) {
     DisplayModel display;
     try {
@@ -194,7 +194,7 @@ void FuzzDisplay(std::span<const char> bytes) {
         throw std::logic_error("a display changes when written and read again");
 }
 
-// Most of what is found is in the HDF5 library, as with `model`.
+// Most findings are in the HDF5 library, as with `model`.
 void FuzzDataset(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     try {
@@ -203,7 +203,7 @@ void FuzzDataset(std::span<const char> bytes) {
     }
 }
 
-// What is behind the checksum of a file.
+// The contents behind the checksum of a file.
 void FuzzTrainingCheckpoint(std::span<const char> bytes) {
     std::vector<std::byte> sealed(bytes.size());
     std::ranges::copy(std::as_bytes(bytes), sealed.begin());

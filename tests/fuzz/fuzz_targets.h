@@ -1,6 +1,6 @@
 // Feeds bytes to each reader of files from elsewhere. A reader may take them or refuse them with
-// the exception it documents; all else is a finding. The fuzzers and an ordinary test, which
-// replays what they have found, share these.
+// the exception it documents; all else is a finding. The fuzzers share these with an ordinary test,
+// which replays their findings.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Most of what `model` and `dataset` find is in the HDF5 library, which does not withstand files
+// Most findings of `model` and `dataset` are in the HDF5 library, which does not withstand files
 // made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 

@@ -59,7 +59,7 @@ HardCaseResult AfterAFirefly(const HardCaseOptions&) {
     FilmPixel pixel;
     pixel.Add(Rgb::Constant(1e9f), false);
     for (int i = 0; i < kSamples; ++i) pixel.Add(Rgb::Constant(1e-6f), false);
-    return {0.01, pixel.sum[1] - 1e9, 1e-3, "what was added to 1e9"};
+    return {0.01, pixel.sum[1] - 1e9, 1e-3, "added to 1e9"};
 }
 
 // The mean of equal samples is that sample, however many there are.

@@ -95,8 +95,8 @@ std::vector<HardCase> DegenerateCases() {
              CoplanarLight},
             {"degenerate", "lamp all of whose triangles have no area",
              "infinite densities; a light that cannot be sampled", NothingButDegenerate},
-            {"degenerate", "camera exactly on a surface", "the first ray hits what it starts from",
-             CameraOnSurface},
+            {"degenerate", "camera exactly on a surface",
+             "the first ray hits the surface it starts on", CameraOnSurface},
             {"degenerate", "camera in the centre of a glass ball",
              "which side is inside is guessed from the camera", CameraInGlass}};
 }

@@ -15,10 +15,10 @@ struct HardCaseOptions {
     uint64_t seed = 1;    // of everything random, so that a failure can be repeated
 };
 
-// What came out. A case passes if |ours - answer| <= tolerance, which NaN never is.
+// Result. A case passes if |ours - answer| <= tolerance, which NaN never is.
 struct HardCaseResult {
     double answer = 0, ours = 0, tolerance = 0;
-    std::string note = "";  // what the figures count, and of several trials which one is shown
+    std::string note = "";  // the unit of the figures, and of several trials the one shown
 
     bool Passed() const;
 };
@@ -26,7 +26,7 @@ struct HardCaseResult {
 struct HardCase {
     std::string theme;
     std::string name;
-    std::string what;  // what goes wrong elsewhere
+    std::string what;  // the error made elsewhere
     std::function<HardCaseResult(const HardCaseOptions&)> run;
 };
 
@@ -50,7 +50,7 @@ std::vector<HardCase> RandomCases();
 // Returns the result that is furthest out of its tolerance, or closest to it. At least one.
 HardCaseResult Worst(std::span<const HardCaseResult> results);
 
-// Counts what must never happen. A note on the first occurrence follows the total.
+// Counts violations of a condition. A note on the first occurrence follows the total.
 struct Failures {
     int64_t trials = 0, count = 0;
     std::string first;  // of the first failure: the seed or whatever else repeats it

@@ -17,7 +17,7 @@ struct Tail {
 
 std::vector<Tail> HeavyTails();
 
-// What a rule does to a block.
+// Stop of a rule on a block.
 struct StopOutcome {
     int spp = 0;        // 10,000 where it never stops
     double bias = 0;    // of the block's mean, relative

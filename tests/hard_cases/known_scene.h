@@ -12,7 +12,7 @@ namespace lull {
 struct TemporaryDirectory;
 
 struct KnownScene {
-    std::string world;                            // what stands after WorldBegin
+    std::string world;                            // after WorldBegin
     std::string camera = "0 0 -3  0 0 0  0 1 0";  // LookAt
     double fov = 40;
     int size = 8;                 // pixels a side

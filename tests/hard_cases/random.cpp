@@ -145,7 +145,7 @@ HardCaseResult Distributions(const HardCaseOptions& options) {
 std::vector<HardCase> RandomCases() {
     return {
         {"random tests", "rays from random triangles, sizes 1e-7 to 1e6, far off",
-         "a ray meets what it starts from", Reintersection},
+         "a ray hits the triangle it starts on", Reintersection},
         {"random tests", "BSDF samples, a quarter of them at 1e-6 to the surface",
          "densities that do not belong to the samples", Bsdfs},
         {"random tests", "points on spheres, sizes 1e-6 to 1e4", "densities of tiny cones", Shapes},

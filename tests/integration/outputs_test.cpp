@@ -73,7 +73,7 @@ TEST(Outputs, OfRendersAreNoInputs) {
     ExpectRefused(directory,
                   "render scene.pbrt -o o.exr --checkpoint human.csv --stop "
                   "thresholds:link.csv:scene --block 8",
-                  "--checkpoint", "what the rule reads,");
+                  "--checkpoint", "the file of the rule,");
 }
 
 TEST(Outputs, OfOtherCommandsAreNoInputs) {

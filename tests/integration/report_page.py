@@ -244,7 +244,7 @@ def main(lull, chromium):
         browser.open(folder / "compare.html")
         check_two(browser)
         check_blocks(browser, "compare", 3)
-        choose(browser, "Over it", "spp:human")
+        choose(browser, "Overlay", "spp:human")
         check(browser.evaluate("document.querySelector('.stage svg').textContent.includes('80')"),
               "compare: the map has the samples of each block")
         check(browser.evaluate("document.querySelectorAll('#summary thead th').length === 4 &&"

@@ -39,7 +39,7 @@ inline Outcome ExpectSuccess(const TemporaryDirectory& directory, const std::str
     return ExpectSuccess(RunLull(directory, arguments));
 }
 
-// A small scene that renders at once; `world` is what is in it.
+// A small scene that renders at once; `world` has its contents.
 inline std::string SceneText(const std::string& world, const std::string& film = "") {
     return "LookAt 0 0 -3  0 0 0  0 1 0\n"
            "Camera \"perspective\" \"float fov\" [40]\n"

@@ -81,7 +81,7 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     EXPECT_EQ(FeatureNames(model.settings.features), "masked_noise,logspp");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
     // How far people are from its stops is known then, and renders say so.
-    EXPECT_TRUE(Contains(outcome.out, "80 % of the thresholds of people lie between "));
+    EXPECT_TRUE(Contains(outcome.out, "80 % of the human thresholds are "));
     EXPECT_EQ(model.logRatios.size(), 11u);
     directory.Write("scene.pbrt", SceneText(kSphere));
     const Outcome render =

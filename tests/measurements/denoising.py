@@ -1,10 +1,10 @@
-"""Renders scenes by the default rule, plain and denoised, and says what both took and how wrong they are.
+"""Renders scenes by the default rule, plain and denoised, and prints the time and error of both.
 
     python3 denoising.py FOLDER NAME=SCENE.pbrt[@X0,X1,Y0,Y1] ... [--lull ../../build/release/renderer/lull]
-    python3 denoising.py --calibrate FOLDER ...     # what renders say of their error, beside the truth
+    python3 denoising.py --calibrate FOLDER ...     # estimated and true errors
     python3 denoising.py --denoised FOLDER ...      # without renders by the default rule, which take hours
 
-Images are kept in FOLDER: what is there is not rendered again. The truth is a denoised render of --truth spp
+Images are kept in FOLDER: existing ones are not rendered again. The truth is a denoised render of --truth spp
 with another seed, whose own error adds to all figures. With --truth 0 there is none.
 """
 

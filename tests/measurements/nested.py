@@ -4,7 +4,7 @@ trained, on the others.
     python3 nested.py LULL HUMAN.csv DATASET.h5... [--grid "mask 24 40 1e9; noisy-weight 1 1.4 2"] [--keep FOLDER]
 
 Options are chosen by the critical error at 2 % with recordings extended, each of the other viewpoints left out in turn. Results
-are kept in FOLDER, and what is there is not trained again.
+are kept in FOLDER, and existing ones are not trained again.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Compares the metric of visible differences with what people saw.
+"""Compares the metric of visible differences with human thresholds.
 
     python3 visible_difference.py sensitivity PROGRAM data_individual.csv    # castleCSF's data: thresholds of single people
     python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # the blocks whose recordings people judged

@@ -3,7 +3,7 @@
 
     make.py scenes                     writes scenes/NAME.pbrt and the images they use
     make.py references PBRT [NAME...]  renders them (those named) into references/NAME.exr
-    make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256) and writes what it finds into README.md
+    make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256) and writes the results into README.md
 
 PBRT is a pbrt-v3 whose film has been told to write moments: where the environment variable
 PBRT_MOMENTS names a file, each pixel's mean (R, G, B), unbiased variance of one sample and number of

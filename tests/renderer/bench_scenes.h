@@ -28,7 +28,7 @@ inline std::vector<std::string> BenchScenes() {
     return files;
 }
 
-// Compiles one of them; what it lacks is replaced, and nobody hears of it.
+// Compiles one of them, with silent substitutes for missing files and features.
 inline std::unique_ptr<const Scene> LoadScene(const std::string& file, const Vec2i& resolution) {
     Warnings warnings({}, true);
     CompileOptions options;

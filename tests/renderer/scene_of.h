@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Returns the text of a pbrt-v3 file: what stands before the world, and the world.
+// Returns the text of a pbrt-v3 file: the directives before the world, and the world.
 inline std::string WorldText(const std::string& world, const std::string& before = "") {
     return before + "\nWorldBegin\n" + world + "\nWorldEnd\n";
 }

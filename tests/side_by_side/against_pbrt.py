@@ -28,7 +28,7 @@ from seconds import Seconds
 
 
 class Scene:
-    """Holds what is known of one scene: for each render its processor seconds."""
+    """One scene: for each render its CPU time."""
 
     def __init__(self, path, o):
         self.path, self.o = os.path.abspath(path), o

@@ -36,8 +36,8 @@ void SetSurface(float metallic, float roughness, json* made) {
     (*made)["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
 }
 
-// Sets the reflectance at normal incidence of what is no metal: by the strength of an interface of
-// index 1.5, or by a higher index.
+// Sets the reflectance at normal incidence of dielectrics: by the strength of an interface of index
+// 1.5, or by a higher index.
 void SetReflectance(float f0, json* made) {
     constexpr float kUsual = 0.04f;
     if (f0 < kUsual)
@@ -47,7 +47,7 @@ void SetReflectance(float f0, json* made) {
     (*made)["extensions"]["KHR_materials_ior"]["ior"] = (1 + root) / (1 - root);
 }
 
-// Returns what a smooth conductor reflects at normal incidence.
+// Returns the reflectance of a smooth conductor at normal incidence.
 Rgb ConductorReflectance(const Rgb& eta, const Rgb& k) {
     return ((eta - 1).square() + k.square()) / ((eta + 1).square() + k.square());
 }

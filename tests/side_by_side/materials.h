@@ -10,8 +10,8 @@
 
 namespace lull {
 
-// Adds materials and the images they use to a file, each once. What glTF cannot express becomes
-// matte grey, with a warning.
+// Adds materials and the images they use to a file, each once. Materials that glTF cannot express
+// become matte grey, with a warning.
 class MaterialWriter {
   public:
     MaterialWriter(const Description& description, GlbFile* file, Warnings* warnings)

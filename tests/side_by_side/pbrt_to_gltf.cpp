@@ -1,6 +1,6 @@
-// Turns a pbrt-v3 scene into a binary glTF file, so that other renderers can be compared with lull
-// on it. The file looks like the scene as far as glTF's materials allow; what they do not allow is
-// warned of.
+// Converts a pbrt-v3 scene to a binary glTF file, so that other renderers can be compared with lull
+// on it. The file looks like the scene as far as glTF's materials allow; differences cause
+// warnings.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-"""Reads images, and makes of them what eyes see."""
+"""Reads images, and converts them to lightness."""
 
 import sys
 
@@ -23,6 +23,6 @@ def read(path):
 
 
 def lightness(rgb):
-    """Returns CIE 1976 lightness, 0 to 100, of what a display shows of linear RGB."""
+    """Returns CIE 1976 lightness, 0 to 100, of linear RGB on a display."""
     y = np.clip(rgb, 0, 1) @ WEIGHTS
     return 116 * np.where(y > 0.008856, np.cbrt(y), 7.787 * y + 16 / 116) - 16

@@ -1,4 +1,4 @@
-"""Keeps what renders took."""
+"""Stores the CPU times of renders."""
 
 import json
 import os

@@ -31,7 +31,7 @@ PROGRAMS = ('lull', 'cycles')
 
 
 class Scene:
-    """Holds what is known of one scene: its files, and for each render the processor seconds."""
+    """One scene: its files, and for each render the CPU time."""
 
     def __init__(self, path, o):
         self.path, self.o = os.path.abspath(path), o

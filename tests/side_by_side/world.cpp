@@ -79,7 +79,7 @@ std::vector<Sky> ReadSkies(const Description& description) {
 // Returns where `lull render --environment` has the directions of a file's image, in glTF's world.
 Eigen::Matrix3d GltfFromEnvironment() {
     Description upright;
-    // What the camera of a glTF file makes of the world: its handedness.
+    // The handedness of the camera of a glTF file.
     upright.cameraFromWorld = Eigen::Vector4d(1, 1, -1, 1).asDiagonal();
     SetEnvironment("any.exr", 0, &upright);
     return upright.lights.back().worldFromLight.topLeftCorner<3, 3>();

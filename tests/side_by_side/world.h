@@ -1,4 +1,4 @@
-// Converts what surrounds the shapes of a pbrt-v3 scene to glTF: the view, lights, environment.
+// Converts the view, lights and environment of a pbrt-v3 scene to glTF.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Spoils what is saved.
+// Damages saved states.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Checks that restore(state) throws for every `step`-th shorter part of what it takes.
+// Checks that restore(state) throws for every `step`-th shorter part of a state.
 template <typename Restore>
 void ExpectRefusesCut(std::span<const std::byte> state, size_t step, const Restore& restore) {
     ASSERT_FALSE(state.empty());

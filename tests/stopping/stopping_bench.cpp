@@ -1,4 +1,4 @@
-// Measures what a decision costs on a block of 200x200 pixels. A pass of 20 spp over it takes
+// Measures the cost of a decision on a block of 200x200 pixels. A pass of 20 spp over it takes
 // about a second on one core, so that 10 ms are 1 %.
 #include <benchmark/benchmark.h>
 

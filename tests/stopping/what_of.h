@@ -1,4 +1,4 @@
-// Catches what calls refuse.
+// Catches exceptions of calls.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Returns what a std::runtime_error thrown by `call` says; empty where none was thrown.
+// Returns the message of a std::runtime_error thrown by `call`; empty where none was thrown.
 template <typename Call>
 std::string WhatOf(const Call& call) {
     try {

@@ -23,7 +23,7 @@ def _decode(message):
         name, at = _text(message, at)
         names.append(name)
     x, y, width, height = struct.unpack_from("<4i", message, at)
-    # What is skipped says where the channels lie; lull has those of a pixel beside each other.
+    # The skipped bytes are the positions of channels; lull's pixels have adjacent channels.
     values = np.frombuffer(message, "<f4", width * height * count, at + 16 + 16 * count)
     values = values.reshape(height, width, count)
     return x, y, {name: values[:, :, i] for i, name in enumerate(names)}

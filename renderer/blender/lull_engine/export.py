@@ -54,7 +54,7 @@ def show_as_rendered(scene, layer):
         collection.collection.hide_viewport = False
     for o in scene.objects:
         o.hide_render = o not in wanted
-        o.hide_viewport = False  # what others need is evaluated, too
+        o.hide_viewport = False  # dependencies are evaluated, too
         if o.name in layer.objects:
             o.hide_set(o.hide_render)
         for modifier in o.modifiers:
@@ -89,7 +89,7 @@ def set_camera(scene, warn):
         raise SystemExit("the scene has no camera")
     data = camera.data
     if data.type == 'PANO':
-        raise SystemExit(f"camera '{camera.name}' is panoramic, which glTF cannot say")
+        raise SystemExit(f"camera '{camera.name}' is panoramic, which glTF does not support")
     for o in scene.objects:
         o.hide_render = o.hide_render or (o.type == 'CAMERA' and o != camera)
     camera.hide_render = False
@@ -123,7 +123,7 @@ def patch(path):
         # Without this, glass would be a thin sheet; Blender's is solid.
         if "KHR_materials_transmission" in extensions:
             extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-        # Without this, what does not reflect would do so at grazing angles.
+        # Without this, surfaces without specular reflection would reflect at grazing angles.
         specular = extensions.get("KHR_materials_specular", {})
         if specular.get("specularColorFactor") == [0, 0, 0]:
             specular["specularFactor"] = 0

@@ -1,10 +1,10 @@
 """The panels of lull, and those of Blender that are for every engine."""
 import bpy
 
-# Those that are only for EEVEE, but needed with any engine: what a surface, the world or a lamp is.
+# Panels of EEVEE that every engine needs: properties of surfaces, the world and lights.
 _BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface",
              "EEVEE_WORLD_PT_surface", "DATA_PT_EEVEE_light", "DATA_PT_spot")
-# Those that say what lull does not do.
+# Panels of features that lull does not support.
 _OTHERS = ("RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "RENDER_PT_gpencil",
            "VIEWLAYER_PT_layer_passes")
 

@@ -1,7 +1,7 @@
 """Converts materials to nodes that Blender's exporter supports."""
 import bpy
 
-# What the exporter follows upwards of a Principled BSDF.
+# Nodes through which the exporter finds a Principled BSDF.
 _KNOWN = {'OUTPUT_MATERIAL', 'BSDF_PRINCIPLED', 'EMISSION', 'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP',
           'SEPRGB', 'SEPARATE_COLOR', 'COMBRGB', 'COMBINE_COLOR', 'VERTEX_COLOR', 'RGB', 'VALUE',
           'REROUTE', 'TEX_COORD', 'ATTRIBUTE'}

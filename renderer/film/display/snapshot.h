@@ -10,8 +10,8 @@
 
 namespace lull {
 
-// Used by all threads of a render and by the one that sends. The image is cut into cells; what has
-// changed in a cell is one rectangle, however often it changes before it is sent.
+// Used by all threads of a render and by the one that sends. The image is cut into cells; the
+// changes of a cell are one rectangle, however often it changes before it is sent.
 class Snapshot {
   public:
     static constexpr int kChannels = 5;  // R, G, B, spp, stop
@@ -20,7 +20,7 @@ class Snapshot {
     explicit Snapshot(const PixelRect& region);
 
     void Show(const PixelRect& pixels, const Film& film);
-    // Shows these colours, R, G, B of each pixel, from now on in place of those of the film.
+    // Shows these colours, R, G, B of each pixel, from now on in place of the film's.
     void ShowDenoised(const PixelRect& pixels, std::span<const float> rgb);
     void ShowStop(const PixelRect& block);
     // Marks everything that was ever shown as not sent.

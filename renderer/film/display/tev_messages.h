@@ -16,7 +16,7 @@ std::vector<std::byte> CreateImage(const std::string& name, int width, int heigh
                                    std::span<const std::string> channels);
 
 // Changes a rectangle of it, whose upper left corner is (x, y). `values` are row-major, the
-// channels of a pixel beside each other.
+// adjacent channels of a pixel.
 std::vector<std::byte> UpdateImage(const std::string& name, std::span<const std::string> channels,
                                    int x, int y, int width, int height,
                                    std::span<const float> values);

@@ -17,7 +17,7 @@ bool IsExr(std::span<const std::byte> bytes);
 // An EXR of which only the header has been read.
 class ExrFile {
   public:
-    // The bytes must outlive it. Throws std::runtime_error, or what OpenEXR throws, with the
+    // The bytes must outlive it. Throws std::runtime_error, or exceptions of OpenEXR, with the
     // reason: no EXR, deep data, or channels of fewer pixels than others.
     explicit ExrFile(std::span<const std::byte> bytes);
     ~ExrFile();

@@ -6,9 +6,9 @@
 
 namespace lull {
 
-// Throws std::runtime_error if the header is cut short, an attribute says that it is longer than
-// the rest of the file, or the list of channels is not as long as it says, so that what follows
-// would be misread: the library would allocate as much, up to 2 GB, before it reads.
+// Throws std::runtime_error if the header is cut short, an attribute claims to be longer than the
+// rest of the file, or the list of channels is not as long as it claims, so that the rest would be
+// misread: the library would allocate as much, up to 2 GB, before it reads.
 void CheckExrHeader(std::span<const std::byte> file);
 
 }  // namespace lull

@@ -29,8 +29,8 @@ namespace {
     throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
 }
 
-// Takes what OpenEXR writes. The last of it comes when its file is destroyed, from where no
-// exception comes back: it is kept.
+// Output stream of OpenEXR. The last bytes come when its file is destroyed, where exceptions are
+// lost: the first one is kept.
 class FileStream final : public Imf::OStream {
   public:
     explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file(path) {}

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kPngSignature = 8;
 
-// Owns what libpng knows of a file that it reads, and where it is in it.
+// Owns libpng's state of a file, and the read position.
 struct Reading {
     std::span<const std::byte> bytes;  // that are left
     PngError error;

@@ -24,8 +24,8 @@ namespace {
 // Takes the bytes of a PNG, in order.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-// Writes RGB rows of 8 or 16 bits. What goes wrong in the sink is kept, as no exception may pass
-// through libpng.
+// Writes RGB rows of 8 or 16 bits. Errors of the sink are kept, as no exception may pass through
+// libpng.
 class PngWriter {
   public:
     PngWriter(const std::string& path, ByteSink sink)
@@ -117,14 +117,14 @@ T EncodeSrgb(float linear) {
     return T(std::min(v, most));
 }
 
-// Encodes what is no colour.
+// Encodes alpha, without a transfer function.
 template <typename T>
 T EncodeAlpha(float alpha) {
     constexpr float most = std::numeric_limits<T>::max();
     return T(most * std::clamp(alpha, 0.f, 1.f) + 0.5f);
 }
 
-// Divides the colours of a row R, G, B, A by alpha; what is not there is black.
+// Divides the colours of a row R, G, B, A by alpha; transparent pixels are black.
 void DivideByAlpha(std::span<float> row) {
     for (size_t i = 0; i + 3 < row.size(); i += 4)
         for (size_t c = i; c < i + 3; ++c) row[c] = row[i + 3] > 0 ? row[c] / row[i + 3] : 0;
@@ -154,7 +154,7 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     writer->End();
 }
 
-// Writes what is encoded already.
+// Writes encoded pixels.
 void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int height,
                bool isSmallest) {
     writer->WriteHeader(width, height, 8, PNG_COLOR_TYPE_RGB, {}, isSmallest);

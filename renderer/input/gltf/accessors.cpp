@@ -25,7 +25,7 @@ Elements Find(const GltfDocument& document, const FileLoc& loc, int view, size_t
     const tinygltf::BufferView& v = document.model.bufferViews[size_t(view)];
     const std::vector<unsigned char>& data = document.model.buffers[size_t(v.buffer)].data;
     const size_t stride = mayBeStrided && v.byteStride > 0 ? v.byteStride : size;
-    // All of these have been bounded far below what overflows, but for the count.
+    // All of these have been bounded far below overflow, but for the count.
     const size_t room = v.byteLength >= offset + size ? v.byteLength - offset - size : 0;
     if (v.byteLength < offset + size || (count - 1) > room / stride)
         throw Error(loc, fmt::format("its {} elements go beyond the {} bytes of /bufferViews/{}",

@@ -10,9 +10,9 @@
 
 namespace lull {
 
-// Lists the nodes as the options pose them: as an animation has them while the shutter is open, or
-// as the file stands, with a warning if there are animations. Joints and weights keep what they
-// have when the shutter opens, with a warning. Throws as PoseAt() and ListNodes() do.
+// Lists the nodes as the options pose them: by an animation while the shutter is open, or as in the
+// file, with a warning if there are animations. Joints and weights have their values at the opening
+// of the shutter, with a warning. Throws as PoseAt() and ListNodes() do.
 std::vector<GltfNode> PoseNodes(const GltfOptions&, GltfDocument*, Warnings&);
 
 // Gives all nodes that an animation moves the transforms and weights that it has at a time in

@@ -60,8 +60,8 @@ void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* 
     SetFilm(aspect, loc, description);
 }
 
-// Sets what glTF's cameras lack, from `extras`: the window moved by shares of the image's sides,
-// and a thin lens.
+// Sets the properties that glTF's cameras lack, from `extras`: the window moved by fractions of the
+// image's sides, and a thin lens.
 void SetLens(const tinygltf::Value& extras, const FileLoc& loc, Description* description) {
     if (!extras.Has("lull")) return;
     const tinygltf::Value& lens = extras.Get("lull");

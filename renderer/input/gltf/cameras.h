@@ -12,8 +12,8 @@
 
 namespace lull {
 
-// Returns what has to be extended by all points of the scene before SetView(), where the options
-// ask for a view of all, or there is no camera; else nothing.
+// Returns the framing, to be extended by all points of the scene before SetView(), where the
+// options ask for a view of all, or there is no camera; else nothing.
 std::optional<Framing> FramingFor(const GltfDocument&, const std::vector<GltfNode>&,
                                   const GltfOptions&);
 

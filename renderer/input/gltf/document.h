@@ -20,7 +20,7 @@ struct GltfDocument {
 
 // Reads a file and the buffers it names; images stay encoded, those in files of their own unread.
 // Unsupported extensions lead to warnings, or to an error if the file requires them. Throws Error
-// with the file and, if there is one, the JSON pointer of what is wrong.
+// with the file and, if there is one, the JSON pointer of the mistake.
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings);
 
 }  // namespace lull

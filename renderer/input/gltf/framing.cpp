@@ -67,7 +67,7 @@ Mat4d Framing::WorldFromCamera() const {
         at.z() = std::max(at.z(), wanted);
         extent = std::max(extent, wanted - nearest);
     }
-    // What is flat, or a point, is not to lie in the camera.
+    // Flat objects and points must not be at the camera.
     at.z() = std::max(at.z(), nearest + std::max(0.1 * extent, 1e-6));
     Mat4d m = Mat4d::Identity();
     m.topLeftCorner<3, 3>() = axes;

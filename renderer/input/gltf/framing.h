@@ -8,16 +8,16 @@
 
 namespace lull {
 
-// Keeps of points, three numbers each, those that lie farthest out in a hundred directions: whoever
-// sees these sees all, but for what is a hundredth of their extent.
+// Returns those of the points, three numbers each, that lie farthest out in a hundred directions: a
+// view of these contains all points up to a hundredth of their extent.
 std::vector<Vec3f> OutlineOf(const std::vector<float>& points);
 
 // Finds from where a camera that looks in one direction sees all points just so.
 class Framing {
   public:
-    // `azimuth` is in degrees around the vertical, 0 from +z, 90 from +x; `elevation` in degrees
-    // above the horizon. `tangents` are those of half the angles that the camera sees, horizontally
-    // and vertically.
+    // `azimuth` is in degrees around the vertical, 0 from +z, 90 from +x; `elevation` in
+    // degrees above the horizon. `tangents` are of half the field of view, horizontally and
+    // vertically.
     Framing(double azimuth, double elevation, const std::array<double, 2>& tangents);
 
     void Extend(const Vec3f& point);

@@ -1,4 +1,4 @@
-// Turns punctual lights of glTF (KHR_lights_punctual) into those of a Description.
+// Converts punctual lights of glTF (KHR_lights_punctual) to lights of a Description.
 #pragma once
 
 #include "renderer/input/description.h"

@@ -1,4 +1,4 @@
-// Turns glTF's materials into those of a Description.
+// Converts glTF's materials to materials of a Description.
 #pragma once
 
 #include <map>
@@ -41,7 +41,7 @@ class GltfMaterials {
     };
 
     GltfMaterial Make(int material, bool hasColors, Warnings& warnings);
-    // What is not the material's own goes to `result`.
+    // Properties beyond the material's own parameters go to `result`.
     void AddSurface(const MaterialUse&, const GltfTextureUse& color, bool hasColors,
                     GltfMaterial* result, Warnings&);
     void AddSpecular(const MaterialUse&, Warnings&);

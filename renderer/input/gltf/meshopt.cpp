@@ -31,9 +31,10 @@ void CheckLayout(const FileLoc& loc, const std::string& mode, const std::string&
                             (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL";
     if (!fits || !filterFits || (mode == "TRIANGLES" && count % 3 != 0) ||
         (!isAttributes && filter != "NONE"))
-        throw Error(loc, fmt::format("{} elements of {} bytes are not what mode {} with filter {} "
-                                     "can hold",
-                                     count, stride, mode, filter));
+        throw Error(loc,
+                    fmt::format("mode {2} with filter {3} does not support {0} elements of {1} "
+                                "bytes",
+                                count, stride, mode, filter));
 }
 
 // Decodes a view of `byteLength` bytes. Returns the stride of its attributes, 0 for indices.

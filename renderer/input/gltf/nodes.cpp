@@ -73,7 +73,7 @@ std::vector<GltfNode> ListNodes(const GltfDocument& document) {
             throw Error(document.At(PathOf(index)), "its transform is too large");
     };
     for (const int root : Roots(document.model)) add(root, Mat4d::Identity());
-    // The list grows as it is walked; what is in it already does not move, as copies are taken.
+    // The list grows as it is walked; its present nodes do not move, as copies are taken.
     for (size_t i = 0; i < nodes.size(); ++i) {
         const GltfNode node = nodes[i];
         for (const int child : document.model.nodes[size_t(node.index)].children)

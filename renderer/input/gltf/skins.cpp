@@ -30,8 +30,8 @@ std::vector<Influences> ReadInfluences(const GltfDocument& document, const FileL
     return sets;
 }
 
-// Returns what takes normals along with a linear map, but for a positive factor. Unlike the
-// transposed inverse it exists for every map.
+// Returns the map of normals for a linear map, up to a positive factor. Unlike the transposed
+// inverse it exists for every map.
 Eigen::Matrix3d ForNormals(const Eigen::Matrix3d& m) {
     Eigen::Matrix3d c;
     c.col(0) = m.col(1).cross(m.col(2));

@@ -10,7 +10,7 @@ Vec3f VectorAt(const std::vector<float>& values, uint32_t i) {
     return {values[3 * size_t(i)], values[3 * size_t(i) + 1], values[3 * size_t(i) + 2]};
 }
 
-// Tells vertices apart by what MikkTSpace looks at, and by the side of the texture.
+// Identifies vertices by the inputs of MikkTSpace, and by the side of the texture.
 struct Corner {
     std::array<uint32_t, 8> bits;  // position, normal, texture coordinates
     bool isMirrored;

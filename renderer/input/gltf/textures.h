@@ -1,4 +1,4 @@
-// Turns glTF's textures into those of a Description.
+// Converts glTF's textures to textures of a Description.
 #pragma once
 
 #include <map>

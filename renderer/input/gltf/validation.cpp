@@ -176,7 +176,7 @@ void CheckNode(const JsonAt& o) {
     o.Numbers("translation", 3);
     CheckWeights(o);
     if (o.Has("matrix") && (o.Has("rotation") || o.Has("scale") || o.Has("translation")))
-        o.Member("matrix").Fail("stands beside a rotation, scale or translation");
+        o.Member("matrix").Fail("is combined with a rotation, scale or translation");
     o.Extension("EXT_mesh_gpu_instancing", [](const JsonAt& e) {
         e.Required("attributes");
         e.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });

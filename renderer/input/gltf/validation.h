@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Parses JSON. Throws Error with `file` for what is not JSON, not an object, or nested so deeply
-// that reading it could exhaust the stack.
+// Parses JSON. Throws Error with `file` for text that is not JSON, not an object, or nested so
+// deeply that reading it could exhaust the stack.
 nlohmann::json ParseGltfJson(const std::string& file, std::string_view text);
 
 // Throws Error with `file` and the JSON pointer of the first violation of the specification: types,

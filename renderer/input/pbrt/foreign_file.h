@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// Returns what a file is, and what to do with it, if its first bytes are those of a known format or
-// not text at all; "" if it may be a pbrt scene.
+// Returns the format of a file, and the remedy, if its first bytes are of a known format or not
+// text at all; "" if it may be a pbrt scene.
 std::string ForeignFormat(std::string_view bytes);
 
 // Returns whether a directive shows that a scene is written for pbrt-v4: one that pbrt-v3 does not

@@ -9,7 +9,7 @@
 namespace lull {
 namespace {
 
-// Bounds what an area light may hold, since every shape it lights gets a copy.
+// Bounds the values of an area light, since every shape it lights gets a copy.
 constexpr size_t kMostAreaLightValues = 1000;
 
 size_t CountValues(const Parameters& parameters) {
@@ -341,7 +341,7 @@ void PbrtBuilder::MediumInterface() {
     std::string inside = ReadString("the name of a medium");
     const bool hasOutside = lexer.Peek().kind == TokenKind::String;
     std::string outside = hasOutside ? lexer.Take().text : inside;
-    // Vacuum on both sides is what there is anyway, if nothing else was said before.
+    // Vacuum on both sides is the default, if nothing else was set before.
     const bool isVacuum = inside.empty() && outside.empty();
     if (!isVacuum && !SeesMedium("MediumInterface")) return;
     state.insideMedium = std::move(inside);

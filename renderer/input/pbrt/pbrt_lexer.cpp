@@ -12,8 +12,8 @@
 namespace lull {
 namespace {
 
-// Bounds what files included again and again may come to: deep nesting of doubled includes grows
-// without end from a few lines. Every inclusion counts as kLeastBytes at least.
+// Bounds the total of files included repeatedly: deep nesting of doubled includes grows without end
+// from a few lines. Every inclusion counts as kLeastBytes at least.
 constexpr size_t kMostRepeatedBytes = size_t(1) << 30;
 constexpr size_t kLeastBytes = size_t(1) << 14;
 // Bounds the length of a string; file names are shorter everywhere.

@@ -24,7 +24,7 @@ struct Token {
 std::string Describe(const Token& token);
 
 // Reads tokens from a stack of files: where an included file ends, the including one continues.
-// Every function throws Error at what is not a token: unterminated strings, stray control
+// Every function throws Error for invalid tokens: unterminated strings, stray control
 // characters.
 class PbrtLexer {
   public:

@@ -10,7 +10,7 @@
 namespace lull {
 namespace {
 
-// Bound what is kept of a header; real ones have a dozen lines.
+// Bound the size of a header; real ones have a dozen lines.
 constexpr int kMostLines = 10000;
 constexpr size_t kLongestLine = 4096;
 

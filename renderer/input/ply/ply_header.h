@@ -14,7 +14,7 @@ enum class PlyFormat { Ascii, LittleEndian, BigEndian };
 
 enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 
-// Returns use(T()), of C++'s type for that of values in binary files.
+// Returns use(T()), where T is the C++ type of such values in binary files.
 template <typename Use>
 auto WithTypeOf(PlyType type, const Use& use) {
     switch (type) {

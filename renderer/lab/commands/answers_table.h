@@ -11,7 +11,7 @@ namespace lull {
 // Prints which answers counted, a table of the rules and, if `each`, one of the blocks before.
 void PrintAnswerScores(std::FILE* out, const AnswerScores& scores, bool each);
 
-// Returns the table of the rules as a CSV file with a head line. Fields of what is not defined are
+// Returns the table of the rules as a CSV file with a head line. Undefined fields are
 // empty.
 std::string AnswerScoresCsv(const AnswerScores& scores);
 

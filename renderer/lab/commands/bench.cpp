@@ -35,22 +35,22 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(One render to the cap with each sampler gives the images of all fixed numbers of samples, of
-`learned`, and of the other stopping rules over a range of their settings, and what each would have
-cost: the measured seconds of processors, divided by the number of threads. The errors are against
---reference, or else against the image of the first sampler at the cap; that one has the samples of
-its sampler's other images in it, so that their error is understated near the cap.
+    R"(One render to the cap with each sampler gives the images of all fixed sample counts, of `learned`,
+and of the other stopping rules over a range of their settings. It also gives the cost of each: the
+measured CPU time, divided by the number of threads. Errors are relative to --reference, or else to
+the image of the first sampler at the cap. That image contains the samples of its sampler's other
+images, so that their error is understated near the cap.
 
-With --guide, each sampler renders once more with paths that are guided, "sobol+guide"; the time
-between rounds of learning counts among the seconds of each of these points. With auto, there are
-such points only where the guide is used.
+With --guide, each sampler renders again with guided paths, "sobol+guide"; the time between rounds of
+learning is part of the seconds of each of these points. With auto, there are such points only where
+the guide is used.
 
-With --denoise, images where the rule `denoised` stops (with --rule also at other thresholds than
-its own) are rendered again and denoised. What that takes is counted, as are the looks at blocks.
+With --denoise, images that the rule `denoised` stops (with --rule also at other thresholds than
+its own) are rendered again and denoised. The time of this and of the checks is counted.
 
-Images of other renderers join in from a CSV with lines "name,seconds,file.exr".
+Images of other renderers are added from a CSV with lines "name,seconds,file.exr".
 
-Interrupted, it leaves OUT.SAMPLER.checkpoint and goes on from there the next time.
+An interrupted run leaves OUT.SAMPLER.checkpoint and continues from there the next time.
 
 Files:
   OUT.csv   a line a point: rule, setting, sampler, spp, seconds, errors
@@ -105,7 +105,7 @@ std::vector<ObservedRule> MakeRules(const Options& options, const RenderJob& ren
     return rules;
 }
 
-// One way of rendering: what a curve is drawn for.
+// One variant of rendering, with a curve of its own.
 struct Variant {
     SamplerKind sampler = SamplerKind::Sobol;
     bool isGuided = false;
@@ -237,9 +237,9 @@ void AddPoints(const Variant& variant, const ObservedRender& observed, const Gui
     }
 }
 
-// Renders in one way, or takes what is left of an earlier run, and adds its points: none, where
-// --guide auto does not guide. Returns false if it was interrupted. The ranks share the render,
-// and the first measures.
+// Renders a variant, or continues an earlier run, and adds its points: none, where --guide auto
+// does not guide. Returns false if it was interrupted. The ranks share the render, and the first
+// measures.
 bool BenchVariant(const Variant& variant, Bench* bench) {
     RenderJob& render = bench->render;
     RenderSettings& settings = render.settings;
@@ -262,7 +262,7 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     return true;
 }
 
-// Returns what has to be known of the points.
+// Returns notes for the reader of the points.
 std::vector<std::string> Notes(const Options& options) {
     std::vector<std::string> notes;
     if (options.reference.empty())

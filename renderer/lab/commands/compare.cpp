@@ -32,7 +32,7 @@ std::vector<NamedFile> OutputsOf(const CompareOptions& options,
     return outputs;
 }
 
-// Returns what is read, but for the scene.
+// Returns the input files, without those of the scene.
 std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     std::vector<NamedFile> inputs = {{"--automatic", options.automatic},
                                      {"--human", options.human},
@@ -277,7 +277,7 @@ void WriteComparison(const CompareOptions& options, ComparisonReport report, Res
 
 void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* compare = app.add_subcommand(
-        "compare", "Compares automatic stopping with people's thresholds and with a reference.");
+        "compare", "Compares automatic stopping with human thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
     AddCompareOptions(*compare, options.get());
     compare->callback([=] {

@@ -9,29 +9,29 @@ namespace lull {
 namespace {
 
 constexpr const char* kFooter =
-    R"(With a scene and --snapshots, one render to the cap gives three images: "automatic", where RULE
-stopped each block, "human", where a thresholds file says, and the "reference" at the cap. Sample k
-of a pixel is always the same, so they are the images that three renders would give, bit for bit.
-With --reference instead, each block is rendered to the larger of the two thresholds. Without a scene,
-images rendered before are compared.
+    R"(With a scene and --snapshots, one render to the cap gives three images: "automatic", with blocks as
+stopped by RULE, "human", with blocks at their human thresholds, and the "reference" at the cap.
+Sample k of a pixel is always the same, so that three renders would give the same bits. With
+--reference instead, each block is rendered to the larger of the two thresholds. Without a scene,
+existing images are compared.
 
-With --images the three images are made of another renderer's pictures: each block of the one at which
-RULE stopped it, or the first of as many samples as people asked for; the last picture is the
-reference. Names hold the samples per pixel, as for lull record --images.
+With --images the three images are made of another renderer's pictures. A block comes from the picture
+at which RULE stopped it, or from the first at or above its human threshold; the last picture is the
+reference. Names contain the samples per pixel, as for lull record --images.
 
 With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
-denoised as a whole; its samples are rendered again for that. What looking and denoising take is
-counted as the rule's.
+denoised as a whole; its samples are rendered again. The time of checks and denoising counts as the
+rule's.
 
-Figures, against the reference, for the image and each block: RMSE and relMSE (linear), RMSE of the
-lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020), those of the
-8-bit image that a display shows; "visible", its visible difference (ColorVideoVDP, Mantiuk et al.
-2024) on --viewing, 0 for equal images; "seams", how much more the noise jumps across the borders of
-blocks than inside (1: not at all). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for
-displays, of which there are no linear figures. Seconds are CPU time; "~" marks estimates.
+Errors relative to the reference, for the image and each block: RMSE and relMSE (linear); RMSE of the
+lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020) of the 8-bit
+display image; "visible", its visible difference (ColorVideoVDP, Mantiuk et al. 2024) on --viewing,
+0 for equal images; "seams", the jump of the noise level across block borders / inside blocks (1: no
+seams). Images from files are .exr, or .png, .jpeg and 8-bit .tiff for displays, which have no linear
+errors. Seconds are CPU time; "~" marks estimates.
 
 Files, in one folder:
-  OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images, where they
+  OUT.automatic.exr .png, OUT.human..., OUT.denoised..., OUT.reference...   the images that
                        were rendered
   OUT.thresholds.csv   samples per pixel at which the rule stopped each block
   OUT.compare.json     all figures
@@ -54,7 +54,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     CLI::Option* images =
         app.add_option("--images", o->images,
                        "Pictures of another renderer, their spp in the file names, to make the\n"
-                       "images of; NAME is that of the viewpoint [the folder's]")
+                       "images of; NAME names the viewpoint [the folder's name]")
             ->type_name("DIR[:NAME]")
             ->excludes(scene);
     auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")

@@ -26,8 +26,8 @@ void AddCompareOptions(CLI::App& app, CompareOptions* options);
 // Compares images that are made of another renderer's pictures. Throws Error and UsageError.
 ExitCode CompareFolder(CompareOptions options);
 
-// Writes figures and page beside what was written before, and prints the table and the names of
-// all files. Throws Error where one is not where it should be.
+// Writes figures and page next to the images, and prints the table and the names of all files.
+// Throws Error where an image is missing.
 void WriteComparison(const CompareOptions& options, ComparisonReport report, ResultFiles results);
 
 }  // namespace lull

@@ -88,8 +88,8 @@ ExitCode CompareFolder(CompareOptions options) {
         report.comparison = std::move(compared.comparison);
         for (const std::string& rule : compared.blind)
             report.notes.push_back(
-                fmt::format("{} has looked at no picture: it compares pictures, and these lie too "
-                            "far apart; its blocks are those of the last one.",
+                fmt::format("{} has checked no picture: it compares pictures, and these are too "
+                            "far apart; its blocks are taken from the last one.",
                             rule));
         report.comparison.display = options.display;
         Measure(&report.comparison);

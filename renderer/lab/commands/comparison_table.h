@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Returns the figures of the images, a line an image, and below what was saved.
+// Returns the figures of the images, a line an image, and below them the savings.
 std::string ComparisonTable(const ComparisonReport&);
 
 }  // namespace lull

@@ -26,18 +26,18 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(Renders as the human thresholds were measured, with pbrt-v3's random sampler and its noise per
-sample, and records SVD-entropies, lightness and noise of every block at all passes up to 400 spp and
-at every second one after. Thresholds are no part of the file: `lull train` and `lull evaluate` join
-them by the viewpoint's name.
+    R"(Renders like the images that observers judged, with pbrt-v3's estimator and random sampler. Records
+SVD-entropies, lightness and noise of every block at all passes up to 400 spp and at every second one
+after. Thresholds are no part of the file: `lull train` and `lull evaluate` join them by the
+viewpoint's name.
 
-With --images the records are those of another renderer's pictures: all files of a folder, with their
-spp in the names (room-40spp.png, or the last number, room_00040.png), at any spp. They hold what a
-picture by itself shows: entropies, lightness and the 26 attributes, and not what compares halves of
-the samples (noise, dammertz, cycles, luxtile).
+With --images the records are made of another renderer's pictures: all files of a folder, with their
+spp in the names (room-40spp.png, or the last number, room_00040.png), at any spp. They contain
+entropies, lightness and the 26 attributes, but no measurements of half buffers (noise, dammertz,
+cycles, luxtile).
 
-Blocks that the file has already are left out, so the same command can be given again. Interrupted,
-it leaves OUT.h5.NAME.checkpoint and goes on from there the next time.
+Blocks that the file has already are left out, so that the same command can be given again. An
+interrupted one leaves OUT.h5.NAME.checkpoint and continues from there the next time.
 
 Examples:
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
@@ -176,7 +176,7 @@ void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     CLI::App* dataset = app.add_subcommand(
         "record", "Records block histories of a viewpoint, to train stopping rules.");
     auto options = std::make_shared<Options>();
-    // What people judged is pbrt-v3's own noise.
+    // Observers judged pbrt-v3's own noise.
     options->render.sampler = SamplerKind::Random;
     options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());

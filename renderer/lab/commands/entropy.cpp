@@ -28,23 +28,24 @@ constexpr const char* kFooter =
     R"(Computes the SVD-entropy H of the lightness L (0 to 100) of pictures as an 8-bit display shows them,
 and its parts H1, of the first quarter of the singular values, and H2, of the others, all in [0, 1]
 (Buisine et al. 2021, Eqs. 3 to 5): of the picture and of each block as one matrix, and the mean over
-the sub-blocks of each block, which are what networks are given.
+the sub-blocks of each block, the inputs of networks.
 
-Of one picture the table has a row for each block; of several, or of a folder with the samples per
-pixel in the names (--images), a row for each picture in the order of these, with means over blocks.
+The table has a row for each block of a single picture. Of several pictures, or of a folder with the
+samples per pixel in the names (--images), it has a row for each, in this order, with means over
+blocks.
 
 --csv writes the curves of all blocks, a row for each picture and block:
   viewpoint,picture,spp,block,sub_block,x,y,width,height,h,h1,h2,mean_h,mean_h1,mean_h2
-A row without a block is that of the whole picture. spp is empty where the name says none. --values
-adds a row for each sub-block; --attributes adds the 26 attributes of each block, a1 to a26: how much
-13 filters take out of it, means and then standard deviations.
+A row without a block is of the whole picture. spp is empty if it is not in the name. --values adds a
+row for each sub-block; --attributes adds the 26 attributes of each block, a1 to a26: differences to
+13 filtered versions, means and then standard deviations.
 
 Examples:
   lull entropy picture.png
   lull entropy picture.png --block 100 --sub-blocks 25 --csv entropies.csv --values
   lull entropy --images pictures/kitchen --csv curves.csv
 
-Exit codes: 0 done, 1 the input or the environment is at fault, 2 wrong usage.)";
+Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddOptions(CLI::App& app, Options* o) {
     app.add_option("PICTURE", o->pictures, "Pictures: .png, .exr, ...");

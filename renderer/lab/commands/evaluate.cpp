@@ -43,36 +43,36 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(Without data sets, the thresholds of --predicted are judged on all viewpoints that both files
-have. With data sets (see lull record), everything is judged on the blocks that these hold, and
-rules are run on what was recorded, without rendering: every pass up to 400 spp, every second after.
+    R"(Without data sets, the thresholds of --predicted are evaluated on all viewpoints that both files
+have. With data sets (see lull record), only their blocks are evaluated, and rules run on the
+recordings, without rendering: every pass up to 400 spp, every second after.
 --images DIR does the same on another renderer's pictures, as lull record --images would record
-them. Rules that compare halves of the samples (lnoise, dammertz, cycles, luxtile, learned:noise)
-cannot be run on pictures.
+them. Rules that need a half buffer (lnoise, dammertz, cycles, luxtile, learned:noise) cannot be run
+on pictures.
 
---stop takes the rules of lull render. --rivals runs those that have one setting, each with the one
-that is best on the other viewpoints (leave one out); "setting" says which, and for all what would
-be best on all of them. "entropy, mask" is entropy with two settings that are chosen so: its
-threshold, and how much detail hides noise (8 to 40; 1e+09: not at all).
+--stop takes the rules of lull render. --rivals runs the rules with one setting, each with the best
+setting of the other viewpoints (leave one out), which is in the column "setting"; the row of all
+viewpoints has the best one for all of them. "entropy, mask" is entropy with two settings: its
+threshold, and the masking of noise by detail (8 to 40; 1e+09: none).
 
 Columns:
-  views   how many viewpoints, and in them
-  blocks  how many blocks were judged
+  views   number of viewpoints, and of their
+  blocks  evaluated blocks
   open    recordings that ended, before 10,000 spp, when the rule had not stopped the block. Such
-          rules have two rows: "at least", with blocks taken to stop at these ends, which is the
-          least error if people wanted no more than was recorded; and "extended", with recordings
-          that go on by the laws that their own noise and entropies follow. Predicted thresholds
-          are taken as they are, and clipped to the ends in a row of their own.
-  ceM     critical error at a margin of M %: the share of spp at which the block was stopped, or
-          not, against the scores of people, in %
+          rules have two rows: "at least", with these blocks stopped at the ends, which is a lower
+          bound of the error if observers wanted no more; and "extended", with recordings
+          extrapolated by the laws of their own noise and entropies. Predicted thresholds are used
+          unchanged, and clipped to the ends in a separate row.
+  ceM     critical error at a margin of M %: the fraction of spp at which the decision to stop or
+          continue contradicts the observers, in %
   95 %    range of the first ceM in 95 of 100 draws of viewpoints, and of blocks in them, with
           replacement; with few viewpoints too narrow
   error   mean distance from the human threshold, in spp, and in % of 10,000 spp
   early   % of the blocks that stop below 80 % of the human threshold
   late    % of the blocks that stop above 125 % of it
   acc     accuracy of the decisions (noisy or not, by block and spp) in %, classes balanced
-  auc     area under their ROC curve in %, by the number that the rule compares; for those that
-          have none (fixed, thresholds, cycles) by its stop / spp
+  auc     area under their ROC curve in %, by the number that the rule compares; for rules
+          without one (fixed, thresholds, cycles) by stop / spp
   within  rank correlation of stops and human thresholds of the blocks of a viewpoint, and
   between of the means of the viewpoints; "-" where all are the same, or fewer than three
 All are means over the viewpoints, but acc and auc are of all decisions together.
@@ -81,26 +81,26 @@ All are means over the viewpoints, but acc and auc are of all decisions together
 viewpoint ("known"), for the others, and for all viewpoints. A rule shows skill by block only where
 it has a lower error than the known constant.
 
---split paper:FILE judges by the blocks alone that FILE does not list: a row NAME;b0;b1;... has the
-blocks of a viewpoint that a model was trained on (lull train --split).
+--split paper:FILE evaluates only blocks that FILE does not list: a row NAME;b0;b1;... has the
+training blocks of a viewpoint (lull train --split).
 
---curves and --figure show how the number of each --stop rule falls with the samples of each block,
-as a CSV file and as an SVG picture of one viewpoint, with the thresholds of people and the stops
-(Buisine et al. 2021, Fig. 13).
+--curves and --figure show the number of each --stop rule over the samples of each block, as a CSV
+file and as an SVG image of one viewpoint, with human thresholds and stops (Buisine et al. 2021,
+Fig. 13).
 
---answers judges --stop rules by single answers of people instead, on data sets of one viewpoint.
+--answers evaluates --stop rules by observers' single answers instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
-spp of the picture that was shown, 1 where noise was seen. Two more columns, observer,track, say which
-answers are steps of one adjustment (lull study --collect): those of a track count as one answer. All
-rules are judged by the same answers.
+spp of the picture that was shown, 1 where noise was seen. Two more columns, observer,track, identify
+the steps of one adjustment (lull study --collect): the answers of a track count as one. All rules
+are evaluated on the same answers.
   loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
           the rule's number (of its odds, for a network), with a location and a slope to be fitted
-  share   % of the way from one threshold for all blocks to one threshold a block, both with one
-          scatter in log spp
+  share   explained fraction in %: 0 for one threshold for all blocks, 100 for one per block, both
+          with one scatter in log spp
   auc     area under the ROC curve in %, of the number
   early   % of the blocks that stop below 80 % of the fitted threshold of the block, where noise is
   late    seen half of the time, and above 125 % of it; level: mean stop / threshold (geometric)
-  open    stops beyond recordings, which go on by their own laws for them
+  open    stops beyond recordings, which are extrapolated
 
 Examples:
   lull evaluate --human human.csv --predicted predicted.csv --grid 40
@@ -129,7 +129,7 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("DATASET.h5", o->datasets, "Data sets to run rules on")
         ->check(CLI::ExistingFile);
     AddImagesOptions(app, &o->images, &o->blockSize);
-    CLI::Option* human = app.add_option("--human", o->human, "Thresholds of people")
+    CLI::Option* human = app.add_option("--human", o->human, "Read human thresholds")
                              ->check(CLI::ExistingFile)
                              ->type_name("H.csv");
     app.add_option("--answers", o->answers,

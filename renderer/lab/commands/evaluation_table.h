@@ -15,7 +15,7 @@ void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
                      const ScoreOptions& options, bool each);
 
 // Returns all rows as a CSV file with a head line: one for each rule and viewpoint, and for each
-// rule one with the viewpoint "all". Fields of what is not defined are empty.
+// rule one with the viewpoint "all". Undefined fields are empty.
 std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOptions& options);
 
 // Returns a CSV file with a head line and one for each rule and block: where people saw no more

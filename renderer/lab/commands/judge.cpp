@@ -19,7 +19,7 @@ namespace lull {
 
 namespace {
 
-// Says how far apart thresholds will be for chance alone.
+// Prints the expected scatter of thresholds by chance alone.
 void SayPower(int answers) {
     const double octaves = StaircaseOctaves(answers);
     Say("lull: {} answers to each block: thresholds of one observer scatter by {:.2f} octaves (a "
@@ -68,7 +68,7 @@ std::vector<int> LevelsOf(const JudgeSettings& options, const ScheduleOptions& s
     return levels;
 }
 
-// What is recorded beside the study, where that is asked for.
+// Recording of the study's render, on request.
 struct Recording {
     std::string file;  // empty: nothing
     std::vector<ViewpointRecording> dataset;

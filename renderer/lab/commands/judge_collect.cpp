@@ -1,4 +1,4 @@
-// `lull study --collect`: makes thresholds of what observers said.
+// `lull study --collect`: computes human thresholds from observers' answers.
 #include <fmt/format.h>
 
 #include <map>
@@ -31,9 +31,8 @@ void Tell(const Collected& collected) {
 std::string AgreementOf(const CollectedViewpoint& viewpoint) {
     if (!viewpoint.agreement) return "not known";
     const std::string word = AgreementInAWord(*viewpoint.agreement);
-    return fmt::format(
-        "{:.2f} ({}{})", *viewpoint.agreement, word,
-        word == "poor" ? ": these thresholds say more of the observers than of the picture" : "");
+    return fmt::format("{:.2f} ({}{})", *viewpoint.agreement, word,
+                       word == "poor" ? ": observers differ more than blocks do" : "");
 }
 
 // Prints how far the thresholds of a viewpoint can be relied on.
@@ -46,8 +45,8 @@ void SayCertainty(const CollectedViewpoint& viewpoint) {
             viewpoint.name, fewest, fewest == 1 ? "" : "s", kEnoughAnswers);
 }
 
-// Returns the names of the files of single answers and what goes there; of more than one viewpoint
-// each has its own.
+// Returns the files of single answers with their contents; with more than one viewpoint each has
+// its own.
 std::map<std::string, std::string> SingleAnswers(const Collected& collected,
                                                  const std::string& base) {
     std::map<std::string, std::string> files;

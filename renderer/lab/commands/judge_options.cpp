@@ -12,32 +12,31 @@ namespace {
 constexpr const char* kFooter =
     R"(Makes a page on which observers mark visible noise, and collects their answers.
 
-The scene is rendered to the cap once, and each block kept at a ladder of samples per pixel, each
-level a quarter above the last. STUDY.html opens from disk in any browser and asks for nothing from
-anywhere; an observer ends with a small file of answers. Interrupted, the render leaves
-STUDY.html.checkpoint, and the same command goes on from there. The noise is that of `lull render`
-with the same --sampler and --estimator.
+The scene is rendered to the cap once, and each block stored at a ladder of sample counts, each level
+a quarter above the last. STUDY.html opens from disk in any browser, without a network connection; an
+observer ends with a small file of answers. An interrupted render leaves STUDY.html.checkpoint, from
+which the same command continues. The noise is the same as of `lull render` with the same --sampler
+and --estimator.
 
 Procedures:
-  adjust      the image beside the reference: observers point where they differ, and the block gets
+  adjust      image and reference side by side: observers point where they differ, and the block gets
               one level better, until both look the same (Buisine et al. 2021)
-  staircase   one block at a time beside its reference: which of the two is noisier? Levels are
+  staircase   one block and its reference side by side: which of the two is noisier? Levels are
               chosen by QUEST (Watson and Pelli 1983)
 Start levels differ between observers, some blocks are asked twice, and some show the reference on
-both sides, to find out who does not look. --descending asks a share of the blocks once more from
-above: they begin without noise, and get worse until it is about to be seen. The page lets nobody
-begin in a window that does not show both pictures as a whole.
+both sides, to detect inattentive observers. --descending asks a fraction of the blocks again from
+above: they begin without noise, and get worse until it is just visible. Observers cannot begin in a
+window that is too small for both pictures.
 
---collect writes, beside each other:
+--collect writes, in one folder:
   HUMAN.csv             mean thresholds over observers, in the format of the published ones
   HUMAN.details.csv     of each block: spread, 95 % confidence interval of the mean; of each
                         viewpoint: how far observers agree
   HUMAN.observers.csv   of each observer: consistency, checks failed, display, distance, age and
                         sight, who was left out or is in doubt, and why
-  HUMAN.answers.csv     what was said one by one, by whom and in which adjustment (track), for `lull
-                        evaluate --answers`; not of staircases, whose answers are half right by
-                        chance
-Files that are damaged, foreign or contradict each other are named and left out.
+  HUMAN.answers.csv     single answers with observer and adjustment (track), for `lull evaluate
+                        --answers`; not of staircases, whose answers are half right by chance
+Damaged, foreign and contradictory files are named and left out.
 
 Examples:
   lull study scene.pbrt -o study.html --record data.h5
@@ -92,11 +91,10 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
         ->type_name("DATA.h5");
     AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
-    app.add_option(
-           "--text", s->textFile,
-           "Your own texts: first what observers read and agree to (consent, whom to write\n"
-           "to), then sections [key] that replace texts of the page, for another language or\n"
-           "task; # headings, - lists, **bold**, *italics*")
+    app.add_option("--text", s->textFile,
+                   "Use your own texts: first a consent form with an address, then sections [key]\n"
+                   "that replace texts of the page, for another language or task; # headings,\n"
+                   "- lists, **bold**, *italics*")
         ->type_name("TEXT.md");
     app.add_flag("--list-texts", s->listsTexts,
                  "Print all texts of the page, to be changed for --text");

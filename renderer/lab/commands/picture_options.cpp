@@ -10,7 +10,7 @@ namespace lull {
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize) {
     app.add_option("--images", *folders,
                    "Pictures of another renderer, their spp in the file names, to run rules on;\n"
-                   "NAME is that of the viewpoint [the folder's]; can be given again")
+                   "NAME names the viewpoint [the folder's name]; can be given again")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("DIR[:NAME]");

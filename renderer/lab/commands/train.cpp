@@ -1,4 +1,4 @@
-// `lull train`: learns from people when to stop.
+// `lull train`: trains a stopping rule on human thresholds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ ExitCode RunTrain(const TrainOptions& options) {
 }  // namespace
 
 void AddTrainCommand(CLI::App& app, Command* command) {
-    CLI::App* train = app.add_subcommand("train", "Learns from people when to stop.");
+    CLI::App* train = app.add_subcommand("train", "Trains a stopping rule on human thresholds.");
     auto options = std::make_shared<TrainOptions>();
     AddTrainOptions(*train, options.get());
     train->callback([=] {

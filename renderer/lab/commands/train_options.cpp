@@ -18,7 +18,7 @@ namespace lull {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Trains a network on data sets (see lull record) and human thresholds. The defaults are those of the
+    R"(Trains a network on data sets (see lull record) and human thresholds. The defaults make the
 model `entropy`: a small LSTM network on the visible drop in SVD-entropy of a block. --preset paper
 takes the configuration of Buisine et al. 2021, a larger network on windows of 8 SVD-entropies of 100
 sub-blocks. Other options change either. Viewpoints are joined by name; those without thresholds are
@@ -204,7 +204,7 @@ void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* l
 }
 
 // Adds the option that sets all of a model and its training. It has to be added before those that
-// change single ones: what was given is applied in this order.
+// change single ones: options are applied in this order.
 void AddPreset(CLI::App& app, TrainingPlan* plan, bool* isGiven) {
     std::set<std::string> names;
     for (const TrainingPreset& preset : TrainingPresets()) names.insert(preset.name);
@@ -232,7 +232,7 @@ void AddPreset(CLI::App& app, TrainingPlan* plan, bool* isGiven) {
 void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.add_option("DATASET.h5", o->plan.datasets, "Recordings to learn from")
         ->check(CLI::ExistingFile);
-    app.add_option("--human", o->plan.human, "Thresholds of people")
+    app.add_option("--human", o->plan.human, "Read human thresholds")
         ->check(CLI::ExistingFile)
         ->type_name("H.csv");
     app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");

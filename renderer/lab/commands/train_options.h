@@ -24,7 +24,7 @@ struct TrainOptions {
 
 void AddTrainOptions(CLI::App& app, TrainOptions* options);
 
-// Returns the values of a plan as options, one a line: what `lull train` takes for them.
+// Returns the values of a plan as options of `lull train`, one a line.
 std::string ValuesText(const TrainingPlan&);
 
 // Returns the recordings and thresholds that a training reads; for CheckOutputs().
@@ -32,8 +32,8 @@ std::vector<NamedFile> InputsOf(const TrainingPlan&);
 
 ProgressStyle StyleOf(const TrainOptions& options);
 
-// Completes what depends on other options. Throws CLI::ValidationError for options that do not fit
-// together.
+// Completes defaults that depend on other options. Throws CLI::ValidationError for contradictory
+// options.
 void CompleteTrainOptions(TrainOptions* options);
 
 }  // namespace lull

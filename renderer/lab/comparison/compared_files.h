@@ -11,11 +11,11 @@ struct ComparedFile {
     std::vector<float> spp;  // of each pixel; empty: not known
 };
 
-// Returns whether a name is that of an image: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in any
-// case.
+// Returns whether a file has an image's extension: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in
+// any case.
 bool IsImageFile(const std::string& path);
 
-// Returns whether a name is that of a picture for displays: .png, .jpg, .jpeg, .tif or .tiff.
+// Returns whether a file has the extension of a display image: .png, .jpg, .jpeg, .tif or .tiff.
 bool IsDisplayFile(const std::string& path);
 
 // Reads an EXR: R, G and B, or Y for all three, and, if it is one of lull's, samples, rule and
@@ -38,12 +38,12 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name, 
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
                         const ScheduleOptions&);
 
-// Returns the region of the files: that of the EXRs among them; a picture for displays of the same
+// Returns the region of the EXRs among the files; a picture for displays of the same
 // size can be of any part. The last of `files` is the reference, from the file of that name. Throws
 // Error if they do not fit together.
 PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference);
 
-// Returns what is not measured of pictures for displays; empty if there are none among the images.
+// Returns the metrics that display images lack; empty if there are none of these among the images.
 std::string DisplayNote(const Comparison&);
 
 // Sets the cost of each block whose pixels all took the same number of samples.

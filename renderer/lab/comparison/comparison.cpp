@@ -208,7 +208,7 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
         MakeBlocks(region, ScheduleFor(rule, render.options.schedule));
     ComparedImage image = EmptyImage(region, rule.name, rule.text);
 
-    // Find how far each block went; what nobody has kept is rendered once more.
+    // Find the sample count of each block; images that were not kept are rendered again.
     std::vector<int> again(blocks.size(), 0);
     for (size_t i = 0; i < blocks.size(); ++i) {
         const BlockResult& whole = render.result.blocks[i];

@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// What a block took; seconds are of processors.
+// Cost of a block, in CPU time.
 struct BlockCost {
     int spp = 0;
     double seconds = 0;
@@ -61,7 +61,7 @@ void Measure(Comparison*);
 // have figures.
 int CountVisibleBlocks(const ComparedImage&);
 
-// Adds up what the blocks took.
+// Sum of the costs of the blocks.
 struct TotalCost {
     int64_t samples = 0;
     double seconds = 0, ruleSeconds = 0;
@@ -100,9 +100,9 @@ ComparedImage TakeImage(const ObservedRender&, const std::vector<ObservedRule>& 
 // Returns the image of all samples that were taken.
 ComparedImage TakeWholeImage(const ObservedRender&);
 
-// Compares the seconds to the cap, estimated from what the blocks took until the rule stopped them,
-// with those they took: estimated / measured - 1, over all blocks and for the worst one. Blocks
-// that had not stopped before the cap are left out.
+// Compares the CPU time to the cap, estimated from the cost of the blocks until the rule stopped
+// them, with the measured time: estimated / measured - 1, over all blocks and for the worst one.
+// Blocks that had not stopped before the cap are left out.
 struct EstimateError {
     int blocks = 0;
     double total = 0, worst = 0;

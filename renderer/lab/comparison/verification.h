@@ -5,8 +5,8 @@
 
 namespace lull {
 
-// One render of a rule's image by itself, as a measure of what the rule costs and saves on a
-// number of threads.
+// One render of a rule's image by itself, to measure the cost and savings of the rule on a number
+// of threads.
 struct Verification {
     int threads = 0;
     double wallSeconds = 0;  // of the render

@@ -137,7 +137,7 @@ struct Features {
     std::vector<float> edges, points;
 };
 
-// Scales what is positive to a sum of 1, and what is negative to one of -1.
+// Scales positive values to a sum of 1, and negative ones to a sum of -1.
 void BalanceSigns(std::vector<double>& kernel) {
     double positive = 0, negative = 0;
     for (const double k : kernel) (k > 0 ? positive : negative) += k;

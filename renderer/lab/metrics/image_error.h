@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What can be averaged over any part of an image: a value per pixel, row-major.
+// Per-pixel errors that can be averaged over any part of an image; row-major.
 struct ErrorMaps {
     int width = 0, height = 0;
     std::vector<float> squared;    // of linear values, the mean over R, G, B

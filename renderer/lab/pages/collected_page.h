@@ -1,4 +1,4 @@
-// Writes the page that shows what observers said.
+// Writes the page of the observers' answers.
 #pragma once
 
 #include "renderer/results/report_json.h"
@@ -6,7 +6,7 @@
 
 namespace lull {
 
-// Returns the page. `study` is what ReadStudyPage() returns for the viewpoint, or null: then there
+// Returns the page. `study` is the result of ReadStudyPage() for the viewpoint, or null: then there
 // are tables, but no image.
 std::string MakeCollectedPage(const Collected&, const Json& study);
 

@@ -81,7 +81,7 @@ Json AgainstHuman(const Comparison& comparison) {
             {"savedSeconds", Saved(a.seconds + a.ruleSeconds, h.seconds)}};
 }
 
-// Returns what part of the saving in samples is left in seconds, on each number of threads.
+// Returns the saving in time as a fraction of that in samples, on each number of threads.
 Json VerificationJson(const ComparisonReport& report, const Verification& v) {
     Json json = {
         {"threads", v.threads},       {"wallSeconds", v.wallSeconds},

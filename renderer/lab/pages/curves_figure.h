@@ -9,10 +9,10 @@
 
 namespace lull {
 
-// What a rule did to the blocks of a viewpoint.
+// Curves and stops of a rule on the blocks of a viewpoint.
 struct CurvesOfRule {
     std::string name;
-    // What the number is compared with, > 0; 0: the rule has no number, and only stops are drawn.
+    // Threshold of the number, > 0; 0: the rule has no number, and only stops are drawn.
     double threshold = 0;
     const ViewpointOutcome* outcome = nullptr;
 };

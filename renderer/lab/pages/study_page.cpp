@@ -57,7 +57,7 @@ std::string PicturesScript(const Study& study, size_t i) {
                        JsonForScript(list));
 }
 
-// Returns what the page has in its <script> of that id; empty if it has none.
+// Returns the contents of the page's <script> of that id; empty if it has none.
 std::string_view ScriptText(std::string_view page, const std::string& id) {
     const std::string open = fmt::format("<script type=\"application/json\" id=\"{}\">", id);
     const size_t begin = page.find(open);

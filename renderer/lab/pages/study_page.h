@@ -10,8 +10,8 @@ namespace lull {
 
 // How people are asked.
 enum class StudyProcedure {
-    Adjust,    // the whole image beside the reference: click where they differ, until they match
-    Staircase  // a block beside its reference: which of both has the noise? (QUEST)
+    Adjust,    // image and reference side by side: click where they differ, until they match
+    Staircase  // block and reference side by side: which is noisier? (QUEST)
 };
 
 template <>
@@ -30,7 +30,7 @@ struct StudySettings {
     StudyTexts texts = {};   // those that replace the page's own, and the one that is shown first
 };
 
-// Returns the standard deviation, in octaves, of a threshold from so many answers of a staircase
+// Returns the standard deviation, in octaves, of a threshold from this many answers of a staircase
 // (> 0), if the observer follows the model of QUEST: of 2,000 simulated staircases with thresholds
 // from 100 to 4,000 spp on a ladder from 20 to 10,000; between and beyond those numbers, by powers.
 double StaircaseOctaves(int answers);
@@ -38,9 +38,9 @@ double StaircaseOctaves(int answers);
 // Returns the page, which contains everything and loads nothing.
 std::string MakeStudyPage(const Study&, const StudySettings&);
 
-// Returns what a study's page says of the study, with the pictures of the blocks at the last level
-// in "references", as data URIs. Throws Error beginning with the path for anything that is not such
-// a page.
+// Returns the data of a study's page, with the pictures of the blocks at the last level in
+// "references", as data URIs. Throws Error beginning with the path for anything that is not such a
+// page.
 Json ReadStudyPage(const std::string& path);
 
 }  // namespace lull

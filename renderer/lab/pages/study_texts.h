@@ -6,16 +6,16 @@
 
 namespace lull {
 
-// Texts in Markdown by their keys, those of study_texts.md; and "own", which observers read and
+// Texts in Markdown by the keys of study_texts.md; and "own", which observers read and
 // agree to first, if there is one.
 using StudyTexts = std::map<std::string, std::string>;
 
 // Returns the page's own texts, as a file that ReadStudyTexts() reads.
 std::string DefaultStudyTexts();
 
-// Reads a file: up to the first line "[key]", alone in its line, is the text "own"; what follows
-// such a line replaces the text of that key, and others stay as they are. Throws Error beginning
-// with "path:line" for a key that there is not or that comes twice, or a {name} that the page's own
+// Reads a file: up to the first line "[key]", alone in its line, is the text "own"; the lines
+// after such a line replace the text of that key, and others stay unchanged. Throws Error
+// beginning with "path:line" for an unknown or repeated key, or a {name} that the page's own
 // text does not have; and for a file that cannot be read, is empty or longer than anybody would
 // read.
 StudyTexts ReadStudyTexts(const std::string& path);

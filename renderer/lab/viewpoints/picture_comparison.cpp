@@ -25,9 +25,8 @@ class RuleOnPictures {
         : rule(std::move(given)) {
         if (!rule.rule.stopAt && rule.rule.need > ViewNeed::Mean)
             throw Error(
-                fmt::format("{}: the rule compares a half of the samples, which pictures by "
-                            "themselves do not have; choose one that looks at the picture "
-                            "alone, such as learned or entropy",
+                fmt::format("{}: the rule needs a half buffer, which pictures do not have; "
+                            "choose one that needs none, such as learned or entropy",
                             rule.rule.text));
         schedule.smallestSide = rule.rule.smallestSide;
         blocks = MakeBlocks(folder.Region(), schedule);

@@ -15,7 +15,7 @@ struct PictureRule {
 
 struct PictureComparison {
     Comparison comparison;  // an image for each rule and, as the reference, the last picture
-    // The rules that have looked at no picture, as these lie too far apart for what they compare.
+    // The rules that have checked no picture, as the pictures are too far apart for them.
     std::vector<std::string> blind = {};
 };
 

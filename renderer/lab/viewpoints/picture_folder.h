@@ -51,11 +51,11 @@ std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const Pix
     return pixels;
 }
 
-// Returns whether a picture holds what a display shows, and not linear radiance.
+// Returns whether a picture has display values rather than linear radiance.
 bool IsDisplayPicture(const PictureFolder&, int spp);
 
-// Returns the spp of a pass that pictures come at the ends of, if they are those of a recording
-// (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: they come at any
+// Returns the spp of a pass at whose ends the pictures are, if they are a recording's
+// (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: they are at any
 // spp.
 int PassOfPictures(const std::vector<int>& spp);
 

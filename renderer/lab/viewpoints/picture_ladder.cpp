@@ -18,7 +18,7 @@ std::vector<int> LadderByRatio(int pass, int cap, double ratio) {
     if (pass < 1 || cap < 1 || !(ratio > 1))
         throw std::invalid_argument("a ladder needs passes, a cap and a ratio above 1");
     std::vector<int> levels;
-    // What would lie less than half a step below the cap is left to the cap.
+    // Levels less than half a step below the cap are left out.
     for (int spp = pass; spp * std::sqrt(ratio) <= cap && spp < cap;) {
         levels.push_back(spp);
         const double passes = std::round(spp * ratio / pass);

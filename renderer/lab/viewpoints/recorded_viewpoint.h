@@ -1,4 +1,4 @@
-// Records a viewpoint: renders its blocks and keeps what stopping rules can learn from.
+// Records a viewpoint: renders its blocks and keeps the data that stopping rules are trained on.
 #pragma once
 
 #include <functional>
@@ -11,15 +11,15 @@ namespace lull {
 // Throws Error if there are blocks too small to be recorded.
 void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions&);
 
-// Returns "" for a name that viewpoints can have, else what is wrong with it.
+// Returns "" for a valid name of a viewpoint, else the reason why it is not.
 std::string CheckViewpointName(const std::string& name);
 
 // Returns the data set of a file; nothing if there is no such file. Throws std::runtime_error.
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path);
 
-// Adds a recording to the data set of a file, or makes it. Processes that do so at the same time
-// wait for each other, of which onWait() tells, and none loses what another has added. Throws Error
-// and std::runtime_error.
+// Adds a recording to the data set of a file, or makes it. Concurrent processes wait for each
+// other, announced by onWait(), and no recording is lost. Throws Error and
+// std::runtime_error.
 void AddToDatasetFile(const ViewpointRecording&, const std::string& path,
                       const std::function<void()>& onWait);
 
@@ -27,7 +27,7 @@ void AddToDatasetFile(const ViewpointRecording&, const std::string& path,
 ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions&,
                                  const RenderIdentity&, size_t blockCount);
 
-// Moves the recording of block i into the viewpoint, with a note on what it cost.
+// Moves the recording of block i into the viewpoint, with a note on its cost.
 void AddBlock(size_t i, BlockRecording recording, const BlockResult&, ViewpointRecording*);
 
 // Returns the spp at which each block's recording ends: `cap` for those `chosen` by number, or for
@@ -40,11 +40,11 @@ std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chos
 void LimitByHuman(const std::string& human, const std::string& viewpoint, double past,
                   std::vector<int>* limits);
 
-// Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
-// where an interrupted recording with the same limits left film and state, and adds what was
-// recorded to the viewpoint; nothing if it was cancelled. The options have no rule; progress
-// is told towards the limits. Of several ranks, the first has the recordings. Throws as Render()
-// does.
+// Renders the blocks that have a limit, each to the pass that reaches it, from the start or
+// from the film and state of an interrupted recording with the same limits, and adds the
+// records to the viewpoint; nothing if it was cancelled. The options have no rule; progress is
+// reported towards the limits. Of several ranks, the first has the recordings. Throws as
+// Render() does.
 RenderResult RecordBlocks(RenderContext, RenderOptions, const std::vector<int>& limits,
                           ViewpointRecording*);
 

@@ -1,4 +1,4 @@
-// What people are shown when they say where they still see noise.
+// Builds the images of a study in which observers mark visible noise.
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ struct Study {
     int width = 0, height = 0;
     std::vector<int> levels = {};  // spp, increasing, at least two
     std::vector<StudyBlock> blocks = {};
-    std::map<std::string, std::string> provenance = {};  // what the pictures were made from
+    std::map<std::string, std::string> provenance = {};  // of the pictures
 };
 
 // Returns 16 hexadecimal digits that tell studies apart: a hash of names, levels, positions and all

@@ -4,7 +4,7 @@ go? A notebook, cell by cell (`# %%`), and a script:
 
     three_rules.py scenes/cornell/scene.pbrt --resolution 300x300 [--plots FOLDER]      # needs matplotlib
 """
-# %% What to render
+# %% Scene and rules
 import argparse
 import pathlib
 

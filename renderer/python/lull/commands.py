@@ -11,7 +11,7 @@ import numpy as np
 
 from . import exr, program
 
-# What the layers of `--aov` are called here, where the EXR has other names.
+# Names of `--aov` layers that differ from those in the EXR.
 _LAYERS = {"N": "normal", "Z": "depth", "P": "position", "objectID": "object",
            "materialID": "material"}
 
@@ -23,7 +23,7 @@ class Rendering:
     spp: np.ndarray  # samples of each pixel
     noisy: np.ndarray | None  # with denoise: the means of the samples
     layers: dict  # those of `aov`, and with denoise `error`, by their names
-    blocks: list  # what the report says of each block: dicts with x, y, width, height, spp, ...
+    blocks: list  # dicts of the report, one per block: x, y, width, height, spp, ...
     seconds: float
     interrupted: bool
     report: dict  # all of it
@@ -37,7 +37,7 @@ class Rendering:
 
 @dataclasses.dataclass(repr=False)
 class Comparison:
-    """What `lull compare` finds: pictures by their names, and all figures."""
+    """Results of `lull compare`: images by their names, and all figures."""
     images: dict
     figures: dict
 
@@ -68,7 +68,7 @@ def _output(options, name):
 def render(scene, *, progress=None, **options):
     """Renders a scene until each block of the image has stopped.
 
-    A KeyboardInterrupt ends it early, with what there is.
+    A KeyboardInterrupt ends it early, with the current image.
 
     Args:
         scene: a file of pbrt-v3 or glTF.

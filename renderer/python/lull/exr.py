@@ -46,7 +46,7 @@ def _channels(data):
 
 
 def _unzip(data, size):
-    """Undoes ZIP and what is done before it: differences of bytes, the even ones first."""
+    """Decompresses ZIP data: differences of bytes, the even ones first."""
     if len(data) == size:
         return data
     bytes_ = np.frombuffer(zlib.decompress(data), np.uint8)

@@ -6,7 +6,7 @@ import re
 
 # An entry of a help text: its long name, and its value if it has one.
 _ENTRY = re.compile(r"^  (?:-\w,)?--([a-z0-9-]+)(?: (?!Needs:|Excludes:)(\S+))?")
-_OURS = {"help", "help-all", "json-progress", "quiet"}  # what this module sets
+_OURS = {"help", "help-all", "json-progress", "quiet"}  # set by this module
 
 
 class Option:

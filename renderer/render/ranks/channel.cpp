@@ -7,8 +7,8 @@ namespace lull {
 
 namespace {
 
-// How long nobody looks for messages: an eighth of the time for which none has come, so that none
-// is late by more than that, within what costs nothing.
+// Pause between looks for messages: an eighth of the time for which none has come, which bounds the
+// delay, within limits that cost nothing.
 constexpr std::chrono::microseconds kShortestNap{50}, kLongestNap{10000};
 
 constexpr std::chrono::milliseconds kPatience{500};  // with ranks, to answer a Ping

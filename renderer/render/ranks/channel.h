@@ -28,24 +28,24 @@ class RankChannel {
     // Leave a message to be sent. From any thread.
     void Post(int to, std::vector<std::byte> message);
     void PostToAll(const std::vector<std::byte>& message);
-    // Has Exchange() throw the first of what is given. From any thread.
+    // Makes Exchange() throw the first exception given. From any thread.
     void Fail(std::exception_ptr);
 
-    // Sends what was posted and calls handle(from, word, what follows) for what has arrived, or
-    // waits a little if there is neither. Throws what Fail() was given.
+    // Sends posted messages and calls handle(from, word, rest of the message) for each that has
+    // arrived, or waits a little if there is neither. Throws the exception of Fail().
     using Handler = std::function<void(int from, RankWord, StateReader&)>;
     void Exchange(const Handler& handle);
-    // Waits until all that was sent has left.
+    // Waits until all messages have left.
     void Flush() { peers.Flush(); }
 
-    // Asks whether the ranks are there, and tells `onSilence` of those that are not.
+    // Pings the ranks, and reports those that do not answer to `onSilence`.
     void AskForLife(const std::vector<int>& ranks);
 
-    // Asks ranks of which nothing was heard for `quiet` seconds for a sign of life, and returns
-    // those that have given none for `patience` seconds since. To be called often: what goes by
-    // between two calls that are far apart counts for nobody's silence.
+    // Pings ranks that have been silent for `quiet` seconds, and returns those that have not
+    // answered for `patience` seconds since. To be called often: the time between two calls that
+    // are far apart counts as silence of no rank.
     std::vector<int> FindSilent(double quiet, double patience);
-    // Sends nothing more to the rank, and passes on nothing that it says.
+    // Sends nothing more to the rank, and discards its messages.
     void GiveUp(int rank);
     bool HasGivenUp(int rank) const { return lives[size_t(rank)].givenUp; }
     bool HasGivenUpAny() const { return std::ranges::any_of(lives, &Life::givenUp); }

@@ -98,7 +98,7 @@ class Follower {
         channel.Post(0, Pack(part));
     }
 
-    // Sends what has changed since the last time, or may have.
+    // Sends pixels that have changed since the last time, or may have.
     void SendPixels() {
         for (int i = 0; i < int(touched.size()); ++i) {
             const bool isUnderWay = !schedule.BlockAt(i).stopped;

@@ -12,7 +12,7 @@ namespace lull {
 namespace {
 
 constexpr double kLeastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
-constexpr double kLeastRun = 20;    // until the next pause: times what the last one took
+constexpr double kLeastRun = 20;    // until the next pause: times the last pause
 
 class Leader {
   public:
@@ -85,7 +85,7 @@ class Leader {
         Deal();
     }
 
-    // The learner of the others, who have no tiles before that, is to know what this one does.
+    // Sends the learner's state to the others, which have no tiles before that.
     void TellGuide() {
         if (context.learner && !IsLearning(context))
             channel.PostToAll(PackGuide(context.learner->Save()));
@@ -97,7 +97,7 @@ class Leader {
             [this](int from, RankWord word, StateReader& reader) { Handle(from, word, reader); });
     }
 
-    // Not while blocks are behind what their criteria have seen.
+    // Not while blocks are behind their criteria.
     void WriteCheckpoint() {
         if (!channel.HasGivenUpAny() || (answers.empty() && !AreBehind()))
             executor.WriteCheckpoint();
@@ -233,7 +233,7 @@ class Leader {
         Exchange();  // sends it
         executor.Quiesce();
         Await(quiet);
-        executor.Quiesce();  // decisions on what has arrived
+        executor.Quiesce();  // decisions on arrived messages
         if (undo) executor.Undo();
         channel.PostToAll(PackCollect(undo));
         Await(collected);
@@ -349,10 +349,10 @@ class Leader {
     LiveSchedule& schedule = executor.schedule;
     RankChannel& channel = rank.channel;
 
-    std::mutex partsMutex;  // guards what follows, but for decisions, which have a
+    std::mutex partsMutex;  // guards the members below, except in decisions, which have a
                             // block's parts
-    // Of each block, what other ranks have sent of its pass, and how many ranks have still to end
-    // theirs.
+    // Of each block, the parts of its pass from other ranks, and the number of ranks that have
+    // still to end theirs.
     std::vector<std::vector<std::pair<int, std::vector<float>>>> parts;
     std::vector<int> missing;
     std::map<int, BlockAnswer> answers;  // to passes that are done again, of these blocks

@@ -34,10 +34,10 @@ enum class RankWord : uint8_t {
 struct StartMessage {
     std::vector<int> deal;  // of the tiles, see TileShare
     std::vector<BlockStart> blocks;
-    std::vector<ViewNeed> needs;  // what criterion and clock will see after each block's next pass
+    std::vector<ViewNeed> needs;  // of criterion and clock after each block's next pass
 };
 
-// How a block goes on.
+// Decision on a block.
 struct AnswerMessage {
     int block;
     bool stop;
@@ -65,7 +65,7 @@ std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&,
                                   const Layers&);
 
-// Read what follows on the word. Throw std::runtime_error for what was not packed so.
+// Read the rest of a message after its word. Throw std::runtime_error for other bytes.
 StartMessage GetStart(StateReader&);
 std::vector<std::byte> GetGuide(StateReader&);
 AnswerMessage GetAnswer(StateReader&);

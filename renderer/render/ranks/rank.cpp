@@ -12,7 +12,7 @@ bool ComesBefore(const PixelRect& a, const PixelRect& b) {
     return std::pair(a.min.y(), a.min.x()) < std::pair(b.min.y(), b.min.x());
 }
 
-// Lets what a task throws come out where messages are exchanged.
+// Passes exceptions of tasks to the channel, which throws them where messages are exchanged.
 RankHooks WithFailures(RankHooks hooks, Rank* rank) {
     hooks.onException = [rank](std::exception_ptr exception) {
         rank->channel.Fail(exception);

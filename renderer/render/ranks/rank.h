@@ -12,7 +12,7 @@ class Rank {
   public:
     Rank(const RenderContext&, const RenderOptions&, tbb::task_arena*, RankHooks);
 
-    // Runs `body`; what it throws leaves no task at work.
+    // Runs `body`; after an exception no task is at work.
     template <typename Body>
     RenderResult Guarded(const Body& body) try {
         return body();
@@ -21,12 +21,12 @@ class Rank {
         throw;
     }
 
-    // Runs `work` on a thread of the arena; what it throws, the channel's Exchange() throws.
+    // Runs `work` on a thread of the arena; its exceptions are thrown by the channel's Exchange().
     void Enqueue(std::function<void()> work) { executor.tasks.Enqueue(arena, std::move(work)); }
     void EnqueueReady() {
         Enqueue([this] { executor.SpawnReady(); });
     }
-    // Returns what the tiles here took since the last call, in samples and seconds a thread.
+    // Returns the cost of the tiles here since the last call, in samples and seconds a thread.
     TileEffort TakeEffort();
     // Returns the tiles of a block that a rank has by this deal and did not have by the one before;
     // all where that is empty.
@@ -43,7 +43,7 @@ class Rank {
 // Returns whether a guide is being learned: rank 0 then has all tiles.
 bool IsLearning(const RenderContext&);
 
-// Returns how tiles are dealt out as long as nobody knows how fast ranks are.
+// Returns the assignment of tiles before the speeds of ranks are known.
 std::vector<int> FirstDeal(const RenderContext&, const RenderOptions&);
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.

@@ -133,7 +133,8 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     for (LensInterface& stop : settings.interfaces)
         if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
             if (radius > stop.apertureRadius)
-                warnings.Add(entity.loc, "\"aperturediameter\" is limited to what the lens has",
+                warnings.Add(entity.loc,
+                             "\"aperturediameter\" is limited to the aperture of the lens",
                              fmt::format("{:g} mm", 2000 * stop.apertureRadius));
             stop.apertureRadius = std::min(stop.apertureRadius, radius);
         }
@@ -217,8 +218,8 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     if (!camera.worldFromCamera.allFinite())
         throw Error(entity.loc, "the camera's transform cannot be inverted");
     camera.position = TransformPoint(camera.worldFromCamera, Vec3f::Zero());
-    // Scales in the transform change the length of directions, not what they point at; remove a
-    // uniform one, so that rays have unit length as pbrt-v3's nearly always have.
+    // Scales in the transform change the length of directions, not their target; remove a uniform
+    // one, so that rays have unit length as pbrt-v3's nearly always have.
     camera.rotation = camera.worldFromCamera.topLeftCorner<3, 3>().cast<float>();
     if (camera.motion) {
         camera.rotation.setIdentity();

@@ -34,8 +34,8 @@ struct Camera {
     // as the scene asks for them, as in pbrt-v3, even if the stopping rule takes more or fewer.
     float sampleSpacing = 1;
 
-    // Of a moving camera; rotation and position are then those of the identity, and worldFromCamera
-    // is that of the moment when the shutter opens.
+    // Of a moving camera; rotation and position are then the identity's, and worldFromCamera is the
+    // transform at the opening of the shutter.
     std::optional<AnimatedTransform> motion;
 
     std::optional<LensSystem> lenses;  // of realistic cameras
@@ -56,9 +56,9 @@ struct Camera {
         return GenerateRay(sample, &weight);
     }
 
-    // Returns the ray one pixel on along an axis (0 or 1) from `ray`, which is that of the sample.
-    // For realistic cameras it is extrapolated from a 20th of that, as pbrt-v3 does it; nothing
-    // where no light passes there.
+    // Returns the ray of the sample, offset by one pixel along an axis (0 or 1); `ray` is its own
+    // ray. For realistic cameras it is extrapolated from a 20th of a pixel, as pbrt-v3 does it;
+    // nothing where no light passes there.
     std::optional<Ray> NextRay(const Ray& ray, CameraSample, int axis) const;
 
   private:

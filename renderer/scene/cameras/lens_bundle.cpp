@@ -10,8 +10,8 @@ namespace {
 using Values = LensBundle::Values;
 using Passes = std::array<int64_t, LensBundle::kMost>;  // 0: stopped
 
-// Tell which rays pass an interface at height z of the axis, and carry them through it. They do for
-// each ray what LensSystem does, in loops without branches, which compilers turn into vectors.
+// Tell which rays pass an interface at height z of the axis, and carry them through it. They treat
+// each ray as LensSystem does, in loops without branches, which compilers vectorise.
 void PassStop(const LensInterface& stop, double z, LensBundle* rays, Passes* passes) {
     const double aperture2 = stop.apertureRadius * stop.apertureRadius;
     for (size_t i = 0; i < rays->count; ++i) {

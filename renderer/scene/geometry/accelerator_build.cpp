@@ -1,4 +1,4 @@
-// Builds what the accelerator traces rays through.
+// Builds the acceleration structure.
 #include <fmt/format.h>
 
 #include "renderer/scene/geometry/accelerator_internal.h"

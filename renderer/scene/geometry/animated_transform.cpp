@@ -47,8 +47,8 @@ AnimatedTransform::Parts AnimatedTransform::Decompose(const Mat4d& m) {
         r = next;
         if (change < 1e-14) break;
     }
-    // A mirror is none of a rotation's; pbrt-v3 leaves it there, and what it draws between the ends
-    // is then not what moves from one to the other.
+    // A mirror is no rotation; pbrt-v3 leaves it there, and its images between the ends are then
+    // not of a motion from one to the other.
     if (r.determinant() < 0) r = -r;
     return {m.topRightCorner<3, 1>(), Eigen::Quaterniond(r).normalized(), r.transpose() * linear};
 }
@@ -117,7 +117,7 @@ Mat4d ProductAt(std::span<const AnimatedTransform> transforms, double time) {
 }
 
 std::vector<Bounds3f> BoundMotion(std::span<const AnimatedTransform> transforms, Bounds3f box) {
-    // What moves within something that moves is bounded by all places where it ever is.
+    // A moving object within a moving one is bounded by all its positions.
     if (transforms.size() > 1) {
         const std::vector<Bounds3f> inner = BoundMotion(transforms.subspan(1), box);
         box = {};

@@ -61,8 +61,8 @@ Mat4d ProductAt(std::span<const AnimatedTransform> transforms, double time);
 // Returns a box that holds the transformed one.
 Bounds3f TransformBox(const Mat4d& m, const Bounds3f& box);
 
-// Returns boxes that bound what lies in `box` as it moves, for n + 1 times 0, 1/n ... 1, such that
-// at every time in between the linearly interpolated box bounds it too.
+// Returns bounds of `box` as it moves, for n + 1 times 0, 1/n ... 1, such that at every time in
+// between the linearly interpolated box bounds it too.
 std::vector<Bounds3f> BoundMotion(std::span<const AnimatedTransform> transforms, Bounds3f box);
 
 }  // namespace lull

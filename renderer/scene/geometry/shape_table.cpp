@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-// Refuses what no ray reaches. `what` is the grammatical subject.
+// Refuses points that no ray reaches. `what` is the grammatical subject.
 void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& what) {
     if (!(Farthest(bounds) <= double(kFarthest)))
         throw Error(loc,

@@ -35,15 +35,15 @@ struct ShapeTable {
 
     // Makes every shape, loading meshes. Unknown kinds and meshes that cannot be read are left out
     // as a substitute. Zero-area triangles are dropped with a counted warning. Errors of shapes are
-    // kept in the warnings: broken geometry, and what lies beyond kFarthest; throws Error for
+    // kept in the warnings: broken geometry, and points beyond kFarthest; throws Error for
     // instances. Lights are given to shapes later.
     ShapeTable(const Description&, const TextureTable&, Warnings&);
     ShapeTable() = default;
 
     size_t TriangleCount() const;  // instances counted as often as they are placed
 
-    // Fills in the interaction at a hit of `ray`, all but what `needs` leaves out. `time` is that
-    // of the ray, from 0 where the shutter opens to 1; it matters to what moves only.
+    // Fills in the interaction at a hit of `ray`, all but the fields that `needs` leaves out.
+    // `time` is the ray's, from 0 where the shutter opens to 1; only moving objects use it.
     void Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
                   SurfaceInteraction* interaction, float time = 0) const;
 
@@ -67,7 +67,7 @@ struct ShapeTable {
     void LimitReach(std::span<const FileLoc> placesOfInstances);
     void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
                         SurfaceInteraction*) const;
-    // `instance` is null for what stands in the world itself.
+    // `instance` is null for shapes of the world itself.
     void InteractIn(const Instance* instance, const Ray&, const Hit&, SurfaceNeeds,
                     SurfaceInteraction*) const;
 };

@@ -25,7 +25,7 @@ struct AreaLight {
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
         return twoSided || n.dot(w) > 0 ? L : Rgb(Rgb::Zero());
     }
-    // Returns it with the map; the point is that of a hit.
+    // Returns it with the map; the point is the hit's.
     Rgb Le(const Vec3f& n, const Vec3f& w, const Hit& hit) const {
         return map ? Le(n, w) * map->At(triangle, hit.b1, hit.b2) : Le(n, w);
     }

@@ -15,8 +15,8 @@ class EnvironmentMap {
 
     // Multiplies the texels by `scale`. The products must be from 0 to kMaxTexel. Rows run from
     // theta = 0; the density follows the solid angle of a row. Not compensated, it is pbrt-v3's
-    // (3rd ed., 14.2.4). A compensated map leaves what is darker than the mean to BSDF sampling,
-    // which handles it well enough (Karlik et al. 2019), and samples what hardly varies evenly.
+    // (3rd ed., 14.2.4). A compensated map leaves texels darker than the mean to BSDF sampling,
+    // which suffices there (Karlik et al. 2019), and samples nearly constant maps uniformly.
     EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false);
 
     // Returns the radiance at a point of the unit square.

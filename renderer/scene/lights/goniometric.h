@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Emits from one point what an image in latitude-longitude form says, about the y axis of the
-// light's space: I times its texels, W/sr (pbrt 3rd ed., 12.3.3).
+// Emits from one point by an image in latitude-longitude form, about the y axis of the light's
+// space: I times its texels, W/sr (pbrt 3rd ed., 12.3.3).
 struct GoniometricLight {
     static constexpr LightType kType = LightType::DeltaPosition;
 

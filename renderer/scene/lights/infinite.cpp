@@ -97,8 +97,8 @@ Emitted InfiniteLight::LeAndPdf(const Vec3f& w) const {
             sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) : 0};
 }
 
-// Only the choice of lights by power asks for this; the mean over the map is what pbrt-v3's
-// topmost mip level holds.
+// Used only by the choice of lights by power; the mean over the map is the topmost mip level of
+// pbrt-v3.
 Rgb InfiniteLight::Power() const {
     return kPi * Sqr(worldRadius) * (map ? map->MeanTexel() : constant);
 }

@@ -9,7 +9,7 @@ struct LightReader {
     const Description& description;  // relative file names start at its directory
     const LightEntity& entity;
     float worldRadius;   // of a sphere about the scene
-    bool isCompensated;  // environment maps leave what is dim to BSDF sampling: EnvironmentMap
+    bool isCompensated;  // environment maps leave dim texels to BSDF sampling: EnvironmentMap
     Warnings& warnings;
 };
 

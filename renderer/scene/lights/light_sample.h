@@ -19,8 +19,8 @@ struct LightSample {
     float pdf;      // 1/sr; 1 for delta lights
     bool isDelta;   // no other strategy can find this direction
     bool isHidden;  // the emitter is invisible to rays; only light sampling finds it
-    // L is 1, and that of the map is left to LightTable::Radiance(): where the light is occluded,
-    // nobody needs it.
+    // L is 1, and the map's radiance is left to LightTable::Radiance(): where the light is
+    // occluded, it is not needed.
     bool isOnMap = false;
     // The point on the light; n is zero for point lights. A light at infinity has no point, but for
     // that on its map: (s, t, 0).

@@ -8,7 +8,7 @@
 namespace lull {
 
 // Projects an image from one point along z of the light's space: I times its texels, W/sr (pbrt
-// 3rd ed., 12.3.2). The field of view is that of the image's shorter side; its first row is at the
+// 3rd ed., 12.3.2). The field of view is across the image's shorter side; its first row is at the
 // lowest y.
 struct ProjectionLight {
     static constexpr LightType kType = LightType::DeltaPosition;

@@ -15,7 +15,7 @@
 //         returns the invalid or unsupported parameters as a message, "" if none;
 //     std::optional<SubsurfaceProfile> Profile(const MaterialInputs&) const
 //         returns how light that the lobes transmit spreads below the surface; nothing where it
-//         goes on unscattered. The needs have kScattersBelow;
+//         continues unscattered. The needs have kScattersBelow;
 //     SurfaceTilt Tilt(const MaterialReader&) const
 //         reads the maps of the shading normal, unless only "bumpmap" is used.
 #pragma once
@@ -101,8 +101,8 @@ struct MaterialReader {
     }
 };
 
-// Returns whether a number can be an index of refraction. Light that goes in and out of what is
-// beyond these, and is not all reflected, would count up to 1e4 times.
+// Returns whether a number can be an index of refraction. Beyond these limits, light that enters
+// and leaves without total reflection would count up to 1e4 times.
 inline bool IsIndexOfRefraction(float index) { return index >= 0.01f && index <= 100; }
 
 // Returns the error of a constant index of refraction as a message, "" if none.

@@ -84,7 +84,7 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     });
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
-    if (hasSheen) traits.isConstant = false;  // what it leaves to the rest depends on the view
+    if (hasSheen) traits.isConstant = false;  // the light left to the rest depends on the view
     return traits;
 }
 
@@ -117,7 +117,7 @@ Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsd
     return {Lerp(Sqr(strength), alpha, 1), alpha};
 }
 
-// The specification leaves to what is below the share that sheen, taken as a whole, does not
+// By the specification the layers below get the fraction that sheen, taken as a whole, does not
 // reflect: here by the view alone, of which exactly as much is left as the sheen adds.
 void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
     const Rgb color = (Look(sheenColor, in) * sheenColorFactor).max(0.f).min(1.f);
@@ -136,8 +136,8 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
 void MetallicRoughness::AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
     const float roughness =
         clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0;
-    // A mirror shows no lamp that has no size. What is not meant as one, such as Blender's
-    // usual coat of roughness 0.03, keeps such highlights.
+    // A mirror shows no lamp that has no size. Surfaces not meant as mirrors, such as Blender's
+    // usual coat of roughness 0.03, keep such highlights.
     const float coatAlpha = AlphaOf(roughness);  // the distribution has its own least
     if (!(roughness > 0))
         bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),

@@ -1,5 +1,5 @@
 // Represents glTF 2.0's material (appendix B of its specification) with the extensions
-// KHR_materials_ior, _specular, _transmission, _volume (what it absorbs is a medium of the shape),
+// KHR_materials_ior, _specular, _transmission, _volume (its absorption is a medium of the shape),
 // _clearcoat, _sheen and _anisotropy.
 #pragma once
 

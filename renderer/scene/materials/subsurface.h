@@ -30,7 +30,7 @@ struct TranslucentSolid {
     }
 };
 
-// Is given coefficients of absorption and scattering, 1/length times "scale", or those of a "name".
+// Parameters: coefficients of absorption and scattering, 1/length times "scale", or a "name".
 struct Subsurface : TranslucentSolid {
     SpectrumTexture sigmaA, sigmaS;
 
@@ -42,7 +42,7 @@ struct Subsurface : TranslucentSolid {
     std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
 };
 
-// Is given the albedo that it shows under uniform light, and the mean free path times "scale".
+// Parameters: the albedo under uniform light, and the mean free path times "scale".
 struct KdSubsurface : TranslucentSolid {
     SpectrumTexture kd, meanFreePath;
 

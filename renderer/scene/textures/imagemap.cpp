@@ -31,7 +31,7 @@ Wrap GetWrap(const TextureInput& input, const char* parameter) {
     return Wrap::Repeat;
 }
 
-// Bounds what a look-up can cost; a pixel that is seen at an angle of 0.1 degrees is 570 times as
+// Bounds the cost of a look-up; a pixel that is seen at an angle of 0.1 degrees is 570 times as
 // long as wide.
 float GetMaxAnisotropy(const TextureInput& input) {
     const float value = input.entity.parameters.GetFloat("maxanisotropy", 8);

@@ -45,7 +45,7 @@ MappedFootprint FootprintOf(const PlanarMapping& m, const TextureContext& c) {
             Vec2f(c.dpdy.dot(m.vs), c.dpdy.dot(m.vt))};
 }
 
-// Takes differences over `share` of the footprint, and folds what they are in t beyond a half, as
+// Takes differences over `share` of the footprint, and folds differences in t beyond a half, as
 // pbrt-v3 does. That is meant for the seam where an angle jumps by 1, but there the difference over
 // the share is large, and becomes another large one: seams are blurred there and here.
 template <typename Mapping>

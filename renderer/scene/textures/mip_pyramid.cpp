@@ -69,8 +69,8 @@ std::vector<ResampleWeight> MakeResampleWeights(int oldCount, int newCount) {
     return result;
 }
 
-// Enlarges an axis of `from`, along which texels lie `stride` floats apart; the others are
-// `lines`, of which line k starts at start(k) in what is read and startTo(k) in what is written.
+// Enlarges an axis of `from`, along which texels lie `stride` floats apart; the others are `lines`,
+// of which line k starts at start(k) in the input and startTo(k) in the output.
 template <typename Start, typename StartTo>
 void ResampleAxis(const std::vector<float>& from, std::vector<float>* to, int oldCount,
                   int newCount, size_t stride, size_t lines, const Start& start,
@@ -105,7 +105,7 @@ std::vector<float> Enlarge(const std::vector<float>& texels, const Vec2i& from, 
     return result;
 }
 
-// The Gaussian of exponent 2, less what it is at the ellipse's edge, over the squared radius.
+// The Gaussian of exponent 2, less its value at the ellipse's edge, over the squared radius.
 std::array<float, 128> MakeEwaWeights() {
     std::array<float, 128> weights;
     for (size_t i = 0; i < weights.size(); ++i)
@@ -194,7 +194,7 @@ T MipPyramid::Ewa(const Vec2f& st, Vec2f d0, Vec2f d1, float maxAnisotropy) cons
         shorter *= scale;
     }
     const float level = std::max(0.f, float(LevelCount() - 1) + std::log2(shorter));
-    // The comparison also fails for what is not a number.
+    // The comparison also fails for NaN.
     if (!(level < float(LevelCount()) && longer + shorter < kInfinity)) return Coarsest<T>();
     const int fine = int(level);
     const float share = level - float(fine);

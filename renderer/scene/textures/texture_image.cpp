@@ -10,7 +10,7 @@ namespace lull {
 
 namespace {
 
-// Returns what a stored value stands for before any linearisation.
+// Returns the value of a stored one before any linearisation.
 float Encoded(uint8_t v) { return float(v) / 255; }
 float Encoded(Half v) { return float(v); }
 float Encoded(float v) { return v; }

@@ -22,14 +22,14 @@ namespace {
 // Numbers are taken to be no closer to 0, and probabilities no closer to 0 and 1.
 constexpr double kLeastNumber = 1e-4, kLeastProbability = 1e-6;
 
-// Returns what the probit is linear in.
+// Returns the variable in which the probit is linear.
 double Abscissa(double number, bool isProbability) {
     if (!isProbability) return std::log(std::max(number, kLeastNumber));
     const double p = std::clamp(number, kLeastProbability, 1 - kLeastProbability);
     return std::log(p / (1 - p));
 }
 
-// What a rule says of a block at some spp, which increase.
+// Numbers of a rule for a block by spp, which increase.
 struct Curve {
     std::vector<double> logSpp = {}, values = {};
 
@@ -95,7 +95,7 @@ std::vector<LabelledBlock> BlocksOf(const ViewpointRecording& viewpoint,
     return blocks;
 }
 
-// An answer that counts, with the place of its block, and what each rule says there.
+// An answer that counts, with the place of its block, and each rule's number there.
 struct Asked {
     SingleAnswer answer;
     size_t place;

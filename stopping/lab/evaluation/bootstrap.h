@@ -1,4 +1,4 @@
-// Says how far a mean over viewpoints may be from that of other viewpoints and blocks.
+// Estimates the uncertainty of a mean over viewpoints by resampling viewpoints and blocks.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ struct Interval {
 
 // Returns the range of the central 95 % of the mean over viewpoints of the means over their blocks,
 // where both are drawn again with replacement (Efron's bootstrap, percentiles of 2,000 draws with a
-// fixed seed); where there is one viewpoint, blocks alone. `values` are those of the blocks, by
+// fixed seed); where there is one viewpoint, blocks alone. `values` has the blocks of each
 // viewpoint; every viewpoint has a block. With few viewpoints it is too narrow. Throws
 // std::invalid_argument if there is no viewpoint or one has no block.
 Interval BootstrapInterval(std::span<const std::vector<double>> values);

@@ -11,8 +11,8 @@ namespace lull {
 
 namespace {
 
-// Returns whether people's threshold lies in the range of a stop. What they put at the cap may be
-// any number above.
+// Returns whether the human threshold is in the range of a stop. A threshold at the cap may be any
+// number above.
 bool IsInRange(const BlockOutcome& block, std::span<const double> logRatios) {
     const int stop = block.outcome.stop;
     const HumanRange range = RangeOfPeople(stop, stop < kJudgedCap, logRatios);

@@ -13,9 +13,9 @@ namespace lull {
 // end of a recording for stops beyond it. Throws std::invalid_argument if there is no block.
 std::vector<double> LogRatioQuantiles(std::span<const ViewpointOutcome> viewpoints);
 
-// Returns the share of thresholds that lie in the range which the other viewpoints give for the
-// rule's stop, in the mean over the viewpoints: 0.8 if such ranges are what they claim to be.
-// Throws std::invalid_argument if there are fewer than two viewpoints.
+// Returns the fraction of thresholds in the range that the other viewpoints give for the rule's
+// stop, averaged over the viewpoints: ideally 0.8. Throws std::invalid_argument if there are fewer
+// than two viewpoints.
 double RangeCoverage(std::span<const ViewpointOutcome> viewpoints);
 
 }  // namespace lull

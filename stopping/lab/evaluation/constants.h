@@ -1,4 +1,4 @@
-// One spp for all blocks of a picture: what every rule that looks at blocks has to beat.
+// One sample count for all blocks of an image: the baseline of rules that measure blocks.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace lull {
 // (their setting): "constant, known", the best one on this viewpoint itself, which no rule can
 // know; with two viewpoints or more "constant, of others", the best one on the others; and
 // "constant", the best one on all. Only names and human thresholds are read of the outcomes. `grid`
-// is that of critical errors, in spp. Throws std::invalid_argument if there is no viewpoint.
+// is the step of critical errors, in spp. Throws std::invalid_argument if there is no viewpoint.
 std::vector<EvaluatedRule> EvaluateConstants(std::span<const ViewpointOutcome> viewpoints, ChooseBy,
                                              int grid);
 

@@ -37,7 +37,7 @@ void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBl
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// Returns what the number of a rule is compared with; 0 where a recording has no such numbers.
+// Returns the threshold of a rule's number; 0 where a recording has no such numbers.
 double ThresholdOf(const std::string& rule, const RuleContext& context) {
     const RuleEntry* entry = FindRule(rule);
     return entry && entry->replay == Replay::Decides ? ParseRule(rule, context).threshold : 0;

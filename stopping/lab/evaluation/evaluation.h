@@ -1,4 +1,4 @@
-// Judges where a rule stopped blocks, and what it said of them before, against what people see.
+// Compares the stops of a rule, and its earlier verdicts, with human thresholds.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace lull {
 
-// What a rule said of a block at some spp.
+// Verdict of a rule on a block at some spp.
 struct Verdict {
     int spp = 0;
     double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
     bool noisy = false;
 };
 
-// What a rule did to a block.
+// Stop and verdicts of a rule on a block.
 struct RuleOutcome {
     int stop = 0;  // spp; kJudgedCap where it never stopped
     // Whether the recording ends below the cap and the rule had not stopped the block there: it
@@ -45,8 +45,8 @@ struct ViewpointOutcome {
 // Where blocks stop that a rule had not stopped where their recordings end.
 enum class OpenStops {
     None,     // there are no such blocks
-    Ends,     // at these ends, although the rule goes on for longer
-    Extended  // where the rule stops if recordings go on by their own laws (extension.h)
+    Ends,     // at these ends, although the rule continues
+    Extended  // where the rule stops on extrapolated recordings (extension.h)
 };
 
 // The outcomes of a rule, or of the thresholds in a file.
@@ -54,8 +54,8 @@ struct EvaluatedRule {
     std::string name;
     std::string setting = {};  // the one for all viewpoints, if there is one
     std::vector<ViewpointOutcome> viewpoints = {};
-    double threshold =
-        0;  // what its number, the score of verdicts, is compared with; 0: it has none
+    // of its number, the score of verdicts; 0: it has none
+    double threshold = 0;
     OpenStops openStops = OpenStops::None;
 };
 
@@ -81,14 +81,14 @@ struct Scores {
     std::vector<double> criticalErrors = {};  // for each margin
     double absoluteError = 0;                 // |stop - human| in spp
     double early = 0, late = 0;               // shares with stop < 80 %, > 125 % of human
-    // What else other viewpoints and blocks might have for the first margin (BootstrapInterval());
-    // nothing without margins or blocks.
+    // Confidence interval of the critical error at the first margin for other viewpoints and blocks
+    // (BootstrapInterval()); nothing without margins or blocks.
     std::optional<Interval> criticalInterval = {};
     // Rank correlation of stops and human thresholds: of blocks within a viewpoint, in the mean of
     // those where both differ, and of the means of the viewpoints.
     std::optional<double> rankWithin = {}, rankBetween = {};
-    // Of all verdicts together, where people see noise below their threshold; nothing where all
-    // verdicts are on one side of it. The accuracy is the mean of those of both classes, which
+    // Of all verdicts together, against noise seen below the human threshold; nothing where all
+    // verdicts are on one side of it. The accuracy is the mean of both classes' accuracies, which
     // balances them.
     std::optional<double> auc, accuracy;
 };

@@ -1,4 +1,4 @@
-// Says whether numbers rank things alike.
+// Computes rank correlations.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,7 @@ struct RivalRule {
     std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
 };
 
-// Returns those that can be run on what was recorded of the blocks.
+// Returns the rules that can be run on the recorded data of the blocks.
 std::vector<RivalRule> RivalRules(std::span<const LabelledBlock> blocks) {
     const bool haveHalves = std::ranges::all_of(
         blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
@@ -37,7 +37,7 @@ std::vector<RivalRule> RivalRules(std::span<const LabelledBlock> blocks) {
     return rivals;
 }
 
-// What NoiseVisibility::mask may be, the default first; the last hides nothing.
+// Candidates for NoiseVisibility::mask, the default first; the last hides nothing.
 constexpr double kMasks[] = {NoiseVisibility().mask, 8, 12, 16, 24, 1e9};
 
 std::string Text(double number) {
@@ -52,7 +52,7 @@ std::span<const double> MasksOf(const RivalRule& rule) {
     return std::span(kMasks).first(rule.choosesMask ? std::size(kMasks) : 1);
 }
 
-// With what a rule is run.
+// Setting of a rule.
 struct Setting {
     double threshold = 0;
     size_t mask = 0;  // its place in kMasks

@@ -9,11 +9,11 @@
 
 namespace lull {
 
-// What the best setting of a rule is: the one with the least mean error of the thresholds, or
-// with the least critical error at 2 %.
+// Criterion for the best setting of a rule: the least mean error of the thresholds, or the least
+// critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 
-// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is that of critical
+// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is the step of critical
 // errors, in spp.
 double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
 
@@ -23,14 +23,14 @@ struct Rival {
     std::string rule;
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
-    // The best setting on all viewpoints: what to use on new ones. A threshold, to three digits;
+    // The best setting on all viewpoints, for use on new ones. A threshold, to three digits;
     // "threshold, mask" for "entropy, mask".
     std::string bestOfAll;
 };
 
-// Runs the rules over recorded blocks (those of one viewpoint follow each other), each viewpoint
+// Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are those of RuleSweep; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
+// samples. Thresholds are RuleSweep's; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
 // that compare halves are left out where a block was recorded without (HasHalves()). Throws
 // std::invalid_argument if there are fewer than two viewpoints.
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,

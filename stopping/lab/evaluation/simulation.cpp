@@ -48,7 +48,7 @@ void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, do
                 {.spp = spp[i], .score = numbers[i], .noisy = !(numbers[i] < threshold)});
 }
 
-// Checks that every second pass is enough for what a rule compares beyond 400 spp.
+// Checks that every second pass is enough for the comparisons of a rule beyond 400 spp.
 void CheckSpacing(const Rule& rule, const LabelledBlock& block) {
     if (block.passSpp > 0 && rule.spacing % (2 * block.passSpp) != 0)
         throw std::invalid_argument("the model compares passes " + std::to_string(rule.spacing) +
@@ -65,7 +65,7 @@ void CheckLookedAt(std::span<const Decision> decisions, const LabelledBlock& blo
         text += (i ? ", " : "") + std::to_string(spp[i]);
     throw std::invalid_argument(
         "pictures at " + text + (spp.size() > 4 ? ", ..." : "") +
-        " spp lie too far apart for it: it compares them, and has looked at none; take them at "
+        " spp lie too far apart for it: it compares them, and has checked none; take them at "
         "multiples of 20 or 40 spp, or at most 1.4 times the spp of the one before");
 }
 
@@ -180,8 +180,8 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
         return ThresholdsSimulator(ArgumentOf(text));
     if (const RuleEntry* entry = FindRule(text); entry && entry->replay == Replay::Unknown)
         throw std::invalid_argument("stopping rule '" + Printable(text) +
-                                    "': recordings hold no denoised pictures, nor what these are "
-                                    "made of; thresholds that a render has written can be judged");
+                                    "': recordings have no denoised pictures, nor their features; "
+                                    "evaluate the thresholds file of a render instead");
     const auto rule = std::make_shared<const Rule>(ParseRule(text, context));
     const Replay replay = FindRule(text)->replay;
     if (replay == Replay::Counts)

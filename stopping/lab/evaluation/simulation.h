@@ -1,11 +1,11 @@
-// Finds what a stopping rule would have done to recorded blocks, without rendering them again.
+// Simulates stopping rules on recorded blocks, without rendering them again.
 //
 // Recordings hold all passes up to 400 spp and every second one after, and a rule is simulated as
 // if there were no others: it votes on recorded passes. Verdicts (evaluation.h) are given at every
-// second pass, which recordings have from the first to the last; a pass that the rule does not look
-// at is a verdict of noise, as the rule goes on. Where records come at any spp (pictures, passSpp
-// 0), a rule looks at them as it does at pictures that are shown to it (Checks::any), and verdicts
-// are at all of them.
+// second pass, which recordings have from the first to the last; a pass that the rule does not
+// check is a verdict of noise, as the rule continues. Where records come at any spp (pictures,
+// passSpp 0), a rule checks them as it does pictures (Checks::any), and verdicts are at all of
+// them.
 #pragma once
 
 #include <functional>
@@ -29,9 +29,9 @@ ErrorSeries MakeErrorSeries(const LabelledBlock& block, const Rule& rule);
 // Returns the record at which a threshold stops the block; -1: none.
 int FirstBelow(const ErrorSeries& series, double threshold);
 
-// Each returns what a rule would have done to a block. Recordings that are empty throw
+// Each returns the outcome of a rule on a block. Recordings that are empty throw
 // std::invalid_argument, and so does a threshold of cycles that is none of kCyclesThresholds, and a
-// model that does not fit the passes, asks for what is not recorded or looks at no record. Without
+// model that does not fit the passes, needs unrecorded features or checks no record. Without
 // verdicts if `brief`.
 RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& series,
                               double threshold, bool brief = false);
@@ -42,7 +42,7 @@ RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 
-// What a rule does to a block; can be called from several threads.
+// Returns the outcome of a rule on a block; can be called from several threads.
 using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 
 // Reads a rule as ParseRule() does, with the files it names and for the passes of the
@@ -51,7 +51,7 @@ using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 // recordings; the simulator throws std::runtime_error for a block that a file does not have.
 Simulator MakeSimulator(const std::string& rule, const RuleContext& context = {});
 
-// Runs a rule over blocks, on all cores; those of one viewpoint follow each other.
+// Runs a rule over blocks, on all cores; the blocks of one viewpoint follow each other.
 std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, const Simulator& rule,
                                        const std::string& setting);
 

@@ -53,7 +53,7 @@ bool ParseTrack(std::string_view* line, SingleAnswer* answer) {
     return true;
 }
 
-// Throws std::invalid_argument saying what is wrong.
+// Throws std::invalid_argument with the reason.
 SingleAnswer ParseAnswer(std::string_view line, bool hasTrack) {
     SingleAnswer answer;
     const std::string whole(line);

@@ -1,4 +1,4 @@
-// Statistics of what several observers said of the same things.
+// Computes the agreement of several observers.
 #pragma once
 
 #include <optional>

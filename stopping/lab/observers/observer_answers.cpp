@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kAnswersFormat = "lull-judge-answers";
 constexpr int kVersion = 1;
-// Bounds on what a damaged file can ask for.
+// Bounds on the contents of a damaged file.
 constexpr size_t kMostBytes = size_t(1) << 26;
 constexpr int kMostBlocks = 1 << 16, kMostLevels = 1000, kMostSpp = 1 << 24;
 constexpr size_t kLongestText = 200, kMostTrials = 1000;

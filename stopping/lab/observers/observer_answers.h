@@ -1,4 +1,4 @@
-// Reads what one observer said of one viewpoint: the JSON files that the page of `lull study`
+// Reads the answers of one observer on one viewpoint: the JSON files that the page of `lull study`
 // saves.
 #pragma once
 
@@ -16,7 +16,7 @@ enum class AnswerKind {
     Catch     // a check of the observer, to which the right answer is known
 };
 
-// Whether noise was seen in a picture of so many samples per pixel.
+// Whether noise was seen in a picture of `spp` samples per pixel.
 struct NoiseAnswer {
     int spp = 0;
     bool seen = false;
@@ -44,8 +44,8 @@ struct ObserverAnswers {
     bool isIdle = false;               // the observer pointed at nothing
     double seconds = 0;                // without pauses
     int given = 0;                     // answers in all: clicks, or trials
-    // Of the display, as the observer set or said it; zoom: 1 is 100 %; pixels are those of
-    // pictures, `shown` those of the display for one of them.
+    // Of the display, as set or stated by the observer; zoom: 1 is 100 %; pixels are those of
+    // pictures, `shown` is the number of display pixels for one of them.
     std::optional<double> gamma, distanceCm, pixelsPerDegree, zoom;
     std::optional<int> shown, windowWidth, windowHeight;
     std::string tones;  // "all" or "not all", which can be told apart; empty: not known
@@ -56,9 +56,9 @@ struct ObserverAnswers {
     bool operator==(const ObserverAnswers& other) const;  // but for the file
 };
 
-// Reads answers from a text. Throws std::runtime_error saying what is wrong: no JSON, not made by
-// the page, or in contradiction to itself. Names have no control characters, and can stand in
-// thresholds files.
+// Reads answers from a text. Throws std::runtime_error with the reason: no JSON, not made by
+// the page, or contradictory. Names have no control characters, and can stand in thresholds
+// files.
 ObserverAnswers ParseAnswers(std::string_view text);
 
 // Reads a file. Throws std::runtime_error, without the file's name.

@@ -15,7 +15,7 @@ std::string Field(const std::optional<double>& value) {
 }
 std::string Field(const std::optional<int>& value) { return value ? std::to_string(*value) : ""; }
 
-// Returns what is known of the display and the observer, for columns from gamma to colour.
+// Returns the data of the display and the observer, for columns from gamma to colour.
 std::string ViewingFields(const ObserverAnswers& a) {
     const std::string window = a.windowWidth && a.windowHeight
                                    ? fmt::format("{}x{}", *a.windowWidth, *a.windowHeight)

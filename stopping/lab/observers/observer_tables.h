@@ -1,4 +1,4 @@
-// Writes down what observers said.
+// Writes the answers of observers as CSV tables.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 namespace lull {
 
 // Returns a CSV with a line of column names: a row for each block, and one for each viewpoint with
-// the block "all". Thresholds are in spp; fields of what is not known are empty.
+// the block "all". Thresholds are in spp; unknown fields are empty.
 std::string DetailsCsv(const Collected& collected);
 
-// Returns a CSV with a line of column names and a row for each file of answers: who counts, who was
-// left out and why, how consistent each was, and what is known of the display, the distance and the
+// Returns a CSV with a line of column names and a row for each file of answers: whether it
+// counts or why not, the consistency of its answers, and the recorded display, distance and
 // observer.
 std::string ObserversCsv(const Collected& collected);
 
-// Returns what those who count said one by one, as ReadSingleAnswers() in stopping/evaluation reads
-// it and `lull evaluate --answers` takes it: of each adjustment that noise was seen at the levels
-// that were left, and none where it ended, with a number for the adjustment, as these answers are
-// steps on one way. Empty if there is none: of staircases it is known which
-// of two pictures was found noisier, half of the time by chance, and not whether noise was seen.
+// Returns the single answers of observers who count, as read by ReadSingleAnswers()
+// (evaluation/single_answers.h) and `lull evaluate --answers`: for each adjustment, noise seen at
+// the levels that were left, and none at its end, with a number for the adjustment, as these
+// answers are steps on one path. Empty if there is none: staircases tell which of two pictures was
+// found noisier, half of the time by chance, but not whether noise was seen.
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);
 
 }  // namespace lull

@@ -132,7 +132,7 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
     });
 }
 
-// Adds what is odd about how the observer saw the pictures.
+// Adds doubts about the display and the viewing conditions.
 template <typename Add>
 void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
     if (answers.tones == "not all") add("could not tell all tones of the display apart");
@@ -147,7 +147,7 @@ void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
     if (answers.colour == "not usual") add("does not tell colours apart as most people do");
 }
 
-// Returns what is odd about the answers that count.
+// Returns doubts about the answers that count.
 std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
     const auto add = [&](const std::string& doubt) {
@@ -221,7 +221,7 @@ BlockConsensus MakeConsensus(const std::vector<double>& spp, const std::vector<i
     return block;
 }
 
-// Adds what the staircases of the only observer say of their thresholds.
+// Adds the confidence of thresholds from the staircases of the only observer.
 void AddOwnConfidence(const ObserverAnswers& answers, CollectedViewpoint* viewpoint) {
     for (const BlockAnswer& answer : answers.answers) {
         if (answer.kind != AnswerKind::Asked || !answer.octaves) continue;

@@ -1,4 +1,4 @@
-// Makes human thresholds of what observers said.
+// Computes human thresholds from the answers of observers.
 #pragma once
 
 #include "stopping/lab/observers/observer_answers.h"
@@ -8,21 +8,21 @@ namespace lull {
 
 struct CollectOptions {
     double mostFailed = 0.25;    // share of the checks that an observer may fail
-    double leastSeconds = 0.2;   // that an answer takes in the mean; nobody looks in less
+    double leastSeconds = 0.2;   // mean time of an answer; less is no look
     std::string study = {};      // the id of the only study that is taken; empty: any
     std::string procedure = {};  // and how it has to have asked; empty: any
 };
 
-// Names what was not taken, and why.
+// Rejected answers, with the reason.
 struct RefusedAnswers {
     std::string file, reason;
 };
 
-// What is known of an observer's care. Octaves are of spp: 1 is a factor of two.
+// Consistency of an observer. Octaves are of spp: 1 is a factor of two.
 struct CheckedObserver {
     ObserverAnswers answers;
     std::string leftOut;  // why; empty: the answers count
-    std::string doubts;   // what a reader should know of answers that count; may be empty
+    std::string doubts;   // about answers that count; may be empty
     int checks = 0, failed = 0, repeats = 0;
     // Standard deviation of a single answer, from those given twice: the root of the mean of half
     // the squared differences.
@@ -33,7 +33,7 @@ struct CheckedObserver {
     std::optional<double> shiftOctaves;
 };
 
-// What observers said of a block, in spp.
+// Answers of the observers on a block, in spp.
 struct BlockConsensus {
     double mean = 0, lowest = 0, highest = 0;
     std::optional<double> deviation, octaves;  // standard deviations over observers

@@ -11,7 +11,7 @@ namespace lull {
 
 // Blocks to train on and others to judge by, which the training never sees.
 struct BlockSplit {
-    std::string name = {};  // says what is left out
+    std::string name = {};  // names the part left out
     std::vector<LabelledBlock> training = {}, test = {};
 };
 

@@ -22,7 +22,7 @@ float RoundBits(float value, int bits) {
     return std::bit_cast<float>((std::bit_cast<uint32_t>(value) + half) & ~mask);
 }
 
-// What is looked at relative to its own change over a window needs more bits.
+// Channels that are normalised over a window need more bits.
 int SignificantBits(const Channel& channel) {
     const bool isEntropy =
         channel.name.starts_with('h') && channel.count > 1 && channel.name != "half_noise";

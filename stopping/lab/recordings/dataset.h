@@ -17,10 +17,10 @@ struct ViewpointRecording {
     int blockCount = 0;  // in the whole image
     int cap = 0;         // spp at which recordings end at the latest
     int passSpp = 0;     // samples per pixel and pass; 0: records come at any spp
-    // What the recordings were made of and with: scene, its hash, resolution, sampler, ...
+    // Origin of the recordings: scene, its hash, resolution, sampler, ...
     std::map<std::string, std::string> provenance;
     std::map<int, BlockRecording> blocks;   // by row-major number; others are absent
-    std::map<int, std::string> blockNotes;  // what each recording cost
+    std::map<int, std::string> blockNotes;  // cost of each recording
 };
 
 // Reads all viewpoints of a file. Blocks may lack optional channels, each by itself. Throws
@@ -31,9 +31,9 @@ std::vector<ViewpointRecording> ReadDataset(const std::string& path);
 // and attributes to 19, which compresses them to half their size.
 std::vector<std::byte> EncodeDataset(std::span<const ViewpointRecording> viewpoints);
 
-// Adds the blocks of a viewpoint, in place of those that were there; a new viewpoint if there was
-// none of that name. Throws std::runtime_error saying what differs if there is one that was
-// recorded in another way (provenance, cap, passes, number of blocks).
+// Adds the blocks of a viewpoint, replacing existing ones; a new viewpoint if there was none of
+// that name. Throws std::runtime_error with the difference if there is one that was recorded in
+// another way (provenance, cap, passes, number of blocks).
 void AddToDataset(const ViewpointRecording& added, std::vector<ViewpointRecording>* viewpoints);
 
 }  // namespace lull

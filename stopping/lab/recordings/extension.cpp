@@ -16,7 +16,7 @@ constexpr double kDoublings = 2;  // that laws are fitted to
 
 // How a number goes with the samples: power(value) = A + b n^exponent, where A can be 0.
 struct Law {
-    double exponent = 0;  // 0: it stays what it is
+    double exponent = 0;  // 0: constant
     bool hasLevel = true;
     bool isSquared = false;  // the square of the value follows the law
 

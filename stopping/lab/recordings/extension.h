@@ -1,11 +1,11 @@
-// Goes on with recordings beyond their ends by the laws that their own numbers follow, so that
-// rules that would have stopped a block later can be judged too.
+// Extrapolates recordings beyond their ends by laws fitted to their own numbers, so that rules that
+// would have stopped a block later can be judged too.
 //
 // For n samples per pixel: entropies of sub-blocks are H + a n^-0.9 (falls of entropies are read
 // with that exponent where noise has 1, see RateOfFall()); noise, and the errors of rules, fall as
 // n^-1/2; deviations from a mean are the root of A + b / n. H, a, A and b are fitted to the last
 // two doublings, and laws with a constant go through the last record, so that there is no step;
-// what is not noise stays what it is there in the mean.
+// other measurements keep their last average.
 #pragma once
 
 #include <memory>
@@ -16,14 +16,14 @@
 
 namespace lull {
 
-// Returns the recording with records up to `end` spp, as IsRecorded() spaces them or,
-// where passSpp is 0, as far apart as the last two. Where `cycles`
-// has not stopped at a threshold T, it does where T^2 times the spp is what it was at the least
-// threshold at which it has; it never does where there is none. Throws std::invalid_argument for a
-// recording without records.
+// Returns the recording with records up to `end` spp, as IsRecorded() spaces them or, where
+// passSpp is 0, as far apart as the last two. Where `cycles` has not stopped at a threshold
+// T, it does where T^2 times the spp equals that at the least threshold at which it has; it
+// never does where there is none. Throws std::invalid_argument for a recording without
+// records.
 BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int end);
 
-// Blocks whose recordings go on to kJudgedCap. It can be moved, but not copied.
+// Blocks with recordings extended to kJudgedCap. It can be moved, but not copied.
 struct ExtendedBlocks {
     std::vector<std::unique_ptr<const BlockRecording>> recordings;  // those that were extended
     std::vector<LabelledBlock> blocks;  // all, in their order; those that went on are as they were

@@ -10,7 +10,7 @@
 
 namespace lull {
 
-// Is told in words what a user should know, and is called by one thread at a time.
+// Receives warnings for the user, and is called by one thread at a time.
 using WarningSink = std::function<void(const std::string& message)>;
 
 // Reads data sets as one; blocks of a viewpoint can be in several files. Throws std::runtime_error

@@ -90,7 +90,7 @@ void AddPicture(const BlockView& view, BlockRecording* recording) {
     if (HasHalves(*recording))
         throw std::invalid_argument("a picture was added to a recording with halves");
     recording->spp.push_back(view.spp);
-    // Against itself nothing differs, so that what halves make is 0.
+    // Compared with itself, measurements of halves are 0.
     BlockView same = view;
     same.halfMean = view.mean;
     AppendRecord(same, &recording->values);

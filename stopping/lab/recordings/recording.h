@@ -1,4 +1,4 @@
-// Records what a stopping rule could want to know of a block, pass by pass, so that rules can be
+// Records the measurements of a block that stopping rules need, pass by pass, so that rules can be
 // trained and judged without rendering again.
 #pragma once
 
@@ -24,10 +24,10 @@ struct Channel {
 
 // All of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
-// deviation are mean and standard deviation of L; texture is the mean of t, and noise,
-// masked_noise and half_noise are what lightness_noise.h says. dammertz and luxtile are the errors
-// of those rules (baselines.h). attributes26 is what ComputeAttributes() says of L.
-// Those from noise to luxtile compare the mean with a half of the samples.
+// deviation are mean and standard deviation of L; texture is the mean of t, and noise, masked_noise
+// and half_noise are defined in lightness_noise.h. dammertz and luxtile are the errors of those
+// rules (baselines.h). attributes26 is ComputeAttributes() of L. Those from noise to luxtile
+// compare the mean with a half of the samples.
 inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"h25", 25},
                                                        {"h100", 100},
@@ -82,7 +82,7 @@ bool HasHalves(const BlockRecording& recording);
 bool IsRecorded(int spp, int passSpp, int cap);
 
 // Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks
-// must have at least 20 x 20 pixels. What is recorded goes to `recording`, which must outlive it.
+// must have at least 20 x 20 pixels. Records go to `recording`, which must outlive it.
 class Recorder final : public Criterion {
   public:
     Recorder(int passSpp, int cap, int limit, BlockRecording* recording);

@@ -1,4 +1,4 @@
-// Makes what a network is trained on: windows of recordings, and whether people saw noise.
+// Makes training samples for networks: windows of recordings, and whether observers saw noise.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace lull {
 
-// Returns what reads the channels of record i; the recording must outlive it.
+// Returns a function that reads the channels of record i; the recording must outlive it.
 RecordedValues ValuesOf(const BlockRecording& recording, int i);
 
-// Returns what record i of a block says of the features that the settings ask for, as
-// RecordedMeasures() does.
+// Returns the features of the settings in record i of a block, as RecordedMeasures()
+// does.
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
 
 // Names a block that was recorded and that people judged.

@@ -30,7 +30,7 @@ auto Sigmoid(const Array& x) {
     return (Scalar(1) + (-x).exp()).inverse();
 }
 
-// What a layer has computed, as long as the way back needs it; a column a sample and step.
+// Results of a layer for the backward pass; a column a sample and step.
 template <typename Scalar>
 struct LstmTrace {
     MatrixOf<Scalar> inputs;    // after dropout
@@ -155,7 +155,7 @@ BatchResult<Scalar> AddGradient(const NetworkWeights<Scalar>& weights,
     for (size_t l = 0; l < weights.lstm.size(); ++l)
         traces.push_back(RunForward(weights.lstm[l], l == 0 ? batch.inputs : traces[l - 1].outputs,
                                     mask(l), count, steps));
-    // What goes into each dense layer; at the end the answers.
+    // Inputs of the dense layers; at the end the answers.
     std::vector<Matrix> states = {traces.empty() ? Flatten(batch)
                                                  : Matrix(traces.back().outputs.rightCols(count))};
     VectorOf<Scalar> logits;
@@ -172,7 +172,7 @@ BatchResult<Scalar> AddGradient(const NetworkWeights<Scalar>& weights,
                        (SoftPlus(double(logits[s])) - double(batch.targets[s] * logits[s]));
     if (!gradient) return result;
 
-    // Of what the activation is taken of; of cross-entropy and sigmoid together it is this simple.
+    // Of the input of the activation; of cross-entropy and sigmoid together it is this simple.
     Matrix dz =
         (batch.weights.array() * (result.probabilities - batch.targets).array()).transpose();
     Matrix dx;

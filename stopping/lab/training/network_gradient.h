@@ -16,7 +16,7 @@ struct SampleBatch {
     // For each LSTM layer factors of its inputs, a column per sample: 0 where dropped, the same at
     // all time steps (Keras' `dropout`). Empty: nothing is dropped.
     std::vector<MatrixOf<Scalar>> masks = {};
-    VectorOf<Scalar> targets;  // what the network should answer, 0 or 1
+    VectorOf<Scalar> targets;  // desired answers, 0 or 1
     VectorOf<Scalar> weights;  // of the samples in the loss
 };
 

@@ -28,7 +28,7 @@ struct TrainingOptions {
     // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
     // spp do in the critical error.
     bool balanceClasses = true;
-    // What the loss of noisy samples counts more: above 1 fewer blocks stop early.
+    // Factor of the loss of noisy samples: above 1 fewer blocks stop early.
     double noisyWeight = 1;
 };
 

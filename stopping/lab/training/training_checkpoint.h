@@ -1,4 +1,4 @@
-// Keeps the states of trainings in a file, to go on from there.
+// Stores the states of trainings in a file, to continue from there.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace lull {
 
-// Puts bytes into a file, whole or not at all; throws what went wrong.
+// Writes bytes to a file, completely or not at all; throws the error.
 using FileWriter = std::function<void(const std::string& path, std::span<const std::byte> bytes)>;
 
 // The states of several trainings, by number, finished ones first.
@@ -25,14 +25,14 @@ class TrainingCheckpoint {
     // Reads the file. Throws std::runtime_error.
     void Read();
     void Set(size_t training, std::vector<std::byte> state);
-    // Lets a training go on where its state says; leaves it where there is none. Throws
+    // Restores a training to its saved state; leaves it unchanged where there is none. Throws
     // std::runtime_error if it is the state of another.
     void Restore(size_t training, Trainer* trainer) const;
     // Returns whether the next writing is due.
     bool IsDue() const;
-    // Writes the file, if there is one. Throws what the writer does.
+    // Writes the file, if there is one. Throws as the writer does.
     void Write();
-    // Forgets all trainings, and removes the file.
+    // Discards all trainings, and removes the file.
     void Remove();
     const std::string& Path() const { return path; }
 

@@ -27,15 +27,15 @@ struct TrainingPlan {
     std::string version;  // of the program, for the record
 };
 
-// Returns a split for each network, in the order in which they are trained; that of the last one
-// has no name. Throws std::runtime_error.
+// Returns a split for each network, in the order in which they are trained; the last split has no
+// name. Throws std::runtime_error.
 std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan, std::span<const LabelledBlock> blocks);
 
 // Throws std::runtime_error if n or the spacing of votes is no multiple of the recordings' pass.
 void CheckSpacing(const ModelSettings& settings, int passSpp);
 
-// Returns what a network is trained on, and with which options; without the date, so that the same
-// training gives the same text. Throws std::runtime_error if a file can no longer be read.
+// Returns the training data and options of a network; without the date, so that the same training
+// gives the same text. Throws std::runtime_error if a file can no longer be read.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split);
 
 }  // namespace lull

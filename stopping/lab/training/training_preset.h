@@ -1,4 +1,4 @@
-// Names ways to train a model: what it looks at, its network, and how that learns.
+// Named ways to train a model: its features, its network, and the training of that.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ struct TrainingPreset {
     TrainingOptions training = {};
 };
 
-// Returns them, the default first: "entropy", that of the model that ships as the default, and
-// "paper", that of Buisine et al. 2021.
+// Returns the presets, the default first: "entropy", for the model that ships as the default, and
+// "paper", for Buisine et al. 2021.
 std::span<const TrainingPreset> TrainingPresets();
 
 }  // namespace lull

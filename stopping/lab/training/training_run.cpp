@@ -33,7 +33,7 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
         viewpoints->push_back(std::move(viewpoint));
 }
 
-// What networks did to blocks that each of them did not see, or did.
+// Outcomes of networks on blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
     std::vector<LabelledBlock> blocks = {};
@@ -112,8 +112,8 @@ std::optional<TrainingResult> TrainAll(
 std::string CertaintyText(const TrainingResult& result) {
     if (result.logRatios.empty()) return "";
     return fmt::format(
-        "80 % of the thresholds of people lie between {:.2f} and {:.2f} times the stop; of each "
-        "viewpoint, {:.1f} % between those that the others give",
+        "80 % of the human thresholds are {:.2f} to {:.2f} times the stop; of each viewpoint, "
+        "{:.1f} % are in the range of the others",
         std::exp(result.logRatios[1]), std::exp(result.logRatios[9]),
         100 * RangeCoverage(result.rules.front().viewpoints));
 }

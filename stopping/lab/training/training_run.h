@@ -14,7 +14,7 @@
 
 namespace lull {
 
-// Is told of a training; one that an earlier run has finished is not begun. None may be empty.
+// Callbacks of a training, none for one that an earlier run has finished. None may be empty.
 struct TrainingEvents {
     std::function<void(const TrainingSamples&, const TrainingProgress&)> begin;
     std::function<void(const Trainer&)> step;
@@ -22,11 +22,11 @@ struct TrainingEvents {
     std::function<bool()> isCancelled;  // is asked before each step; true ends the training
 };
 
-// What came of a plan.
+// Result of a plan.
 struct TrainingResult {
     Network network;  // the last one
-    // What networks did: "each viewpoint left out" and, of the last one, "blocks left out" or, if
-    // there are none, "blocks trained on"; each twice where recordings end too early for it, see
+    // Outcomes of networks: "each viewpoint left out" and, of the last one, "blocks left out" or,
+    // if there are none, "blocks trained on"; each twice where recordings end too early for it, see
     // AddTwoFigures().
     std::vector<EvaluatedRule> rules = {};
     // Of the networks without each viewpoint, see LogRatioQuantiles(); else empty.
@@ -43,7 +43,7 @@ std::optional<TrainingResult> TrainAll(
 // Returns how far from the stops people's thresholds lie; empty where that is not known.
 std::string CertaintyText(const TrainingResult& result);
 
-// Returns what the last network was trained on, with which options, and how it was judged.
+// Returns the training data of the last network, its options, and its evaluation.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
                                               const ScoreOptions& judge);

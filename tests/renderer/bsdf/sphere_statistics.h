@@ -145,9 +145,9 @@ inline double UpperGamma(double a, double x) {
     return front * h;
 }
 
-// Returns the probability that samples deviate from `expected` (probabilities by cell; what they
-// lack from 1 belongs to refused samples) at least as much as `observed` does (Pearson 1900).
-// Cells that expect fewer than 5 samples are pooled.
+// Returns the probability that samples deviate from `expected` (probabilities by cell; the rest to
+// 1 belongs to refused samples) at least as much as `observed` does (Pearson 1900). Cells that
+// expect fewer than 5 samples are pooled.
 inline double ChiSquarePValue(const std::vector<double>& expected,
                               const std::vector<int64_t>& observed, int64_t sampleCount) {
     double statistic = 0, pooledExpected = 0, missing = 1;

@@ -55,8 +55,8 @@ inline Planes MeanOf(const Halves& halves) {
     return mean;
 }
 
-// Returns the root mean square of what two images differ by, of the pixels more than `border` from
-// their border.
+// Returns the root mean square of the difference of two images, over the pixels more than `border`
+// from their border.
 inline double Rms(const Planes& a, const Planes& b, int border = 0) {
     double sum = 0;
     int count = 0;

@@ -62,7 +62,7 @@ inline std::string FromHex(std::string_view hex) {
     return bytes;
 }
 
-// Returns what an Error thrown by `call` says; empty where none was thrown.
+// Returns the message of an Error thrown by `call`; empty where none was thrown.
 template <typename Call>
 std::string ErrorOf(const Call& call) {
     try {

@@ -1,4 +1,4 @@
-// Stands in for the viewer tev: listens, records what it is sent, and assembles the image.
+// Stands in for the viewer tev: listens, records received packets, and assembles the image.
 #pragma once
 
 #include <arpa/inet.h>

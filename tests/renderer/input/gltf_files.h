@@ -30,7 +30,7 @@ inline std::string Base64(const std::string& bytes) {
     return text;
 }
 
-// Collects what a glTF file holds; the JSON may be changed at will before it is written.
+// Contents of a glTF file; the JSON may be changed at will before it is written.
 struct GltfFile {
     json root = {{"asset", {{"version", "2.0"}}},
                  {"scene", 0},

@@ -1,4 +1,4 @@
-// What tests read from pages.
+// Reads data from pages.
 #pragma once
 
 #include "renderer/pages/html_page.h"

@@ -1,4 +1,4 @@
-// A render without a scene that keeps what a denoiser is shown.
+// A render without a scene that keeps the inputs of a denoiser.
 #pragma once
 
 #include "renderer/film/layers.h"

@@ -49,7 +49,7 @@ inline bool SameLayers(const AovFilm& a, const AovFilm& b) {
     return std::ranges::equal(a.Pixels(), b.Pixels());
 }
 
-// Stops at the spp that it is given, and notes what it was shown.
+// Stops at a given spp, and records its views.
 class ScriptedCriterion : public Criterion {
   public:
     explicit ScriptedCriterion(int stopAt) : stopAt(stopAt) {}

@@ -92,7 +92,7 @@ TEST(MipPyramid, AveragesFourTexels) {
 }
 
 TEST(MipPyramid, KeepsRampsInAllFilters) {
-    // A linear ramp stays what it is under any symmetric weights, away from the borders.
+    // A linear ramp is unchanged under any symmetric weights, away from the borders.
     const MipPyramid ramp = MakeGrey(256, 256, Wrap::Clamp, [](int x, int y) {
         return (float(x) + 0.5f) / 256 + 2 * (float(y) + 0.5f) / 256;
     });

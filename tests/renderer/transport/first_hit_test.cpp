@@ -1,4 +1,4 @@
-// Compares what paths say that they have met first with what is there.
+// Compares the first hits of paths with the scene.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

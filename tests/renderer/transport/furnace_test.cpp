@@ -92,7 +92,7 @@ TEST(Furnace, ConvexMatteBallShowsItsAlbedo) {
         }
 }
 
-// What neither absorbs nor adds light cannot be seen in an even environment.
+// Objects that neither absorb nor emit light cannot be seen in an even environment.
 TEST(Furnace, LosslessSpecularBallsAreInvisible) {
     std::vector<std::string> materials = {"\"mirror\" \"rgb Kr\" [1 1 1]"};
     for (const double eta : {1.01, 1.33, 1.5, 2.4})

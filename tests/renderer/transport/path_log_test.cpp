@@ -44,7 +44,7 @@ TEST(PathLog, IsOfTheSampleThatIsRendered) {
                 const PathSample rendered = RenderSample(*scene, estimator, sampler, pixel, index);
                 const PathLog log = LogSample(*scene, estimator, sampler, pixel, index);
                 ASSERT_TRUE((log.sample.radiance == rendered.radiance).all()) << i;
-                // What the steps bring adds up to it, and each starts where the one before ended.
+                // The steps add up to it, and each starts where the one before ended.
                 Rgb sum = Rgb::Zero();
                 Vec3f from = log.ray.o, direction = log.ray.d.normalized();
                 for (const PathStep& step : log.steps) {

@@ -111,7 +111,7 @@ TEST(Window, NormalisesAttributesAsEntropies) {
     EXPECT_EQ(window(26, 1), 0);
 }
 
-// What a network is trained on, from a recording, must be what it is given in a render.
+// Training inputs, from a recording, must equal those in a render.
 TEST(ModelInputs, AreThoseOfRecordings) {
     for (int m : {25, 100}) {
         ModelSettings settings = {.m = m};

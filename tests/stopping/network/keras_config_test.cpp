@@ -95,9 +95,9 @@ TEST(KerasConfig, TakesNoShapeAfterTheFirstLayer) {
 
 TEST(KerasConfig, RefusesDamagedText) {
     const std::string good = Sequential(lstmLayer + "," + denseLayer);
-    ExpectError("", "not what Keras writes");
-    ExpectError("[]", "not what Keras writes");
-    ExpectError(good.substr(0, good.size() / 2), "not what Keras writes");
+    ExpectError("", "not in the format of Keras");
+    ExpectError("[]", "not in the format of Keras");
+    ExpectError(good.substr(0, good.size() / 2), "not in the format of Keras");
     ExpectError(Sequential(""), "no layers");
     ExpectError(Replace(good, "\"units\": 4", "\"units\": \"four\""), "not a whole number");
     ExpectError(Replace(good, "\"units\": 4", "\"units\": 0"), "0 units");

@@ -195,7 +195,7 @@ TEST(Learned, KnowsTheNoiseAtWhichItIsUndecided) {
     EXPECT_NEAR(undecided(LastStepNetwork(2, std::log(0.4 + 0.001))), 0.4, 1e-3);
 }
 
-// What it says about noise is what it decides by.
+// It reports the noise by which it decides.
 TEST(Learned, SaysWhatNoiseItWasTold) {
     ModelSettings settings = DropSettings(2);
     settings.caution = 1.3;

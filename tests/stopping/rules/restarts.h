@@ -1,4 +1,4 @@
-// Interrupts rules, and lets others go on from what they have saved.
+// Interrupts rules, and lets others continue from their saved states.
 #pragma once
 
 #include <initializer_list>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kTag = 0x31303030;
 
-// Returns a rule whose number is what the program says of a block: 100 / spp, and more for others.
+// Returns a rule whose number is the program's measurement: 100 / spp, and more for others.
 Rule OwnRule(const Checks& checks, int votes) {
     RuleContext context;
     context.measures["own"] = [](const BlockView& view, const BlockInfo& block) {

@@ -55,8 +55,8 @@ TEST(Attributes26, AgreeOnARealImage) {
     EXPECT_LT(worstSigma, 1e-6);
 }
 
-// A pixel of 1 among zeros, far from the border: what each filter leaves of it and gives to its
-// neighbours can be written down.
+// A pixel of 1 among zeros, far from the border: the results of each filter there and in its
+// neighbourhood are known.
 TEST(Attributes26, AreThoseOfOnePixel) {
     constexpr int side = 20, pixels = side * side;
     std::vector<double> image(pixels, 0.0);
@@ -108,7 +108,7 @@ TEST(Attributes26, TakeAnySize) {
             EXPECT_GT(v, 0);
             EXPECT_LT(v, 50);
         }
-        // What is symmetric stays so, also where a last column has no partner.
+        // Symmetric images stay so, also where a last column has no partner.
         std::vector<double> turned;
         for (int x = 0; x < width; ++x)
             for (int y = 0; y < height; ++y) turned.push_back(noise[size_t(y * width + x)]);
@@ -135,7 +135,7 @@ TEST(Attributes26, AreFiniteWhateverComes) {
             EXPECT_TRUE(std::isfinite(v)) << image[0];
             EXPECT_GE(v, 0);
         }
-    // A constant image has only what the zeros around it do to median and Wiener.
+    // A constant image has only the effect of the zeros around it on median and Wiener.
     const auto flat = ComputeAttributes(images[2], side, side);
     for (const size_t i : {0, 1, 2, 3, 4, 5, 6, 7, 12}) EXPECT_LT(flat[i], 1e-12) << i;
     EXPECT_GT(flat[8], 0);

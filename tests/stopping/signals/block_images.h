@@ -9,7 +9,7 @@
 
 namespace lull {
 
-// What a BlockView shows.
+// Contents of a BlockView.
 struct BlockImage {
     int width, height;
     std::vector<float> mean, halfMean;

@@ -64,7 +64,7 @@ TEST(EntropyDrop, MeansTheSameHoweverFastNoiseFalls) {
     for (const double a : {1.25, 1.5, 1.75}) {
         const double fast = VisibleAt(420, std::pow(420, a / 2), a, kPlain);
         EXPECT_NEAR(fast / random, 1, 0.08) << a;
-        // What it would be if nothing were set right.
+        // Its value without the correction.
         EXPECT_GT(fast * std::sqrt(std::pow(2, a) - 1) / random, 1.1) << a;
     }
 }
@@ -110,7 +110,7 @@ TEST(VisibleDrop, CountsWhatIsSeen) {
 }
 
 // Samples with a quarter of the variance make the same noise with a quarter of the spp, and as much
-// of it is to be seen beside what people compared with.
+// of it is visible compared with the reference.
 TEST(VisibleDrop, CountsNoiseThatIsTheSameAlike) {
     const std::vector<double> drop = {0.02};
     const SubBlockLightness lightness{.mean = {60}, .deviation = {0}};

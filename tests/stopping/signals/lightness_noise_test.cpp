@@ -92,7 +92,7 @@ TEST(LightnessNoise, MeasuresGaussianNoise) {
 
     const LightnessNoiseStatistics one = SubBlockStatistics(noise, side, side, 1);
     EXPECT_FLOAT_EQ(one.noise[0], float(Rms(noise.noise)));
-    // Averaging 5 x 5 leaves a fifth of the noise in L, which is what there is of texture.
+    // Averaging 5 x 5 leaves a fifth of the noise in L, which is the only texture.
     EXPECT_NEAR(one.texture[0] / (expected / 5), 1, 0.1);
     EXPECT_NEAR(one.deviation[0] / expected, 1, 3 * standardError + 0.002);
 

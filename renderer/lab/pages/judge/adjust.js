@@ -66,7 +66,7 @@ function downRound(study, plan, answers) {
 
 function closeRound(study, entries, round, answers) {
   entries.forEach((entry, block) => {
-    // What was left as good as it began says nothing of where noise would be seen.
+    // A block left as good as it began has no information on the threshold.
     if (isOpen(entry) || entry.kind === "idle" || (entry.kind === "descend" && entry.least === 0)) return;
     const answer = {block, round, kind: entry.kind, clicks: entry.clicks, seconds: entry.ms / 1000};
     if (entry.kind === "catch") answer.failed = entry.net > 0;

@@ -145,7 +145,7 @@ function showAdjust(state) {
     drawPicture(adjustView.cells[block].reference.canvas, block, top);
     return drawPicture(adjustView.cells[block].noisy.canvas, block, adjustView.flicker ? top : level);
   });
-  // Have ready what the next click on each block may show.
+  // Load the pictures that the next click on each block may show.
   const near = state.entries.map(entry => shownLevel(study, entry));
   Promise.all(drawn).then(() => {
     forgetPictures((block, level) => level === top || Math.abs(level - near[block]) <= 2);

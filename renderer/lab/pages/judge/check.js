@@ -1,5 +1,5 @@
 "use strict";
-// The check of the display: tones, gamma, zoom and size. What is found goes with the answers.
+// The check of the display: tones, gamma, zoom and size. Its results are stored with the answers.
 
 const cardWidth = 85.6;  // mm, ISO/IEC 7810 ID-1
 
@@ -63,12 +63,12 @@ function makeCheck() {
 
 const chosen = name => document.querySelector(`input[name=${name}]:checked`)?.value ?? null;
 
-// Returns what observers say of themselves; null where they were not asked.
+// Returns age and sight as observers state them; null where they were not asked.
 function personFacts() {
   return study.questions ? {age: +byId("age").value || null, vision: chosen("vision"), colour: chosen("colour")} : null;
 }
 
-// Returns what is known of the display and of how it is looked at. Pixels are those of pictures.
+// Returns the data of the display and the viewing conditions. Pixels are those of pictures.
 function displayFacts() {
   const found = arrangement();
   const pixelsPerMm = byId("card-touched").checked ? byId("card-size").value / cardWidth / pixelSize() : null;

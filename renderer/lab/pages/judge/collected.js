@@ -10,7 +10,7 @@ const data = JSON.parse(byId("data").textContent);
 const showOctaves = v => isNumber(v) ? v.toFixed(2) : "\u2013";
 const showRange = (low, high) => isNumber(low) ? `${showCount(low)} \u2013 ${showCount(high)}` : "\u2013";
 
-// What can be laid over the image: values, their places in [0, 1], and words for them.
+// Overlays of the image: values, their places in [0, 1], and words for them.
 function overlaysOf(viewpoint) {
   const low = viewpoint.levels[0], high = viewpoint.levels[viewpoint.levels.length - 1];
   const widest = Math.max(0.5, ...viewpoint.blocks.map(b => b.octaves || 0));
@@ -54,7 +54,7 @@ function makePicture(viewpoint) {
 function sayAgreement(viewpoint) {
   if (!isNumber(viewpoint.agreement)) return "How far observers agree cannot be told of one of them.";
   return `Their agreement is ${viewpoint.inAWord} (intraclass correlation ${viewpoint.agreement.toFixed(2)})` +
-    (viewpoint.inAWord === "poor" ? ": these thresholds say more of the observers than of the picture." : ".");
+    (viewpoint.inAWord === "poor" ? ": observers differ more than blocks do." : ".");
 }
 
 function makeViewpoint(viewpoint) {

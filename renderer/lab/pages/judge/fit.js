@@ -7,7 +7,7 @@ const gap = 16;  // between two pictures and beside them, in pixels of the page
 // The largest block, of which a staircase shows two.
 const largestBlock = {width: Math.max(...study.blocks.map(b => b.width)), height: Math.max(...study.blocks.map(b => b.height))};
 
-// Measures what the task shows beside its pictures, in pixels of the page.
+// Measures the parts of the task around its pictures, in pixels of the page.
 function heightOfTexts(stacked) {
   const task = byId("task"), wasHidden = task.hidden, stages = byId("stages"), wasStacked = stages.classList.contains("stacked");
   stages.classList.toggle("stacked", stacked);
@@ -42,7 +42,7 @@ function arrangement() {
   return null;
 }
 
-// Says what the smallest arrangements need.
+// Returns the space that the smallest arrangements need, in words.
 function neededText() {
   const rooms = (isStaircase ? [false] : [false, true]).map(stacked => neededRoom(1 / devicePixelRatio, stacked));
   return [...new Set(rooms.map(r => `${Math.ceil(r.width)} x ${Math.ceil(r.height)}`))].join(" / ");

@@ -35,7 +35,7 @@ function undo() {
   keep();
 }
 
-// Saves, and shows what comes next.
+// Saves, and shows the next screen.
 function keep() {
   const state = replay(session);
   if (state.finished && !session.finished) session.finished = new Date().toISOString();

@@ -1,5 +1,5 @@
 "use strict";
-// Shows what noise is: an example, and three trials, less noisy each, after which the page says which
+// Shows noise: an example, and three trials, less noisy each, after which the page says which
 // picture had the noise. Nothing of this is kept.
 
 const noiseOfBlocks = study.blocks.map(b => b.noise[0]);

@@ -37,7 +37,7 @@ function thresholdOf(answers, block) {
   return spp.reduce((a, b) => a + b, 0) / spp.length;
 }
 
-// Returns what the file of answers holds; lull study --collect reads it (observer_answers.h).
+// Returns the contents of the file of answers; lull study --collect reads it (observer_answers.h).
 function answersOf(session) {
   const {answers} = replay(session);
   return {format: "lull-judge-answers", version: 1,

@@ -1,7 +1,7 @@
 "use strict";
 // Shows texts, which the researcher can change: as much of Markdown as a consent form needs, and no
 // markup of their own. # headings, lists with - or 1., paragraphs, **bold**, *italics*, `keys`,
-// [words](https://address); {names} stand for what is known only when a text is shown.
+// [words](https://address); {names} stand for values that are known only when a text is shown.
 
 const texts = JSON.parse(byId("texts").textContent);
 

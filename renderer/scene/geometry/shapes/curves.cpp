@@ -134,7 +134,7 @@ class Search {
 
     // Meets a part that is straight.
     void MeetStraight(const ControlPoints& p, float u0, float u1) {
-        // Leave out what lies beyond the perpendiculars at the ends.
+        // Leave out points beyond the perpendiculars at the ends.
         const auto beyond = [](const Vec3f& end, const Vec3f& next) {
             return (next.y() - end.y()) * -end.y() + end.x() * (end.x() - next.x()) < 0;
         };
@@ -166,8 +166,8 @@ class Search {
     float zMax;
 };
 
-// Returns the unit vector across the curve at v, where `along` is that along it and `n` what a flat
-// curve or a ribbon faces.
+// Returns the unit vector across the curve at v, where `along` is the tangent and `n` the normal of
+// a flat curve or a ribbon.
 Vec3f AcrossAt(CurveKind kind, const Vec3f& n, const Vec3f& along, float v) {
     Vec3f across = n.cross(along);
     if (const float length = across.norm(); length > 0) {
@@ -230,7 +230,7 @@ void Interact(const Curves& curves, const Ray& worldRay, const Hit& found, Surfa
     hit->dndu = hit->dndv = Vec3f::Zero();
     hit->n = along.cross(across);
     hit->p = ray.o + found.t * ray.d;
-    // Add what rounding can move the point by, which counts where the width is next to nothing.
+    // Add the rounding error of the point, which counts where the width is next to nothing.
     hit->pError =
         curves.errorPerWidth * width + Gamma(5) * (ray.o.cwiseAbs() + (found.t * ray.d).cwiseAbs());
     if (curves.place) {

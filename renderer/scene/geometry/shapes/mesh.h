@@ -47,7 +47,7 @@ struct Mesh {
     std::array<float, 4> Color(uint32_t triangle, float b1, float b2) const;  // 1 without colours
     float Area(uint32_t triangle) const;
     // The emitting side is pbrt-v3's: vertex normals decide, regardless of ReverseOrientation;
-    // those of a triangle are added.
+    // a triangle's own are added.
     EmittingTriangle EmitterAt(uint32_t triangle) const;
 };
 

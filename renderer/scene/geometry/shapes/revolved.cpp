@@ -52,7 +52,7 @@ bool IsClipped(const Revolved& shape, const Vector3d& p) {
            (shape.phiMax < 2 * kPi && AzimuthFromCurve(shape, p) > double(shape.phiMax));
 }
 
-// Fixes what follows from the curve: the heights, and on which side dpdu x dpdv lies.
+// Sets the members that follow from the curve: the heights, and the side of dpdu x dpdv.
 Revolved Finished(Revolved shape) {
     shape.zMin = std::min(shape.start.z(), shape.end.z());
     shape.zMax = std::max(shape.start.z(), shape.end.z());

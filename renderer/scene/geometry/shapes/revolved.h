@@ -1,5 +1,5 @@
-// Represents cylinders, cones, paraboloids and hyperboloids: what a line or a parabola sweeps out
-// as it turns about the z axis. Intersected exactly, in their own space.
+// Represents cylinders, cones, paraboloids and hyperboloids: surfaces swept by a line or a parabola
+// that turns about the z axis. Intersected exactly, in their own space.
 #pragma once
 
 #include "renderer/scene/geometry/shapes/quadric.h"
@@ -29,9 +29,9 @@ struct Revolved {
 // hyperboloid is pbrt-v3's. `phiMax` in radians. The result has no area, and must not be used,
 // where HasArea says so.
 //
-// pbrt-v3's hyperboloid is not what the line from p1 to p2 sweeps out, but where the line's waist
-// is at z = 0: its waist always is, and it goes through p2 and the point as far behind p2 as p1 is
-// before it. Heights end where the line does; uv, tangents and normals are those of the line.
+// pbrt-v3's hyperboloid is swept by the line from p1 to p2 only where the line's waist is at z = 0:
+// its waist always is, and it goes through p2 and the point as far behind p2 as p1 is before it.
+// Heights end where the line does; uv, tangents and normals are those of the line.
 Revolved MakeCylinder(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeCone(float radius, float height, float phiMax);
 Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);

@@ -92,7 +92,7 @@ MeshData SubdividedMesh(const ShapeEntity& entity) {
                          levels, entity.loc);
 }
 
-// Reads what only glTF's meshes have, four numbers a vertex and two of the second texture
+// Reads attributes of glTF's meshes alone, four numbers a vertex and two of the second texture
 // coordinates: "color", "tangent", "uv1".
 void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* mesh) {
     mesh->colors = FoursOf(entity, "color", vertexCount);
@@ -226,7 +226,7 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
     return coverage;
 }
 
-// What the makers of shapes read.
+// Inputs of the makers of shapes.
 struct ShapeReader {
     const Description& description;
     const ShapeEntity& entity;

@@ -128,9 +128,9 @@ LULL_API lull_status lull_stopper_create(const lull_settings* settings, lull_sto
 /* Destroys a stopper; NULL is allowed. */
 LULL_API void lull_stopper_destroy(lull_stopper* stopper);
 
-/* Return the numbers of blocks and of columns (0 for NULL), and the rectangle of a block. block =
- * row
- * * columns + column, from the top left. Error: LULL_BAD_ARGUMENT. */
+/* Return the numbers of blocks and of columns (0 for NULL), and the rectangle of a block. Blocks
+ * have numbers row by row from the top left: row * columns + column.
+ * Error: LULL_BAD_ARGUMENT. */
 LULL_API int lull_stopper_block_count(const lull_stopper* stopper);
 LULL_API int lull_stopper_column_count(const lull_stopper* stopper);
 LULL_API lull_status lull_stopper_block_rect(const lull_stopper* stopper, int block,
@@ -154,10 +154,10 @@ LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
 /* Returns 1 if all blocks have stopped, and for NULL. */
 LULL_API int lull_stopper_done(const lull_stopper* stopper);
 
-/* Return what a user should know of the pictures that have been shown, as a line of text; "" if
- * there is nothing, and for NULL. Valid until the next call for the stopper. That pictures lie too
- * far apart for the rule, which compares them, so that it will never stop (spp that double), and
- * that pixels seem to have a fourth channel (pixel_stride), which is ignored. */
+/* Returns a warning about the pictures so far, as a line of text; "" if there is none, and for
+ * NULL. Valid until the next call for the stopper. Warnings: pictures are too far apart for a rule
+ * that compares them, so that it will never stop (spp that double), and pixels seem to have a
+ * fourth channel (pixel_stride), which is ignored. */
 LULL_API const char* lull_stopper_warning(const lull_stopper* stopper);
 
 /* Writes the state of a stopper to `bytes`, for a checkpoint of the renderer. `*size` is the room
@@ -168,7 +168,7 @@ LULL_API lull_status lull_stopper_save(const lull_stopper* stopper, void* bytes,
  * belong to other settings; the stopper is then unchanged. */
 LULL_API lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_t size);
 
-/* Holds the entropies of a part of a picture, each in [0, 1]; h = h1 + h2. */
+/* The entropies of a part of a picture, each in [0, 1]; h = h1 + h2. */
 typedef struct lull_entropy {
     double h, h1, h2;
 } lull_entropy;
@@ -186,8 +186,8 @@ LULL_API lull_status lull_svd_entropy(const lull_picture* picture, int sub_block
  * `attributes` room for 26 numbers. LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_attributes26(const lull_picture* picture, double* attributes);
 
-/* Returns what went wrong in the last call of this thread that did not return LULL_OK; never NULL;
- * valid until the next such call. */
+/* Returns the reason and remedy of the last error in this thread; never NULL; valid until the next
+ * error. */
 LULL_API const char* lull_error_message(void);
 /* Returns the version of the library, such as "0.1.0". */
 LULL_API const char* lull_version(void);

@@ -170,7 +170,7 @@ TEST(ComparePictures, TellsOfRulesThatLookAtNothing) {
         ComparePictures(found, schedule, Rules({"lnoise:0.5"}, 0));
         ADD_FAILURE();
     } catch (const Error& e) {
-        EXPECT_TRUE(Contains(e.what(), "lnoise:0.5: the rule compares a half")) << e.what();
+        EXPECT_TRUE(Contains(e.what(), "lnoise:0.5: the rule needs a half buffer")) << e.what();
     }
 }
 

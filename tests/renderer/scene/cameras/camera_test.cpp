@@ -88,7 +88,7 @@ TEST(Camera, StandsWhereItsTransformSays) {
     ExpectNear(ray.d, TransformVector(worldFromCamera, Vec3f(-0.6f, -0.4f, 1).normalized()));
     EXPECT_NEAR((WorldToCamera(camera) - worldFromCamera.inverse()).norm(), 0, 1e-9);
 
-    // What a ray meets is projected back to where the ray came from.
+    // A point on a ray is projected back to where the ray came from.
     const Vec3f p = ray.o + 7 * ray.d;
     const Vec3f ndc = TransformPoint(*WorldToNdc(camera, FilmOf(100, 100)), p);
     EXPECT_NEAR(ndc.x(), 0.2f, 1e-5);

@@ -66,7 +66,7 @@ TEST(RealisticCamera, FocusesAtTheDistance) {
     }
 }
 
-// The mean weight of a point of the film is what all of the rear lens would bring to it.
+// The mean weight of a point of the film equals the light through all of the rear lens.
 TEST(RealisticCamera, WeighsByTheLightThatPasses) {
     const Camera camera = MakeLensCamera(
         kLens, {FloatParameter("aperturediameter", {17}), BoolParameter("simpleweighting", false),

@@ -1,4 +1,4 @@
-// Tests curves: what their directives make of them, and where rays meet them.
+// Tests curves: their directives, and where rays meet them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

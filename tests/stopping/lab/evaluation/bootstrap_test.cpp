@@ -16,7 +16,7 @@ TEST(Bootstrap, IsAPointWhereAllIsTheSame) {
     EXPECT_EQ(interval.high, 0.25);
 }
 
-// The mean of 100 blocks of one viewpoint scatters by a tenth of what blocks scatter by.
+// The mean of 100 blocks of one viewpoint scatters by a tenth of the scatter of blocks.
 TEST(Bootstrap, HasTheWidthOfTheMean) {
     std::mt19937 generator(7);
     std::normal_distribution<double> gauss(5, 2);
@@ -28,7 +28,7 @@ TEST(Bootstrap, HasTheWidthOfTheMean) {
     EXPECT_GT(interval.high, 4.7);
 }
 
-// What differs by viewpoint alone is not known better by more blocks.
+// Differences between viewpoints alone are not known better by more blocks.
 TEST(Bootstrap, DrawsViewpoints) {
     const std::vector<std::vector<double>> values = {std::vector<double>(50, 0.0),
                                                      std::vector<double>(50, 1.0)};

@@ -46,7 +46,7 @@ TEST(RangeOfPeople, IsInSamples) {
     HumanRange range = RangeOfPeople(1000, true, ratios);
     EXPECT_EQ(range.low, 500);
     EXPECT_EQ(range.high, 2000);
-    // More than people were shown is not known, and neither is what a rule had not yet stopped.
+    // Thresholds beyond the pictures shown are unknown, and so are stops that have not occurred.
     EXPECT_FALSE(RangeOfPeople(6000, true, ratios).high);
     EXPECT_EQ(RangeOfPeople(6000, true, ratios).low, 3000);
     EXPECT_FALSE(RangeOfPeople(1000, false, ratios).high);

@@ -11,8 +11,8 @@
 namespace lull::rivals_test {
 namespace {
 
-// Blocks of three viewpoints whose visible noise, amplitude / sqrt(spp), is what people go
-// by: they stop seeing it at 0.5. The errors of other rules have nothing to do with it.
+// Blocks of three viewpoints whose visible noise is amplitude / sqrt(spp): observers stop seeing it
+// at 0.5. The errors of other rules are unrelated to it.
 struct Blocks {
     std::vector<BlockRecording> recordings;
     std::vector<LabelledBlock> blocks;

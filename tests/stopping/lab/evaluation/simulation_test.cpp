@@ -26,7 +26,7 @@ LabelledBlock MakeBlock(const BlockRecording& recording, int human = 500) {
             .recording = &recording};
 }
 
-// Returns a model that takes a block for noiseless when the mean of what it is given is low.
+// Returns a model that takes a block for noiseless when the mean of its inputs is low.
 void WriteTestModel(const std::string& path) {
     Network network = RandomNetwork(25, {4}, 1, 7);
     network.dense[0].kernel.setConstant(3);
@@ -63,7 +63,7 @@ TEST(Simulation, StopsWhereTheCriterionDoes) {
 }
 
 TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
-    // They look every 40 spp, which is what is recorded beyond 400 spp as well.
+    // They check every 40 spp, as recordings beyond 400 spp do.
     const ScratchFile model(".h5");
     Network network = RandomNetwork(1, {4}, 1, 7);
     network.lstm[0].kernel.setConstant(1);
@@ -133,7 +133,7 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
         EXPECT_TRUE(outcome.open);
         EXPECT_TRUE(outcome.verdicts.back().noisy);
     }
-    // What is known beforehand goes on.
+    // Stops known beforehand need no recording.
     EXPECT_EQ(SimulateStop(block, 5000).stop, 5000);
     EXPECT_FALSE(SimulateStop(block, 5000).open);
     EXPECT_EQ(SimulateStop(block, 123456).stop, 10000);

@@ -7,8 +7,8 @@
 
 namespace lull {
 
-// Describes an observer of a study of the levels 20, 40, 80, 160, 320. Each threshold is that of
-// the block's first answer.
+// Describes an observer of a study of the levels 20, 40, 80, 160, 320. Each threshold is the
+// block's first answer.
 struct ExampleAnswers {
     std::string observer = "ada", session = "00ff", study = "0123456789abcdef", viewpoint = "room";
     std::string started = "2026-01-01T00:00:00.000Z";

@@ -56,7 +56,7 @@ TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
     EXPECT_NE(observers.find(",2.2,,60,,,,,,,,"), std::string::npos) << observers;
 }
 
-// `lull evaluate --answers` reads what is written; who is left out says nothing.
+// `lull evaluate --answers` reads the written file; excluded observers have no answers in it.
 TEST(SingleAnswersCsv, HasWhatWasSeenUpToWhereItEnded) {
     std::vector<ObserverAnswers> answers;
     for (const ExampleAnswers& example :

@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-// Keeps what is said.
+// Stores warnings.
 struct Listener {
     std::vector<std::string> said;
     WarningSink Ear() {

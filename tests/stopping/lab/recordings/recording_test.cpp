@@ -160,7 +160,7 @@ TEST(Dataset, KeepsWhatWasRecorded) {
             }
         }
     }
-    // What has been read is written to the same bytes.
+    // A data set that was read is written to the same bytes.
     EXPECT_EQ(EncodeDataset(read), EncodeDataset(read));
 }
 

@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-// Compares what a file of a model says of itself with a preset.
+// Compares the settings in the file of a model with a preset.
 void ExpectTrainedBy(const TrainingPreset& preset, const Model& model) {
     const ModelSettings &a = preset.settings, &b = model.settings;
     EXPECT_EQ(a.k, b.k);

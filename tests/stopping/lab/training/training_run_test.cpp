@@ -16,7 +16,7 @@ void WriteFile(const std::string& path, std::span<const std::byte> bytes) {
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
-// Lets trainings go on for a number of steps, and counts what it is told.
+// Lets trainings continue for a number of steps, and counts their events.
 struct Watcher {
     int left = 1 << 30, begun = 0, ended = 0;
 

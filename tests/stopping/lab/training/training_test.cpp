@@ -144,7 +144,7 @@ TEST(Trainer, LetsEachViewpointCountTheSame) {
     options.balanceViewpoints = true;
     EXPECT_NEAR(probability(1), 0.5, 0.02);
     EXPECT_NEAR(probability(-1), 0.5, 0.02);
-    // With one viewpoint an input, what is learned are then the shares of their noisy samples.
+    // With one viewpoint an input, the learned values are the fractions of their noisy samples.
     options.balanceClasses = false;
     EXPECT_NEAR(probability(1), 0.75, 0.02);
     EXPECT_NEAR(probability(-1), 0.2, 0.02);
