@@ -15,8 +15,9 @@ struct Unguided {
     bool Scatter(const Vertex& v, Sampler& sampler, Path* path, bool* isTransmission) {
         return lull::Scatter(v, sampler, path, isTransmission);
     }
-    bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
-        return lull::SurvivesRoulette(threshold, sampler, path);
+    template <typename Media>
+    bool SurvivesRoulette(const PathContext<Media>& context, int bounces, Path* path) {
+        return lull::SurvivesRoulette(context, bounces, path);
     }
     void End(const Path&) {}
 };
@@ -78,8 +79,9 @@ class Guided {
 
     // Ends paths by the throughput that they would have without a guide: directions with much light
     // are sampled so often that each path there carries little.
-    bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path) {
-        return lull::SurvivesRoulette(threshold, sampler, path, density);
+    template <typename Media>
+    bool SurvivesRoulette(const PathContext<Media>& context, int bounces, Path* path) {
+        return lull::SurvivesRoulette(context, bounces, path, density);
     }
 
     // Records the path.

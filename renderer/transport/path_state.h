@@ -88,13 +88,19 @@ bool Scatter(const Vertex& v, Sampler& sampler, Path* path, bool* isTransmission
 }
 
 // Ends dim paths at random and makes up for it in the others. Returns false where it ends. The path
-// counts as `density` times as bright as it is.
-inline bool SurvivesRoulette(float threshold, Sampler& sampler, Path* path, float density = 1) {
+// counts as `density` times as bright as it is. Estimator::PbrtV3 begins after four bounces, with
+// the throughput as the probability of survival. Otherwise its root is, as in Cycles: early
+// roulette then costs little variance.
+template <typename Media>
+bool SurvivesRoulette(const PathContext<Media>& context, int bounces, Path* path,
+                      float density = 1) {
+    const bool isPbrtV3 = context.estimator == Estimator::PbrtV3;
+    if (bounces <= (isPbrtV3 ? 3 : 2)) return true;
     const float brightest = path->beta.maxCoeff() * density * path->etaScale;
-    if (brightest >= threshold) return true;
-    const float q = std::max(0.05f, 1 - brightest);
-    if (sampler.Get1D() < q) return false;
-    path->beta /= 1 - q;
+    if (brightest >= context.integrator.rrThreshold) return true;
+    const float survival = isPbrtV3 ? std::min(0.95f, brightest) : std::sqrt(brightest);
+    if (context.sampler.Get1D() >= survival) return false;
+    path->beta /= survival;
     return true;
 }
 

@@ -111,9 +111,7 @@ template <typename Media, typename Guiding, typename Recorder>
                                                   guiding, recorder, &path);
             if (fate == Fate::Ends) break;
             if (fate == Fate::Scatters) {
-                if (bounces > 3 &&
-                    !guiding.SurvivesRoulette(integrator.rrThreshold, sampler, &path))
-                    break;
+                if (!guiding.SurvivesRoulette(context, bounces, &path)) break;
                 continue;
             }
         }
@@ -169,7 +167,7 @@ template <typename Media, typename Guiding, typename Recorder>
         recorder.Scatter(path, isTransmission);
 
         // End dim paths by Russian roulette.
-        if (bounces > 3 && !guiding.SurvivesRoulette(integrator.rrThreshold, sampler, &path)) break;
+        if (!guiding.SurvivesRoulette(context, bounces, &path)) break;
     }
     recorder.End(path);
     guiding.End(path);
