@@ -26,7 +26,8 @@ Plane TakeBand(Plane* image) {
     return band;
 }
 
-// Returns the mean square by which the error of a band exceeds what is expected, beyond chance.
+// Returns an upper estimate of the mean square by which the error of a band exceeds the expected
+// one; 0 where that is not significant.
 double Excess(const Plane& a, const Plane& b, const Plane& noise, const Plane& half, float ratio) {
     double sum = 0, squares = 0;
     for (size_t i = 0; i < a.values.size(); ++i) {
