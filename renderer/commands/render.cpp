@@ -144,6 +144,11 @@ void AddListeners(const PreparedRender& p, RenderEvents* events) {
     if (p.clock)
         events->onProgress =
             WarnOfFirstSamples(p.render.input.region.Area(), talk, std::move(events->onProgress));
+    const RenderRequest& request = p.request;
+    const bool isDefault = !p.clock && !request.denoise && !request.stop && request.spp == 0;
+    if (isDefault && !p.render.settings.quiet)
+        events->onProgress =
+            AdviseDenoising(p.render.input.region.Area(), talk, std::move(events->onProgress));
     if (talk.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
@@ -159,6 +164,9 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.features = p->request.CollectsFeatures();
     how.guide = p->request.guide;
     how.clock = p->clock;
+    // An interruption or a preview finds the whole image, whatever its sample counts.
+    how.render.schedule.inSteps = true;
+    how.firstLook = p->display || p->request.pictures.preview > 0;
     // The hash of a large scene takes its time, and nobody asks for it where there is neither.
     if (render.settings.checkpoint.file.empty() && render.ranks->Count() == 1) return how;
     how.identity = render.Identity();
@@ -168,9 +176,14 @@ SessionOptions MakeOptions(PreparedRender* p) {
 
 // A preview that cannot be written is a warning: the files may be written in the end.
 void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
+    const Film& film = session->TheFilm();
+    std::optional<DenoisedImage> denoised;
+    if (p.request.denoise)
+        denoised = DenoiseImage(PictureOf(film, *session->Features(), film.Region()), film.Region(),
+                                {}, {.isQuick = true});
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
-               session->TheFilm(), nullptr, session->Mattes(), result, {},
+    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance}, film,
+               denoised ? &*denoised : nullptr, session->Mattes(), result, {},
                p.request.pictures.format, &written);
     written.Check();
 } catch (const Error& e) {
@@ -193,8 +206,8 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     return result;
 }
 
-// Takes back what is said of blocks that have too few samples to know what is noise: they stay as
-// they are, and may be as wrong as can be.
+// Takes back what is said of blocks that have too few samples to know how wrong they are: they may
+// be as wrong as can be.
 void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
                  DenoisedImage* denoised) {
     constexpr float mostLightness = 100;
@@ -210,10 +223,10 @@ void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk
                         pixels.Width(), mostLightness);
     }
     if (count > 0)
-        talk.Warn(
-            fmt::format("{} of {} blocks are not denoised: they have fewer than {} samples per "
-                        "pixel",
-                        count, result.blocks.size(), kLeastDenoisedSpp));
+        talk.Warn(fmt::format(
+            "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
+            "the true image is unknown",
+            count, result.blocks.size(), kLeastDenoisedSpp));
 }
 
 // What the denoiser makes of a finished render.

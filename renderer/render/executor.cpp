@@ -171,8 +171,11 @@ void Executor::WriteCheckpoint() {
 void Executor::ShowPreview() {
     if (!options.events.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done())
         return;
+    const double start = ledger.Seconds();
     options.events.onPreview(Result());
-    nextPreview = ledger.Seconds() + options.events.previewInterval;
+    // At most a fifth of the time is spent on previews, which may be denoised.
+    nextPreview =
+        ledger.Seconds() + std::max(options.events.previewInterval, 4 * (ledger.Seconds() - start));
 }
 
 RenderResult Executor::Result() {

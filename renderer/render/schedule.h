@@ -24,7 +24,7 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (block_grid.h)
-    // For renders that somebody looks at while they go on: the first pass is taken in steps of 1,
+    // For renders that somebody looks at before their end: the first pass is taken in steps of 1,
     // 2, 4, ... spp.
     bool inSteps = false;
     // For renders that have a clock: the next pass is that of the block with the most visible

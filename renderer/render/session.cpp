@@ -7,6 +7,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
+#include "renderer/render/first_look.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
 
@@ -101,7 +102,9 @@ RenderResult Session::Run(const RenderFunction& render) {
     SetSource();
     SetClock();
     KeepCheckpoints();
-    if (display && interrupted) display->Show(region, film);
+    if (options.firstLook && !options.render.peers)
+        TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
+    if (display) display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
     RenderResult result = render(context, options.render);
     if (options.guide.mode != GuideMode::Off)

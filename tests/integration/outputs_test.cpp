@@ -137,6 +137,27 @@ TEST(Outputs, PreviewsAreWrittenOnTheWay) {
     EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
 }
 
+// However early it comes, it shows all of the picture.
+TEST(Outputs, PreviewsAreOfTheWholePicture) {
+    const Inputs directory;
+    for (const std::string denoise : {"", "--denoise "}) {
+        const Outcome outcome = RunAndSignal(
+            directory,
+            "LULL render scene.pbrt --resolution 600x400 --threads 1 --quiet -o out.exr " +
+                denoise + "--cap 1000000 --stop fixed:1000000 --preview 0.1",
+            SIGKILL, "out.png");
+        EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
+        const ExrImage image = ReadExr(directory.File("out.exr"));
+        bool isDenoised = false;
+        for (const ExrChannel& channel : image.channels) {
+            isDenoised |= channel.name == "noisy.R";
+            if (channel.name != "R") continue;
+            EXPECT_GT(std::ranges::min(channel.values), 0);
+        }
+        EXPECT_EQ(isDenoised, !denoise.empty());
+    }
+}
+
 TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
     const Inputs directory;
     fs::create_directory(directory.File("tmp"));
