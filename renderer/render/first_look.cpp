@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "stopping/base/parallel.h"
+
 namespace lull {
 
 namespace {
