@@ -126,13 +126,14 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
 ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListener listener) {
     return [=, hasAdvised = false](const RenderProgress& p) mutable {
         listener(p);
-        constexpr double kLong = 600, kFirstSeconds = 10;
+        constexpr double kLong = 600, kFirstSeconds = 5;
         constexpr int64_t kLeastSpp = 60;  // of three votes; until the end can be predicted
         if (hasAdvised || p.seconds < kFirstSeconds || p.samples == 0) return;
         const double missing = double(std::max<int64_t>(kLeastSpp * pixels - p.samples, 0));
         const double left = p.predictedSeconds.value_or(p.seconds / double(p.samples) * missing);
         if (left < kLong) return;
         hasAdvised = true;
+        if (!talk.isJson) Say("\n");  // on a terminal there is a line of progress
         talk.Note(
             fmt::format("{} {} left; with --denoise, blocks stop once the denoised image is "
                         "clean, after a fraction of the samples",

@@ -2,6 +2,8 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
 #include "renderer/render/guide_learning.h"
@@ -173,9 +175,9 @@ void Executor::ShowPreview() {
         return;
     const double start = ledger.Seconds();
     options.events.onPreview(Result());
-    // At most a fifth of the time is spent on previews, which may be denoised.
-    nextPreview =
-        ledger.Seconds() + std::max(options.events.previewInterval, 4 * (ledger.Seconds() - start));
+    // Previews that take long, as denoised ones, become up to ten times as rare.
+    const double end = ledger.Seconds(), interval = options.events.previewInterval;
+    nextPreview = end + std::clamp(4 * (end - start), interval, 10 * interval);
 }
 
 RenderResult Executor::Result() {

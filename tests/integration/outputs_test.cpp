@@ -125,6 +125,21 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
 }
 
+// In a closed white room paths end at --max-depth alone.
+TEST(Outputs, LongRendersAreToldOfDenoising) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText("Material \"matte\" \"rgb Kd\" [1 1 1] Shape "
+                                            "\"sphere\" \"float radius\" [9]"));
+    const std::string render =
+        "timeout -s INT 8 LULL render scene.pbrt --resolution 800x800 --max-depth 300 --threads 1 "
+        "-o out.exr ";
+    for (const auto& [options, isTold] : {std::pair("", true), {"--denoise", false}}) {
+        const Outcome outcome = RunShell(directory, render + options);
+        EXPECT_EQ(Contains(outcome.err, " left; with --denoise, blocks stop once "), isTold)
+            << outcome.err;
+    }
+}
+
 // A picture is there long before the end, and is whole.
 TEST(Outputs, PreviewsAreWrittenOnTheWay) {
     const Inputs directory;

@@ -20,7 +20,9 @@ TEST(FirstLook, ShowsAPixelOfEachSquare) {
     Film film(kLookRegion);
     EXPECT_TRUE(IsBlack(film.MeanAt({3, 5})));
     AddTo(&film, {4, 6}, Rgb(7, 8, 9));
-    TakeFirstLook(PositionSample, {.threads = 3}, &film);
+    RenderOptions options;
+    options.threads = 3;
+    TakeFirstLook(PositionSample, options, &film);
     EXPECT_TRUE((film.MeanAt({4, 6}) == Rgb(7, 8, 9)).all());
     EXPECT_EQ(film.SampleCount(), 1);
     for (int y = kLookRegion.min.y(); y < kLookRegion.max.y(); ++y)
@@ -38,7 +40,9 @@ TEST(FirstLook, ShowsAPixelOfEachSquare) {
 
 TEST(FirstLook, IsLeftOutWhereItWouldNotBeSeen) {
     Film film(kLookRegion);
-    TakeFirstLook(PositionSample, {.isCancelled = [] { return true; }}, &film);
+    RenderOptions cancelled;
+    cancelled.isCancelled = [] { return true; };
+    TakeFirstLook(PositionSample, cancelled, &film);
     EXPECT_TRUE(IsBlack(film.MeanAt({3, 5})));
     for (int y = kLookRegion.min.y(); y < kLookRegion.max.y(); ++y)
         for (int x = kLookRegion.min.x(); x < kLookRegion.max.x(); ++x)
@@ -48,7 +52,7 @@ TEST(FirstLook, IsLeftOutWhereItWouldNotBeSeen) {
             ADD_FAILURE();
             return {};
         },
-        {}, &film);
+        RenderOptions(), &film);
 }
 
 }  // namespace
