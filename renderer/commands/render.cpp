@@ -174,13 +174,33 @@ SessionOptions MakeOptions(PreparedRender* p) {
     return how;
 }
 
+// Takes back what is said of blocks that have too few samples to know how wrong they are: they may
+// be as wrong as can be. Returns how many there are.
+int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
+    constexpr float mostLightness = 100;
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
+        ++count;
+        if (i < denoised->blocks.size()) denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), mostLightness);
+    }
+    return count;
+}
+
 // A preview that cannot be written is a warning: the files may be written in the end.
 void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
     const Film& film = session->TheFilm();
     std::optional<DenoisedImage> denoised;
-    if (p.request.denoise)
+    if (p.request.denoise) {
         denoised = DenoiseImage(PictureOf(film, *session->Features(), film.Region()), film.Region(),
                                 {}, {.isQuick = true});
+        DoubtBlocks(result, film.Region(), &*denoised);
+    }
     ResultFiles written(Rescue::None);
     WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance}, film,
                denoised ? &*denoised : nullptr, session->Mattes(), result, {},
@@ -206,29 +226,6 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     return result;
 }
 
-// Takes back what is said of blocks that have too few samples to know how wrong they are: they may
-// be as wrong as can be.
-void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
-                 DenoisedImage* denoised) {
-    constexpr float mostLightness = 100;
-    int count = 0;
-    for (size_t i = 0; i < result.blocks.size(); ++i) {
-        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
-        ++count;
-        denoised->blocks[i].reset();
-        const PixelRect& pixels = result.blocks[i].block.pixels;
-        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
-            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
-                            (pixels.min.x() - region.min.x()),
-                        pixels.Width(), mostLightness);
-    }
-    if (count > 0)
-        talk.Warn(fmt::format(
-            "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
-            "the true image is unknown",
-            count, result.blocks.size(), kLeastDenoisedSpp));
-}
-
 // What the denoiser makes of a finished render.
 struct DenoiserResults {
     std::optional<DenoisedImage> image;
@@ -252,7 +249,11 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
     made.image = DenoiseImage(std::move(picture), region, MakeBlocks(region, settings.schedule));
-    DoubtBlocks(result, region, talk, &*made.image);
+    if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
+        talk.Warn(fmt::format(
+            "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
+            "the true image is unknown",
+            doubted, result.blocks.size(), kLeastDenoisedSpp));
     PrintDenoised(*made.image, SecondsSince(start), settings.quiet, talk);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;

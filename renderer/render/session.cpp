@@ -102,9 +102,10 @@ RenderResult Session::Run(const RenderFunction& render) {
     SetSource();
     SetClock();
     KeepCheckpoints();
-    if (options.firstLook && !options.render.peers)
-        TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
-    if (display) display->Show(region, film);
+    const Peers* peers = options.render.peers;
+    const bool looks = options.firstLook && (!peers || peers->Count() == 1);
+    if (looks) TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
+    if (display && (interrupted || looks)) display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
     RenderResult result = render(context, options.render);
     if (options.guide.mode != GuideMode::Off)
