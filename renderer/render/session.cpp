@@ -10,6 +10,7 @@
 #include "renderer/render/first_look.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
