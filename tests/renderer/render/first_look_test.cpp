@@ -13,7 +13,7 @@ const PixelRect kLookRegion = {{3, 5}, {24, 15}};  // of no whole number of squa
 
 PathSample PositionSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*) {
     EXPECT_EQ(index, 0u);
-    return {.radiance = Rgb(float(pixel.x()), float(pixel.y()), 1)};
+    return {.radiance = Rgb(float(pixel.x()), float(pixel.y()), 1), .rejected = false};
 }
 
 TEST(FirstLook, ShowsAPixelOfEachSquare) {
