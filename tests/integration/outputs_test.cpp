@@ -131,7 +131,7 @@ TEST(Outputs, LongRendersAreToldOfDenoising) {
     directory.Write("scene.pbrt", SceneText("Material \"matte\" \"rgb Kd\" [1 1 1] Shape "
                                             "\"sphere\" \"float radius\" [9]"));
     const std::string render =
-        "timeout -s INT 8 LULL render scene.pbrt --resolution 800x800 --max-depth 300 --threads 1 "
+        "timeout -s INT 8 LULL render scene.pbrt --resolution 400x400 --max-depth 1000 --threads 1 "
         "-o out.exr ";
     for (const auto& [options, isTold] : {std::pair("", true), {"--denoise", false}}) {
         const Outcome outcome = RunShell(directory, render + options);
