@@ -144,6 +144,11 @@ void AddListeners(const PreparedRender& p, RenderEvents* events) {
     if (p.clock)
         events->onProgress =
             WarnOfFirstSamples(p.render.input.region.Area(), talk, std::move(events->onProgress));
+    const RenderRequest& request = p.request;
+    const bool isDefault = !p.clock && !request.denoise && !request.stop && request.spp == 0;
+    if (isDefault && !p.render.settings.quiet)
+        events->onProgress =
+            AdviseDenoising(p.render.input.region.Area(), talk, std::move(events->onProgress));
     if (talk.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
@@ -159,6 +164,9 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.features = p->request.CollectsFeatures();
     how.guide = p->request.guide;
     how.clock = p->clock;
+    // An interruption or a preview finds the whole image, whatever its sample counts.
+    how.render.schedule.inSteps = true;
+    how.firstLook = p->display || p->request.pictures.preview > 0;
     // The hash of a large scene takes its time, and nobody asks for it where there is neither.
     if (render.settings.checkpoint.file.empty() && render.ranks->Count() == 1) return how;
     how.identity = render.Identity();
@@ -166,11 +174,36 @@ SessionOptions MakeOptions(PreparedRender* p) {
     return how;
 }
 
+// Takes back what is said of blocks that have too few samples to know how wrong they are: they may
+// be as wrong as can be. Returns how many there are.
+int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
+    constexpr float mostLightness = 100;
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
+        ++count;
+        if (i < denoised->blocks.size()) denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), mostLightness);
+    }
+    return count;
+}
+
 // A preview that cannot be written is a warning: the files may be written in the end.
 void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
+    const Film& film = session->TheFilm();
+    std::optional<DenoisedImage> denoised;
+    if (p.request.denoise) {
+        denoised = DenoiseImage(PictureOf(film, *session->Features(), film.Region()), film.Region(),
+                                {}, {.isQuick = true});
+        DoubtBlocks(result, film.Region(), &*denoised);
+    }
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
-               session->TheFilm(), nullptr, session->Mattes(), result, {},
+    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance}, film,
+               denoised ? &*denoised : nullptr, session->Mattes(), result, {},
                p.request.pictures.format, &written);
     written.Check();
 } catch (const Error& e) {
@@ -191,29 +224,6 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     RenderResult result = p->render.Run(session);
     p->render.provenance.guideFigures = session->Guidance();
     return result;
-}
-
-// Marks blocks with too few samples for an estimate of their noise: they stay unfiltered, with the
-// largest error.
-void DoubtBlocks(const RenderResult& result, const PixelRect& region, const Talk& talk,
-                 DenoisedImage* denoised) {
-    constexpr float mostLightness = 100;
-    int count = 0;
-    for (size_t i = 0; i < result.blocks.size(); ++i) {
-        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
-        ++count;
-        denoised->blocks[i].reset();
-        const PixelRect& pixels = result.blocks[i].block.pixels;
-        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
-            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
-                            (pixels.min.x() - region.min.x()),
-                        pixels.Width(), mostLightness);
-    }
-    if (count > 0)
-        talk.Warn(
-            fmt::format("{} of {} blocks are not denoised: they have fewer than {} samples per "
-                        "pixel",
-                        count, result.blocks.size(), kLeastDenoisedSpp));
 }
 
 // Denoised image of a finished render.
@@ -239,7 +249,11 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
     made.image = DenoiseImage(std::move(picture), region, MakeBlocks(region, settings.schedule));
-    DoubtBlocks(result, region, talk, &*made.image);
+    if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
+        talk.Warn(fmt::format(
+            "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
+            "the true image is unknown",
+            doubted, result.blocks.size(), kLeastDenoisedSpp));
     PrintDenoised(*made.image, SecondsSince(start), settings.quiet, talk);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;

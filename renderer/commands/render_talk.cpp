@@ -94,7 +94,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
     const auto unknown =
         std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
     if (unknown > 0)
-        Say("{} block{} without a noise estimate: no complete pass of {} spp\n", unknown,
+        Say("{} block{} without a noise estimate: no pass of {} spp ended in this run\n", unknown,
             unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return;
     Say("blocks not stopped, with their visible noise in L*:\n");
@@ -121,6 +121,24 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (!result.shares.empty()) PrintShares(result.shares);
     if (result.timeUp) PrintShortfall(provenance, result);
     PrintCapped(provenance, result);
+}
+
+ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListener listener) {
+    return [=, hasAdvised = false](const RenderProgress& p) mutable {
+        listener(p);
+        constexpr double kLong = 600, kFirstSeconds = 5;
+        constexpr int64_t kLeastSpp = 60;  // of three votes; until the end can be predicted
+        if (hasAdvised || p.seconds < kFirstSeconds || p.samples == 0) return;
+        const double missing = double(std::max<int64_t>(kLeastSpp * pixels - p.samples, 0));
+        const double left = p.predictedSeconds.value_or(p.seconds / double(p.samples) * missing);
+        if (left < kLong) return;
+        hasAdvised = true;
+        if (!talk.isJson) Say("\n");  // on a terminal there is a line of progress
+        talk.Note(
+            fmt::format("{} {} left; with --denoise, blocks stop once the denoised image is "
+                        "clean, after a fraction of the samples",
+                        p.predictedSeconds ? "about" : "at least", FormatDuration(left)));
+    };
 }
 
 std::function<void(int, const Block&)> StopEvents(RuleTrend::Kind kind) {

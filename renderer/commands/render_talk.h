@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "renderer/commands/clock_options.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/files/result_files.h"
 #include "renderer/render/provenance.h"
@@ -11,6 +12,10 @@ namespace lull {
 
 // Prints the summary of a render, of whose samples `rejected` were rejected.
 void PrintResult(const RenderSettings&, const Provenance&, const RenderResult&, int64_t rejected);
+
+// Returns a listener that passes on what it hears and says once of a render without denoising, as
+// soon as it is known to take more than ten minutes, how --denoise would shorten it.
+ProgressListener AdviseDenoising(int64_t pixels, const Talk&, ProgressListener listener);
 
 // Returns a callback that prints the stop of a block, as JSON.
 std::function<void(int index, const Block&)> StopEvents(RuleTrend::Kind);

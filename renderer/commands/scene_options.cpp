@@ -121,11 +121,11 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
 }
 
 void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
-    auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animation at this time")
+    auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animations at this time")
                       ->check(CLI::Range(0., 1e9))
                       ->type_name("SECONDS");
     app.add_option("--animation", view->animation,
-                   "glTF: choose the animation, by name or number from 0 [0]")
+                   "glTF: choose one animation, by name or number from 0 [all]")
         ->needs(frame)
         ->type_name("NAME|N");
     app.add_option("--shutter", view->shutter,

@@ -68,6 +68,14 @@ FilmPixel Film::At(const Vec2i& p) const {
     return pixel;
 }
 
+Rgb Film::MeanAt(const Vec2i& p) const {
+    const uint32_t count = tiles.At(TileOf(p)).count;
+    if (count > 0 || firstLook.colours.empty()) return MeanOf(sums.At(p), count);
+    const int spacing = firstLook.spacing, columns = (Region().Width() + spacing - 1) / spacing;
+    const Vec2i square = (p - Region().min) / spacing;
+    return firstLook.colours[size_t(square.y()) * size_t(columns) + size_t(square.x())];
+}
+
 FilmTile Film::Tile(const PixelRect& pixels) { return {this, pixels}; }
 
 FilmTile::FilmTile(Film* film, const PixelRect& pixels)
@@ -94,9 +102,8 @@ void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
     size_t at = 0;
     for (int y = rect.min.y(); y < rect.max.y(); ++y)
         for (int x = rect.min.x(); x < rect.max.x(); ++x, at += 3) {
-            const FilmPixel p = At({x, y});
-            Store(p.Mean(), &view->mean[at]);
-            if (withHalf) Store(p.HalfMean(), &view->halfMean[at]);
+            Store(MeanAt({x, y}), &view->mean[at]);
+            if (withHalf) Store(At({x, y}).HalfMean(), &view->halfMean[at]);
         }
 }
 
@@ -108,10 +115,9 @@ void Film::ForEachPixel(Visit visit) const {
 }
 
 std::vector<float> Film::MeanImage() const {
-    std::vector<float> image(sums.Pixels().size() * 3);
-    ForEachPixel(
-        [&](size_t i, uint32_t count) { Store(MeanOf(sums.Pixels()[i], count), &image[3 * i]); });
-    return image;
+    FilmView view;
+    Extract(Region(), false, &view);
+    return std::move(view.mean);
 }
 
 std::vector<float> Film::SppImage() const {

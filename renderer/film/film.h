@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "renderer/film/pixel_plane.h"
@@ -38,6 +39,13 @@ struct FilmPixel {
     // all.
     Rgb Mean() const;
     Rgb HalfMean() const;
+};
+
+// A coarse picture of a region: one colour for each square of spacing x spacing pixels, row by row,
+// finite.
+struct FirstLook {
+    int spacing = 1;  // pixels, > 0
+    std::vector<Rgb> colours;
 };
 
 // The means of a rectangle of pixels as the stopping criteria read them: row-major RGB
@@ -79,6 +87,11 @@ class Film {
     // Opens a rectangle of whole tiles with the same number of samples, to add as many to each of
     // its pixels.
     FilmTile Tile(const PixelRect& pixels);
+
+    // Sets the colours that means of pixels without samples have instead of black.
+    void SetFirstLook(FirstLook look) { firstLook = std::move(look); }
+    // Returns the mean of a pixel's samples; without any, the colour of the first look.
+    Rgb MeanAt(const Vec2i& p) const;
 
     // Fills `view` with the means of `rect`, which lies inside Region(); `halfMean` is left empty
     // unless it is wanted. Throws std::logic_error if it is wanted and the film has no half.
@@ -129,6 +142,7 @@ class Film {
     PixelPlane<TileSamples> tiles;
     Sums sums;
     std::optional<Sums> halfSums;
+    FirstLook firstLook;  // no colours: none
 };
 
 // Takes the pixels of a tile further, in any order. When it ends, the tile has as many samples as

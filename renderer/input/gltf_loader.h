@@ -19,7 +19,7 @@ struct GltfOptions {
     std::optional<std::array<float, 2>> orbit = {};
     // Pose the scene as an animation has it at this time, in seconds; nothing: as the file stands.
     std::optional<double> frame = {};
-    std::string animation = {};  // which one: its name or number, from 0; empty: the first one
+    std::string animation = {};  // which one: its name or number, from 0; empty: all
     // Let the shutter be open for so many seconds from then on: nodes and cameras that move are
     // blurred. At least 0; without `frame` nothing moves.
     double shutter = 0;

@@ -103,6 +103,8 @@ function drawChart(parent, series, options) {
       }))],
     hooks: {draw: [u => drawLines(u, lines)]}
   }, data, box);
+  box.firstChild.append(saveButton("SVG", options.title, () => saveText(fileName(options.title, ".svg"), "image/svg+xml", chartSvg(plot, series, options))),
+    saveButton("CSV", options.title, () => saveText(fileName(options.title, ".csv"), "text/csv", chartCsv(series, options.xLabel, data))));
   charts.push([plot, box]);
   return plot;
 }

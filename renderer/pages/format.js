@@ -25,7 +25,7 @@ const byId = id => document.getElementById(id);
 
 // Makes an element; attributes that are functions listen to events.
 function make(tag, attributes = {}, ...children) {
-  const svg = ["svg", "rect", "text", "g", "title"].includes(tag);
+  const svg = ["svg", "rect", "text", "g", "title", "path", "circle"].includes(tag);
   const element = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag)
                       : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes))

@@ -81,7 +81,7 @@ function showSummary(data) {
   for (const [name, label] of figureNames) add(label, i => i.figures && showFigure(i.figures, name));
   add("blocks that differ visibly", i => i.figures && `${i.visibleBlocks} of ${data.blocks.length}`);
   add("seams", i => i.seams && show(i.seams.ratio, 3));
-  if (rows.length) parent.append(makeTable("", ["", ...images.map(i => i.name)], rows));
+  if (rows.length) parent.append(withCsv(makeTable("", ["", ...images.map(i => i.name)], rows), "summary"));
   const notes = [];
   if (images.some(i => i.figures)) notes.push("Errors are against the reference; PSNR, SSIM, FLIP and visible differences of the 8-bit image.",
     `Visible differences: ColorVideoVDP with the sensitivity of castleCSF, on a display of ${data.viewing.name}. A block differs visibly above ${show(data.viewing.threshold)}.`);
@@ -133,7 +133,7 @@ function showBlocksTable(data) {
   if (data.blocks[0].end) { head.push("end"); cells.push(i => blockEnds[data.blocks[i].end].split(/[:,]/)[0]); }
   const table = makeTable("", head, data.blocks.map((b, i) => [String(i), ...cells.map(c => c(i))]));
   [...table.tBodies[0].rows].forEach((row, i) => row.addEventListener("click", () => chooseBlock(i)));
-  byId("blocks-table").append(table);
+  byId("blocks-table").append(withCsv(table, "blocks"));
 }
 
 function showProvenance(data) {

@@ -196,8 +196,8 @@ function startViewer(data) {
   const overlays = [["grid", "grid"], ["none", "nothing"],
     ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, data.kind === "render" ? "samples per pixel" : "spp of " + i.name]),
     ...(data.againstHuman ? [["human", "difference to human"]] : [])];
-  // A render's first question is where its samples went; a comparison's, what can be seen.
-  if (data.kind === "render" && overlays[2]) view.overlay = overlays[2][0];
+  // A render's page shows its picture first.
+  if (data.kind === "render") view.overlay = "none";
   if (data.kind === "compare" && layers.length > 1) {
     view.mode = "divide";
     view.b = data.images.filter(i => i.src).length - 1;

@@ -2,6 +2,8 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
 #include "renderer/render/guide_learning.h"
@@ -171,8 +173,11 @@ void Executor::WriteCheckpoint() {
 void Executor::ShowPreview() {
     if (!options.events.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done())
         return;
+    const double start = ledger.Seconds();
     options.events.onPreview(Result());
-    nextPreview = ledger.Seconds() + options.events.previewInterval;
+    // Previews that take long, as denoised ones, become up to ten times as rare.
+    const double end = ledger.Seconds(), interval = options.events.previewInterval;
+    nextPreview = end + std::clamp(4 * (end - start), interval, 10 * interval);
 }
 
 RenderResult Executor::Result() {

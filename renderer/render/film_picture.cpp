@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace lull {
 
@@ -15,6 +16,22 @@ Halves MakeHalves(int width, int height, int count) {
 float VarianceOfMean(double squares, double mean, double count) {
     const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
     return float(std::min(variance, double(std::numeric_limits<float>::max())));
+}
+
+// Returns the mean of the four neighbours of a pixel that have samples and are within `rect`;
+// nothing where none are.
+std::optional<Rgb> NeighbourMean(const Film& film, const PixelRect& rect, const Vec2i& p) {
+    Rgb sum(0, 0, 0);
+    int count = 0;
+    for (const Vec2i& step : {Vec2i(-1, 0), Vec2i(1, 0), Vec2i(0, -1), Vec2i(0, 1)}) {
+        const Vec2i q = p + step;
+        if ((q.array() < rect.min.array()).any() || (q.array() >= rect.max.array()).any()) continue;
+        const FilmPixel pixel = film.At(q);
+        if (pixel.count == 0) continue;
+        sum += pixel.Mean();
+        ++count;
+    }
+    return count > 0 ? std::optional<Rgb>(sum / float(count)) : std::nullopt;
 }
 
 // How sums over both halves of a pixel's samples become means.
@@ -66,7 +83,22 @@ Halves ColoursOf(const Film& film, const PixelRect& rect) {
             const double half = pixel.halfSum[size_t(c)];
             split.Put(half, pixel.sum[size_t(c)] - half, c, p - rect.min, &colour);
         }
+        if (split.isSplit) return;
+        // Pixels take turns, as the fields of a chessboard, in which half is theirs; the other has
+        // their neighbours'. So both halves are of different samples everywhere.
+        const std::optional<Rgb> neighbours = NeighbourMean(film, rect, p);
+        Planes& other = (p.x() + p.y()) % 2 == 0 ? colour.b : colour.a;
+        for (int c = 0; c < kColours && neighbours; ++c)
+            other.Row(c, p.y() - rect.min.y())[p.x() - rect.min.x()] = (*neighbours)[c];
     });
+    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+        for (int x = rect.min.x(); x < rect.max.x(); ++x) {
+            if (film.At({x, y}).count > 0) continue;
+            const Rgb look = film.MeanAt({x, y});
+            for (Planes* half : {&colour.a, &colour.b})
+                for (int c = 0; c < kColours; ++c)
+                    half->Row(c, y - rect.min.y())[x - rect.min.x()] = look[c];
+        }
     return colour;
 }
 
@@ -84,9 +116,11 @@ Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const Pixe
 Planes VarianceOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
     Planes variance(rect.Width(), rect.Height(), 1);
     ForEachSampled(film, rect, [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
+        float& v = variance.Row(0, p.y() - rect.min.y())[p.x() - rect.min.x()];
         if (split.isSplit)
-            variance.Row(0, p.y() - rect.min.y())[p.x() - rect.min.x()] =
-                VarianceOfMean(features.At(p).squares, Luminance(pixel.Mean()), pixel.count);
+            v = VarianceOfMean(features.At(p).squares, Luminance(pixel.Mean()), pixel.count);
+        else if (const auto neighbours = NeighbourMean(film, rect, p))
+            v = Sqr(Luminance(pixel.Mean() - *neighbours)) / 4;  // as of halves that differ so
     });
     return variance;
 }

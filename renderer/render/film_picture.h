@@ -7,12 +7,13 @@
 
 namespace lull {
 
-// Samples a pixel needs for both halves to have some.
+// Samples a pixel needs for both halves to have as many.
 inline constexpr uint32_t kLeastDenoisedSpp = 4;
 
 // Returns the pixels of a rectangle inside both films, which have the same samples; the film keeps
-// its half. Where a pixel has less than kLeastDenoisedSpp samples, both halves are their mean,
-// which the denoiser leaves alone.
+// its half. Where a pixel has less than kLeastDenoisedSpp samples, one half of its colours is their
+// mean, and the other that of its neighbours; the denoiser's estimate of the error is too rough
+// there to be used. Where it has none, both are the film's first look.
 NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
 
 // Return its parts, so that a film that one of them is made of can be freed before the other is

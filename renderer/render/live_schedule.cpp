@@ -11,7 +11,6 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
-    schedule.inSteps |= options.display || options.events.onPreview;
     if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
     return schedule;
 }

@@ -7,8 +7,10 @@
 
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
+#include "renderer/render/first_look.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -101,7 +103,10 @@ RenderResult Session::Run(const RenderFunction& render) {
     SetSource();
     SetClock();
     KeepCheckpoints();
-    if (display && interrupted) display->Show(region, film);
+    const Peers* peers = options.render.peers;
+    const bool looks = options.firstLook && (!peers || peers->Count() == 1);
+    if (looks) TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
+    if (display && (interrupted || looks)) display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
     RenderResult result = render(context, options.render);
     if (options.guide.mode != GuideMode::Off)

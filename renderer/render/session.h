@@ -31,6 +31,8 @@ struct SessionOptions {
     FilmOptions film;
     AovSet aovs;            // AOVs to collect
     bool features = false;  // inputs of the denoiser; the film has to keep its half buffer
+    // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
+    bool firstLook = false;
     GuideOptions guide;
     CheckpointOptions checkpoint;
     // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them;

@@ -7,11 +7,11 @@
 namespace lull {
 
 DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
-                           const std::vector<Block>& blocks) {
+                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
     std::vector<PixelRect> measured;
     for (const Block& block : blocks)
         measured.push_back({block.pixels.min - region.min, block.pixels.max - region.min});
-    DenoiserResult result = RunDenoiser(std::move(picture), measured);
+    DenoiserResult result = RunDenoiser(std::move(picture), measured, options);
     return {{region.Width(), region.Height(), std::move(result.rgb)},
             std::move(result.deviation),
             std::move(result.blocks)};

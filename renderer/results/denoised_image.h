@@ -18,7 +18,8 @@ struct DenoisedImage {
 
 // Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
 // have had.
-DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&);
+DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&,
+                           const DenoiserOptions& = {});
 
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);

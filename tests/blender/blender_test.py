@@ -21,7 +21,7 @@ import exr  # noqa: E402
 BLENDER, ADDON, PROGRAM = sys.argv[1:4]
 KEEP = sys.argv[5] if sys.argv[4:5] == ["--keep"] else None
 SIZE, SPP = (60, 40), 64
-SAMPLES = "s.stop_by, s.spp = 'SAMPLES', %d; " % SPP
+SAMPLES = "s.stop_by, s.spp, s.denoise = 'SAMPLES', %d, False; " % SPP
 
 
 def rgb(channels, name="Combined"):
@@ -131,16 +131,22 @@ class AddOn(unittest.TestCase):
         self.assert_close("skin", passes, 0.005, 0.01)
 
     def test_denoises_a_border(self):
-        passes, _ = self.render("skin", "s.denoise = True; " + SAMPLES + "r = scene.render; "
+        passes, _ = self.render("skin", SAMPLES + "s.denoise = True; r = scene.render; "
                                 "r.use_border = r.use_crop_to_border = True; r.border_min_x = 0.3; "
                                 "r.border_max_x, r.border_min_y, r.border_max_y = 0.7, 0.25, 0.9", 3)
         self.assertEqual(passes["Noisy.R"].shape, (26, 24))
         self.assertGreater(abs(rgb(passes) - rgb(passes, "Noisy")).max(), 0)
         self.assertLess(abs(rgb(passes) - rgb(passes, "Noisy")).mean(), 0.05)
 
+    def test_denoises_by_default(self):
+        passes, said = self.render("factory", "")
+        self.assertIn("Noisy.R", passes)
+        self.assertLess(passes["Samples.X"].max(), 1000)
+        self.assertLess(said.count("blocks stopped, "), 20)
+
     def test_ends_early_with_what_there_is(self):
         # Of a frame that is ended, Blender's own -f writes nothing.
-        render = ("s.stop_by, s.spp, s.cap = 'SAMPLES', 1000000, 1000000; bpy.ops.render.render(); "
+        render = ("s.stop_by, s.spp, s.cap, s.denoise = 'SAMPLES', 1000000, 1000000, False; bpy.ops.render.render(); "
                   f"bpy.data.images['Render Result'].save_render({str(self.folder / 'ended.exr')!r})")
         with subprocess.Popen([BLENDER, "-b", "-noaudio", *self.command("lamps", render)[:-2]],
                               text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -158,9 +164,9 @@ class AddOn(unittest.TestCase):
 
     def test_says_what_is_wrong(self):
         for message, settings in (
-                ("no program /nowhere/lull", "bpy.ops.preferences.addon_enable(module='lull_engine'); "
+                ("Program not found: /nowhere/lull", "bpy.ops.preferences.addon_enable(module='lull_engine'); "
                  "bpy.context.preferences.addons['lull_engine'].preferences.program = '/nowhere/lull'"),
-                ("lull is not on the PATH", "import os; os.environ['PATH'] = '/nowhere'"),
+                ("Program lull not found on the PATH", "import os; os.environ['PATH'] = '/nowhere'"),
                 ("lull: --stop", "s.stop_by, s.rule = 'RULE', 'nonsense'"),
                 ("panoramic", "scene.camera.data.type = 'PANO'")):
             said = self.blender(*self.command("factory", settings), fails=True)

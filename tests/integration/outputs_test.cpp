@@ -125,6 +125,21 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
 }
 
+// In a closed white room paths end at --max-depth alone.
+TEST(Outputs, LongRendersAreToldOfDenoising) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText("Material \"matte\" \"rgb Kd\" [1 1 1] Shape "
+                                            "\"sphere\" \"float radius\" [9]"));
+    const std::string render =
+        "timeout -s INT 8 LULL render scene.pbrt --resolution 400x400 --max-depth 1000 --threads 1 "
+        "-o out.exr ";
+    for (const auto& [options, isTold] : {std::pair("", true), {"--denoise", false}}) {
+        const Outcome outcome = RunShell(directory, render + options);
+        EXPECT_EQ(Contains(outcome.err, " left; with --denoise, blocks stop once "), isTold)
+            << outcome.err;
+    }
+}
+
 // A picture is there long before the end, and is whole.
 TEST(Outputs, PreviewsAreWrittenOnTheWay) {
     const Inputs directory;
@@ -135,6 +150,27 @@ TEST(Outputs, PreviewsAreWrittenOnTheWay) {
     const ExrImage image = ReadExr(directory.File("out.exr"));
     EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
     EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
+}
+
+// However early it comes, it shows all of the picture.
+TEST(Outputs, PreviewsAreOfTheWholePicture) {
+    const Inputs directory;
+    for (const std::string denoise : {"", "--denoise "}) {
+        const Outcome outcome = RunAndSignal(
+            directory,
+            "LULL render scene.pbrt --resolution 600x400 --threads 1 --quiet -o out.exr " +
+                denoise + "--cap 1000000 --stop fixed:1000000 --preview 0.1",
+            SIGKILL, "out.png");
+        EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
+        const ExrImage image = ReadExr(directory.File("out.exr"));
+        bool isDenoised = false;
+        for (const ExrChannel& channel : image.channels) {
+            isDenoised |= channel.name == "noisy.R";
+            if (channel.name != "R") continue;
+            EXPECT_GT(std::ranges::min(channel.values), 0);
+        }
+        EXPECT_EQ(isDenoised, !denoise.empty());
+    }
 }
 
 TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {

@@ -4,6 +4,8 @@
 report_page.py LULL CHROMIUM: exits with 0 if the pages open from disk without errors and without
 asking the network for anything, and if blocks that are clicked or reached by keys show their curves.
 """
+import csv
+import io
 import json
 import os
 import pathlib
@@ -12,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import xml.etree.ElementTree
 
 SCENE = """LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -179,6 +182,22 @@ def check_dark(browser):
     browser.call("Emulation.setEmulatedMedia", features=[])
 
 
+def check_saved(browser, name, charts, tables):
+    """Each chart can be saved as SVG and CSV, each table as CSV."""
+    browser.evaluate("""window.saved = []; saveText = (...file) => saved.push(file);
+        document.querySelectorAll('.save').forEach(b => b.click())""")
+    saved = browser.evaluate("saved")
+    svgs = [text for _, kind, text in saved if kind == "image/svg+xml"]
+    csvs = [text for _, kind, text in saved if kind == "text/csv"]
+    check((len(svgs), len(csvs)) == (charts, charts + tables), f"{name}: {len(svgs)} SVG and {len(csvs)} CSV files")
+    for text in svgs:
+        svg = xml.etree.ElementTree.fromstring(text)
+        check("NaN" not in text and "undefined" not in text and len(svg) > 10, f"{name}: an SVG of {len(svg)} parts")
+    for text in csvs:
+        rows = list(csv.reader(io.StringIO(text)))
+        check(len(rows) > 1 and {len(row) for row in rows} == {len(rows[0])}, f"{name}: a CSV of {len(rows)} rows")
+
+
 def check_sentences(browser):
     """What the first sentence says of a render, whose blocks have so many samples."""
     for totals, spp, rule, sentence in (
@@ -236,8 +255,11 @@ def main(lull, chromium):
         check(browser.evaluate("byId('sentence').textContent").startswith("Rendered in"), "render: a sentence says what")
         check(browser.evaluate("[...document.querySelectorAll('#block-charts .u-value')].every(v => /\\d/.test(v.textContent))"),
               "render: legends have numbers before anybody points at them")
-        check(browser.evaluate("document.querySelectorAll('.stage:not([hidden]) svg text').length") == 6,
-              "render: the samples are over the image")
+        texts = "document.querySelectorAll('.stage:not([hidden]) svg text').length"
+        check(browser.evaluate(texts) == 0, "render: nothing is over the image at first")
+        choose(browser, "Over it", "spp:image")
+        check(browser.evaluate(texts) == 6, "render: the samples can be")
+        check_saved(browser, "render", 3, 1)
         check_dark(browser)
         check_widths(browser, "render")
         check_sentences(browser)
@@ -255,6 +277,7 @@ def main(lull, chromium):
         check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: two charts are drawn")
         choose(browser, "Error", "flip")
         check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: and again for another error")
+        check_saved(browser, "bench", 2, 1)
         check_widths(browser, "bench")
         check(not browser.problems, "no errors, nothing from the network " +
               "; ".join(browser.problems))

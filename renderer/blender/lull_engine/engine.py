@@ -13,6 +13,7 @@ from .settings import find_lull
 
 _EXPORT = os.path.join(os.path.dirname(__file__), "export.py")
 _SECONDS_BETWEEN_VIEWS = 0.5
+_SECONDS_BETWEEN_LINES = 10  # of progress, in a terminal
 
 # Passes beside Combined: their name, their channels for Blender, and those of the EXR.
 _PASSES = (
@@ -33,6 +34,15 @@ def _duration(seconds):
     minutes, hours = round(seconds / 60), round(seconds / 3600)
     return ("%d s" % seconds if seconds < 60 else "%d min" % minutes if minutes < 120 else
             "%d h" % hours)
+
+
+def _progress(event):
+    text = "%d of %d blocks stopped, %d spp" % (
+        event["stoppedBlocks"], event["blocks"], event["medianSpp"])
+    left = event["remainingSeconds"]
+    if left is None:
+        return text
+    return "%s, %s%s left" % (text, "at most " if event["remainingIsUpperBound"] else "", _duration(left))
 
 
 class LullEngine(bpy.types.RenderEngine):
@@ -146,21 +156,21 @@ class _Job:
     def _watch(self, render, result):
         """Shows the progress of the render until it ends."""
         view = np.zeros((self.size[1], self.size[0], 4), np.float32)
-        changed, shown = False, time.monotonic()
+        changed, shown, said = False, time.monotonic(), -_SECONDS_BETWEEN_LINES
         for kind, what in render.events(self.engine.test_break):
             if kind == "show":
                 x, y, channels = what
                 rectangle = view[y:y + len(channels["R"]), x:x + channels["R"].shape[1]]
                 for i, name in enumerate("RGB"):
                     rectangle[:, :, i] = channels[name]
-                rectangle[:, :, 3] = channels["spp"] > 0
+                rectangle[:, :, 3] = 1
                 changed = True
             elif kind == "progress":
                 self.engine.update_progress(what["percent"] / 100)
-                self.engine.update_stats("", "%d of %d blocks stopped, %d spp, %s%s left" % (
-                    what["stoppedBlocks"], what["blocks"], what["medianSpp"],
-                    "at most " if what.get("remainingIsUpperBound") else "",
-                    _duration(what["remainingSeconds"])))
+                if bpy.app.background and time.monotonic() - said < _SECONDS_BETWEEN_LINES:
+                    continue  # there each of them is a line
+                said = time.monotonic()
+                self.engine.update_stats("", _progress(what))
             elif kind in ("warning", "note"):
                 self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:

@@ -45,8 +45,8 @@ class LullSettings(bpy.types.PropertyGroup):
                      description="Maximum samples per pixel of a block")
     time: StringProperty(name="Time Limit", description="End after this wall-clock time, e.g. 90s, 10m or 1h30m; "
                          "empty: no limit")
-    denoise: BoolProperty(name="Denoise", description="Denoise the image, and stop blocks once it "
-                          "is clean")
+    denoise: BoolProperty(name="Denoise", default=True,
+                          description="Denoise the image, and stop blocks once it is clean")
     guide: EnumProperty(
         name="Path Guiding", default='off',
         items=(('off', "Off", "No path guiding"),

@@ -45,11 +45,11 @@ void Snapshot::Show(const PixelRect& pixels, const Film& film) {
     std::lock_guard lock(mutex);
     for (int y = r.min.y(); y < r.max.y(); ++y)
         for (int x = r.min.x(); x < r.max.x(); ++x) {
-            const FilmPixel pixel = film.At(region.min + Vec2i(x, y));
-            const Rgb mean = pixel.Mean();
+            const Vec2i p = region.min + Vec2i(x, y);
+            const Rgb mean = film.MeanAt(p);
             float* to = At(x, y);
             for (int c = 0; c < 3 && !denoised[Index(x, y)]; ++c) to[c] = mean[c];
-            to[3] = float(pixel.count);
+            to[3] = float(film.At(p).count);
         }
     Mark(r);
 }

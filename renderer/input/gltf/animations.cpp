@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
 
 #include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/accessors.h"
@@ -78,49 +81,64 @@ Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
            (3 * t2 - 2 * t3) * keys.Value(k + 1, 1) + length * (t3 - t2) * keys.Value(k + 1, 0);
 }
 
-size_t Choose(const GltfDocument& document, const std::string& wanted, Warnings& warnings) {
-    const auto& animations = document.model.animations;
-    if (wanted.empty()) {
-        if (animations.empty()) throw Error(document.file + ": has no animation to pose");
-        if (animations.size() > 1)
-            warnings.Add(document.At("/animations"),
-                         fmt::format("only the first of {} animations poses the scene; "
-                                     "--animation NAME|N chooses another",
-                                     animations.size()));
-        return 0;
-    }
+// Returns the numbers of the animations that pose the scene, in their order.
+std::vector<size_t> Choose(const GltfDocument& document, const std::string& wanted) {
     std::vector<std::string> names;
-    for (const tinygltf::Animation& animation : animations) names.push_back(animation.name);
-    return ChooseByName(document, "animation", names, wanted);
+    for (const tinygltf::Animation& animation : document.model.animations)
+        names.push_back(animation.name);
+    if (names.empty() && wanted.empty()) throw Error(document.file + ": has no animation to pose");
+    if (!wanted.empty()) return {ChooseByName(document, "animation", names, wanted)};
+    std::vector<size_t> all(names.size());
+    std::iota(all.begin(), all.end(), size_t(0));
+    return all;
+}
+
+// Gives a node what a channel, at `loc`, moves it to.
+void PoseChannel(double seconds, const tinygltf::Animation& animation,
+                 const tinygltf::AnimationChannel& channel, const FileLoc& loc,
+                 GltfDocument* document, Warnings& warnings) {
+    tinygltf::Node& node = document->model.nodes[size_t(channel.target_node)];
+    const std::string& path = channel.target_path;
+    const bool isRotation = path == "rotation";
+    std::vector<double>* target = nullptr;
+    if (path == "translation") target = &node.translation;
+    if (isRotation) target = &node.rotation;
+    if (path == "scale") target = &node.scale;
+    if (path == "weights") target = &node.weights;
+    if (!target) return warnings.Add(loc, "animation of \"" + Printable(path) + "\" is left out");
+    if (path != "weights" && !node.matrix.empty())
+        throw Error(loc, "moves a node that has a matrix, which the specification forbids");
+    const tinygltf::AnimationSampler& sampler = animation.samplers[size_t(channel.sampler)];
+    const Keys keys = ReadKeys(*document, sampler, path == "weights" ? 0 : isRotation ? 4 : 3);
+    const Eigen::ArrayXd value = Evaluate(keys, seconds, isRotation);
+    target->assign(value.begin(), value.end());
 }
 
 }  // namespace
 
 void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, Warnings& warnings) {
-    const size_t index = Choose(*document, wanted, warnings);
-    const tinygltf::Animation& animation = document->model.animations[index];
-    for (size_t i = 0; i < animation.channels.size(); ++i) {
-        const tinygltf::AnimationChannel& channel = animation.channels[i];
-        const FileLoc loc = document->At(fmt::format("/animations/{}/channels/{}", index, i));
-        tinygltf::Node& node = document->model.nodes[size_t(channel.target_node)];
-        const std::string& path = channel.target_path;
-        const bool isRotation = path == "rotation";
-        std::vector<double>* target = nullptr;
-        if (path == "translation") target = &node.translation;
-        if (isRotation) target = &node.rotation;
-        if (path == "scale") target = &node.scale;
-        if (path == "weights") target = &node.weights;
-        if (!target) {
-            warnings.Add(loc, "animation of \"" + Printable(path) + "\" is left out");
-            continue;
+    std::map<std::pair<int, std::string>, size_t> posed;  // by which animation
+    std::set<size_t> contradicting;
+    for (const size_t index : Choose(*document, wanted)) {
+        const tinygltf::Animation& animation = document->model.animations[index];
+        for (size_t i = 0; i < animation.channels.size(); ++i) {
+            const tinygltf::AnimationChannel& channel = animation.channels[i];
+            const auto [place, isFirst] =
+                posed.insert({{channel.target_node, channel.target_path}, index});
+            if (!isFirst && place->second != index) {
+                contradicting.insert(index);
+                continue;
+            }
+            const FileLoc loc = document->At(fmt::format("/animations/{}/channels/{}", index, i));
+            PoseChannel(seconds, animation, channel, loc, document, warnings);
         }
-        if (path != "weights" && !node.matrix.empty())
-            throw Error(loc, "moves a node that has a matrix, which the specification forbids");
-        const tinygltf::AnimationSampler& sampler = animation.samplers[size_t(channel.sampler)];
-        const Keys keys = ReadKeys(*document, sampler, path == "weights" ? 0 : isRotation ? 4 : 3);
-        const Eigen::ArrayXd value = Evaluate(keys, seconds, isRotation);
-        target->assign(value.begin(), value.end());
     }
+    if (!contradicting.empty())
+        warnings.Add(
+            document->At("/animations"),
+            fmt::format("{} of {} animations left out in part: others before them move the "
+                        "same; --animation NAME|N chooses one",
+                        contradicting.size(), document->model.animations.size()));
 }
 
 std::vector<GltfNode> PoseNodes(const GltfOptions& options, GltfDocument* document,

@@ -55,5 +55,5 @@ function startBench(data) {
     byId("bench-table").append(make("p", {class: "small"}, "Left out of the charts: points of which the reference shares the samples, beyond half the cap."));
   const table = makeTable("All points", ["rule", "setting", "sampler", "mean spp", "seconds", "RMSE of L", "relMSE", "SSIM", "FLIP", "visible"],
     data.bench.points.map(p => [p.rule, String(p.setting ?? ""), p.sampler || "", show(p.spp), show(p.seconds), show(p.rmseLightness), show(p.relMse), show(p.ssim, 5), show(p.flip), show(p.visibleDifference)]));
-  byId("bench-table").append(make("div", {class: "scroll"}, table));
+  byId("bench-table").append(make("div", {class: "scroll"}, withCsv(table, "points")));
 }

@@ -132,7 +132,6 @@ RenderResult FollowRanks(const RenderContext& given, const RenderOptions& asked,
     context.checkpoints = {};
     RenderOptions options = asked;
     options.makeCriterion = nullptr;
-    options.schedule.inSteps |= bool(asked.events.onPreview);
     options.events = {};
     options.events.onSilence = asked.events.onSilence;
     return Follower(context, options, arena).Follow();

@@ -10,8 +10,8 @@ namespace {
 TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
     const std::string page = MakePage({{"title", "x"}});
     for (const char* name :
-         {"page.css", "page.js", "format.js", "charts.js", "viewer.js", "tables.js", "bench.js",
-          "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
+         {"page.css", "page.js", "format.js", "save.js", "charts.js", "viewer.js", "tables.js",
+          "bench.js", "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }

@@ -60,10 +60,36 @@ TEST(PictureOf, HasBothHalvesOfTheMean) {
         }
 }
 
-TEST(PictureOf, LeavesPixelsAloneThatHaveNoHalves) {
-    const FeatureRender render(1, 2);
-    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
-    EXPECT_EQ(picture.colour.a.values, picture.colour.b.values);
+// Of few samples one half has the pixel, and the other its neighbours, in turns.
+TEST(PictureOf, SplitsPixelsWithFewSamplesAsAChessboard) {
+    for (const int spp : {1, 3}) {
+        const FeatureRender render(1, spp);
+        const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+        for (const Vec2i& p : {Vec2i(20, 20), Vec2i(21, 20)}) {
+            const auto meanAt = [&](int x, int y) {
+                return render.film.At(kPictureRegion.min + Vec2i(x, y)).Mean()[1];
+            };
+            const float own = meanAt(p.x(), p.y());
+            const float neighbours = (meanAt(p.x() - 1, p.y()) + meanAt(p.x() + 1, p.y()) +
+                                      meanAt(p.x(), p.y() - 1) + meanAt(p.x(), p.y() + 1)) /
+                                     4;
+            const bool isInA = (p.x() + p.y()) % 2 == 0;
+            const float a = picture.colour.a.Row(1, p.y())[p.x()];
+            const float b = picture.colour.b.Row(1, p.y())[p.x()];
+            EXPECT_NEAR(isInA ? a : b, own, 1e-5f * own) << spp;
+            EXPECT_NEAR(isInA ? b : a, neighbours, 1e-5f * neighbours) << spp;
+            EXPECT_GT(picture.variance.Row(0, p.y())[p.x()], 0);
+        }
+    }
+}
+
+TEST(PictureOf, HasTheFirstLookWhereThereAreNoSamples) {
+    Film film(kPictureRegion);
+    const FeatureFilm features(kPictureRegion);
+    film.SetFirstLook({1000, {Rgb(1, 2, 3)}});
+    const NoisyPicture picture = PictureOf(film, features, kPictureRegion);
+    for (const Planes* half : {&picture.colour.a, &picture.colour.b})
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(half->Row(c, 7)[9], float(c + 1));
 }
 
 }  // namespace

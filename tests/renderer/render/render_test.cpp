@@ -198,6 +198,7 @@ TEST(Render, ShowsPreviews) {
     for (const int threads : {1, 4}) {
         RenderOptions options = SmallRender();
         options.threads = threads;
+        options.schedule.inSteps = true;
         options.events.previewInterval = 0;
         Film film(kRegion, {.grid = GridOf(options.schedule)});
         std::vector<int64_t> samples;

@@ -105,6 +105,19 @@ TEST(Schedule, TakesTheFirstPassInStepsByTheClock) {
     }
 }
 
+TEST(Schedule, TakesEachStepOfAllBlocksBeforeTheNext) {
+    Schedule schedule(
+        {{0, 0}, {50, 30}},
+        {.blockSize = 16, .passLength = 20, .cap = 20, .smallestSide = 15, .inSteps = true});
+    int first = 0;
+    for (const Tile& tile : RunAll(schedule, Never)) {
+        EXPECT_GE(tile.first, first);
+        first = tile.first;
+    }
+    EXPECT_EQ(first, 8);
+    EXPECT_TRUE(schedule.Done());
+}
+
 // Where steps have ended, a render without a clock goes on to the ends of whole passes.
 TEST(Schedule, KeepsToMultiplesOfPasses) {
     const ScheduleOptions options{.passLength = 20, .cap = 90};
