@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
-#include <filesystem>
-
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -66,7 +65,7 @@ void Session::Resume() {
     const CheckpointOptions& checkpoint = options.checkpoint;
     const auto& onResume = options.render.events.onResume;
     if (!Leads() || !checkpoint.resume) return;
-    if (!std::filesystem::exists(checkpoint.file)) {
+    if (!IsThere(checkpoint.file)) {
         Tell(onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }
