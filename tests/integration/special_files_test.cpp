@@ -161,7 +161,7 @@ TEST(Layers, HoldNoInfinityWhereTheFilmIsScaled) {
                                             std::string(kSphere)));
     const Outcome outcome = ExpectSuccess(
         directory, "render scene.pbrt --spp 20 --exposure 100 --denoise --denoise-layers -o a.exr");
-    EXPECT_TRUE(Contains(outcome.err, "rejected")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "samples were not finite")) << outcome.err;
     for (const ExrChannel& channel : ReadExr(directory.File("a.exr")).channels)
         EXPECT_TRUE(std::ranges::all_of(channel.values, [](float v) { return std::isfinite(v); }))
             << channel.name;
