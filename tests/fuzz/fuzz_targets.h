@@ -16,7 +16,7 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Most of what `model` and `dataset` find is in the HDF5 library, which does not withstand files
+// Most of what `model`, `dataset` and `checkpoint` find is in the HDF5 library, which does not withstand files
 // made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 

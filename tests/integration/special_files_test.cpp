@@ -142,6 +142,14 @@ TEST(Messages, AreShortHoweverLongTheCommandIs) {
     }
 }
 
+TEST(Messages, AreNotThoseOfALibraryForManyThreads) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome outcome =
+        ExpectSuccess(directory, "render scene.pbrt --spp 1 --threads 4096 -o a.exr --quiet");
+    EXPECT_EQ(outcome.err, "");
+}
+
 TEST(Messages, QuoteBeginningsOfKinds) {
     const TemporaryDirectory directory;
     const std::string kind = '"' + std::string(4000, 'k') + '"';
