@@ -87,8 +87,8 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
         });
     });
     warnings.ThrowErrors();
-    scene->acceleratorSeconds = Timed(
-        [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });
+    scene->acceleratorSeconds =
+        Timed([&] { scene->accelerator = Accelerator(scene->shapes, scene->textures); });
 
     scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
 
@@ -108,7 +108,6 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
 
 }  // namespace
 
-// oneTBB tells the terminal, beside all messages, of a device with more threads than it may have.
 std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
                                      Warnings& warnings) {
     std::unique_ptr<const Scene> scene;
