@@ -67,7 +67,7 @@ struct RanksTest : testing::Test {
 };
 
 TEST_F(RanksTest, SayNothingOfThreads) {
-    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort + "--threads 1 --quiet"));
+    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort + "--quiet"));
     EXPECT_FALSE(Contains(outcome.err, "workers")) << outcome.err;
 }
 
