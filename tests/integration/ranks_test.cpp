@@ -67,7 +67,7 @@ struct RanksTest : testing::Test {
 };
 
 TEST_F(RanksTest, SayNothingOfThreads) {
-    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort + "--quiet"));
+    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort));
     EXPECT_FALSE(Contains(outcome.err, "workers")) << outcome.err;
 }
 
