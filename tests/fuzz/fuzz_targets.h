@@ -16,8 +16,8 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Most of what `model`, `dataset` and `checkpoint` find is in the HDF5 library, which does not withstand files
-// made to harm it.
+// Most of what `model`, `dataset` and `checkpoint` find is in the HDF5 library, which does not
+// withstand files made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 
 }  // namespace lull
