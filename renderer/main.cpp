@@ -40,7 +40,7 @@ ExitCode Run(Job* job, const Command& command) {
     } catch (const OtherRankFailed&) {
         return kFailed;
     } catch (const UsageError& e) {
-        message = OneLine(e.what());
+        message = OneLine(e.what(), kLongestMessage);
         code = kWrongUsage;
     } catch (const Errors& e) {
         message = e.what();
@@ -48,9 +48,9 @@ ExitCode Run(Job* job, const Command& command) {
         message = "out of memory; end other programs, or give --crop or a smaller --resolution";
     } catch (const std::system_error& e) {  // of printing, without a file name
         message = HasLostResults() ? "cannot write the results to stdout: " + e.code().message()
-                                   : OneLine(e.what());
+                                   : OneLine(e.what(), kLongestMessage);
     } catch (const std::exception& e) {
-        message = OneLine(e.what());
+        message = OneLine(e.what(), kLongestMessage);
     }
     job->Fail(message);
     return code;

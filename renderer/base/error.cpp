@@ -13,7 +13,22 @@ std::string FileLoc::Prefix() const {
     return line > 0 ? *file + ":" + std::to_string(line) + ": " : *file + ": ";
 }
 
-std::string OneLine(const std::string& text) {
+namespace {
+
+bool IsWithinCharacter(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
+
+// Returns a line of UTF-8 with " ... " in place of its middle where it is longer than `most` bytes.
+std::string WithoutMiddle(const std::string& line, size_t most) {
+    if (line.size() <= most) return line;
+    size_t end = most / 2, begin = line.size() - most / 2;
+    while (end > 0 && IsWithinCharacter(line[end])) --end;
+    while (begin < line.size() && IsWithinCharacter(line[begin])) ++begin;
+    return line.substr(0, end) + " ... " + line.substr(begin);
+}
+
+}  // namespace
+
+std::string OneLine(const std::string& text, size_t most) {
     std::string line;
     bool isBetween = false;
     for (const char c : text) {
@@ -27,7 +42,7 @@ std::string OneLine(const std::string& text) {
         else
             line += c;
     }
-    return line;
+    return WithoutMiddle(line, most);
 }
 
 namespace {
@@ -95,7 +110,7 @@ void Warnings::ThrowErrors() {
     std::string lines;
     for (const Error& error : kept) {
         if (!lines.empty()) lines += '\n';
-        lines += OneLine(error.what());
+        lines += OneLine(error.what(), kLongestMessage);
     }
     if (more > 0) lines += fmt::format("\nand {} more", more);
     throw Errors(lines);

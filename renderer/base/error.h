@@ -22,8 +22,11 @@ struct FileLoc {
 };
 
 // Returns the text as one line that a terminal prints as it is: "; " stands between lines, and \xNN
-// for other control characters.
-std::string OneLine(const std::string& text);
+// for other control characters. Of a line of more than `most` bytes the middle is left out.
+std::string OneLine(const std::string& text, size_t most = std::string::npos);
+
+// The most bytes of an error or a warning, which may quote a command of any length.
+inline constexpr size_t kLongestMessage = 2000;
 
 // Signals that the input or the environment is at fault; the message is the only one a user sees,
 // and begins with the location where one is known. main() turns it into exit code 1.

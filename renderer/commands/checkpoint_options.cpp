@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -47,10 +47,7 @@ void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options) {
 }
 
 CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
-    return {.file = file,
-            .interval = interval,
-            .resume = std::filesystem::exists(file),
-            .isImplied = true};
+    return {.file = file, .interval = interval, .resume = IsThere(file), .isImplied = true};
 }
 
 FileLock LockCheckpoint(const std::string& file) {
@@ -66,7 +63,7 @@ FileLock LockCheckpoint(const std::string& file) {
 void CheckCheckpoint(const CheckpointOptions& options) {
     if (options.file.empty()) return;
     CheckWritable(options.file);
-    if (!options.resume && std::filesystem::exists(options.file))
+    if (!options.resume && IsThere(options.file))
         throw Error(options.file + ": already exists; give --resume to continue, or remove it");
 }
 

@@ -43,7 +43,7 @@ void Talk::Warn(const std::string& message) const {
     if (isJson)
         Say("warning", message);
     else
-        lull::Say("\nlull: warning: {}\n", OneLine(message));
+        lull::Say("\nlull: warning: {}\n", OneLine(message, kLongestMessage));
 }
 
 void Talk::Say(const std::string& event, const std::string& message) const {

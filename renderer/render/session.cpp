@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
-#include <filesystem>
-
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
 #include "renderer/render/first_look.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -68,7 +67,7 @@ void Session::Resume() {
     const CheckpointOptions& checkpoint = options.checkpoint;
     const auto& onResume = options.render.events.onResume;
     if (!Leads() || !checkpoint.resume) return;
-    if (!std::filesystem::exists(checkpoint.file)) {
+    if (!IsThere(checkpoint.file)) {
         Tell(onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }

@@ -6,6 +6,7 @@
 
 #include "renderer/base/seconds_since.h"
 #include "stopping/base/input_file.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 namespace {
@@ -66,10 +67,8 @@ void CheckCamera(const Scene& scene, const FileLoc& loc) {
                                      scene.shapes.reach));
 }
 
-}  // namespace
-
-std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
-                                     Warnings& warnings) {
+std::unique_ptr<const Scene> MakeScene(const Description& description,
+                                       const CompileOptions& options, Warnings& warnings) {
     auto scene = std::make_unique<Scene>();
     const bool seesAll =
         warnings.Try([&] { ReadView(description, options, scene.get(), warnings); });
@@ -88,8 +87,8 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
         });
     });
     warnings.ThrowErrors();
-    scene->acceleratorSeconds = Timed(
-        [&] { scene->accelerator = Accelerator(scene->shapes, scene->textures, options.threads); });
+    scene->acceleratorSeconds =
+        Timed([&] { scene->accelerator = Accelerator(scene->shapes, scene->textures); });
 
     scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
 
@@ -104,6 +103,15 @@ std::unique_ptr<const Scene> Compile(const Description& description, const Compi
         warnings.Add({}, "the scene is too small for its light to be right",
                      fmt::format("it is {:g} across, which should be {:g} or more; scale it up",
                                  size, kSmallestScene));
+    return scene;
+}
+
+}  // namespace
+
+std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
+                                     Warnings& warnings) {
+    std::unique_ptr<const Scene> scene;
+    RunWithThreads(options.threads, [&] { scene = MakeScene(description, options, warnings); });
     return scene;
 }
 

@@ -12,7 +12,7 @@ struct CompileOptions {
     // are, and environment maps by their whole brightness.
     bool lightsAsPbrtV3 = false;
     TextureFiltering filtering = TextureFiltering::Bilinear;
-    int threads = 0;  // for the acceleration structure; 0: all
+    int threads = 0;  // for all that is made in parallel; 0: one per core
 };
 
 // Throws Error, with file and line, for anything wrong or unsupported, and the errors that parsing

@@ -5,6 +5,7 @@
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/lights/light_color.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -50,7 +51,7 @@ std::optional<Light> MakeLight(const LightReader& in) {
     if (!kind) {
         in.warnings.Substitute(entity.loc,
                                fmt::format("LightSource \"{}\" is not supported; {} are",
-                                           entity.name, NamesOf(kLights)),
+                                           Printable(entity.name), NamesOf(kLights)),
                                "it is left out");
         return {};
     }
@@ -77,7 +78,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     if (entity.name != "diffuse" && entity.name != "area")
         throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not supported; only "
                                             "\"diffuse\" is",
-                                            entity.name));
+                                            Printable(entity.name)));
     const Parameters& params = entity.parameters;
     AreaLight light;
     light.L = LightColor(entity, "L", warnings);
@@ -165,7 +166,8 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
     if (strategy != "uniform" && strategy != "power" && strategy != "spatial" &&
         strategy != "bvh") {
-        warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used", strategy);
+        warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used",
+                     Printable(strategy));
         strategy = "spatial";
     }
     const bool isMany = !asPbrtV3 && lights.size() > kMostTableLights;

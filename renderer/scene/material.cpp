@@ -20,6 +20,7 @@
 #include "renderer/scene/materials/subsurface.h"
 #include "renderer/scene/materials/translucent.h"
 #include "renderer/scene/materials/uber.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -146,7 +147,7 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
 Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
-    std::string problem = "material \"" + entity.name + "\" is not supported";
+    std::string problem = "material \"" + Printable(entity.name) + "\" is not supported";
     if (const auto* named = FindKind(kMaterials, entity.name)) {
         const MaterialKind kind = named->make(in);
         problem = ProblemOf(kind, in);

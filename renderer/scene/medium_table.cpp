@@ -137,10 +137,11 @@ MediumTable::MediumTable(const Description& description, Warnings& warnings) {
 }
 
 MediumSample MediumTable::Sample(int medium, const Ray& ray, Sampler& sampler) const {
-    const auto [unit, scale] = Normalised(ray);
+    const auto normalised = Normalised(ray);
+    const Ray& unit = normalised.first;
     MediumSample sample =
         Visit(media[medium], [&](const auto& m) { return m.Sample(unit, sampler); });
-    if (sample.t) *sample.t *= scale;
+    if (sample.t) *sample.t *= normalised.second;
     return sample;
 }
 

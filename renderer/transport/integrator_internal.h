@@ -32,9 +32,11 @@ struct SampleStart {
                                                   PathSample sample) {
     Rgb& L = sample.radiance;
     const float luminance = Luminance(L);
-    if (!IsFinite(L) || luminance < -1e-5f) return {Rgb::Zero(), true, sample.vertices};
+    const bool isRadiance = IsFinite(L) && !(luminance < -1e-5f);
     if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
     L *= start.cameraWeight * start.filter.weight * scene.film.scale;
+    // The scale of the film may be 2^100.
+    if (!isRadiance || !IsFinite(L)) return {Rgb::Zero(), true, sample.vertices};
     return sample;
 }
 

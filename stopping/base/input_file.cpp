@@ -18,6 +18,14 @@ std::string ReasonNotToRead(const std::string& path) {
     return error ? error.message() : std::strerror(ENOENT);
 }
 
+bool IsThere(const std::string& path) {
+    std::error_code error;
+    const std::filesystem::file_type type = std::filesystem::status(path, error).type();
+    if (type == std::filesystem::file_type::none)
+        throw std::runtime_error(path + ": " + error.message());
+    return type != std::filesystem::file_type::not_found;
+}
+
 std::ifstream OpenInput(const std::string& path) {
     if (const std::string reason = ReasonNotToRead(path); !reason.empty())
         throw std::runtime_error(path + ": " + reason);

@@ -11,6 +11,10 @@ namespace lull {
 // be waited for, and a device may have no end). Empty: it is a regular file.
 std::string ReasonNotToRead(const std::string& path);
 
+// Returns whether there is a file, or anything else, at a path. Throws std::runtime_error, "PATH:
+// REASON", where that cannot be told: the name is too long, or a folder cannot be searched.
+bool IsThere(const std::string& path);
+
 // Opens a regular file for reading, its bytes as they are. Throws std::runtime_error, "PATH:
 // REASON".
 std::ifstream OpenInput(const std::string& path);

@@ -116,9 +116,9 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
 
 std::string ModelPath(const std::string& argument, const std::string& models) {
     const std::string name = argument.empty() ? kDefaultModelName : argument;
-    if (name.ends_with(".h5") || std::filesystem::exists(name)) return name;
+    if (name.ends_with(".h5") || IsThere(name)) return name;
     const std::filesystem::path path = std::filesystem::path(models) / (name + ".h5");
-    if (std::filesystem::exists(path)) return path.string();
+    if (IsThere(path.string())) return path.string();
     if (name == "paper-full")
         throw std::runtime_error(
             "there is no model 'paper-full': the paper's network of 512, 128 and 32 units would be "

@@ -1,7 +1,6 @@
 #include "stopping/rules/thresholds_rule.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <stdexcept>
 #include <vector>
 
@@ -38,7 +37,7 @@ Rule ReadThresholdsRule(const std::string& argument, const RuleContext& context)
     // Take all of it for the file if there is one of that name: paths may have colons in them.
     std::string path = argument, name;
     const size_t colon = argument.rfind(':');
-    if (colon != std::string::npos && !std::filesystem::exists(path)) {
+    if (colon != std::string::npos && !IsThere(path)) {
         path = argument.substr(0, colon);
         name = argument.substr(colon + 1);
     }

@@ -2,9 +2,11 @@
 """Gives lull damaged files, and kills it: faults.py LULL [--cases N] [--kills N] [--seed S].
 
 Every case of every reader has a number, and is the same for the same seed. It counts as fine (exit
-code 0), clear (exit code 1 and one line of error that names a file) or as anything else: a crash, a
-hang, an error without a name. Those are kept in the folder --keep, with the command. A killed render
-has to come to the same bits in the end, with no more than one temporary file left meanwhile.
+code 0), clear (exit code 1 and lines of error that each name a file, at most ten of them and how
+many more there are) or as anything else: a crash, a hang, an error without a name. Those are kept in
+the folder --keep, with the command. A killed render, comparison, bench or recording has to come to
+the same results in the end but for times, with no more than one temporary file left meanwhile of
+each that it writes.
 With --write FOLDER the damaged files are only written, for the fuzzers (tests/fuzz).
 Exits with 0 if there was nothing else.
 """
@@ -80,6 +82,8 @@ end_header
 """
 
 LENS = "29.475 3.76 1.67 25.2\n84.83 0.12 1 25.2\n0 4.025 0 22.8\n-20 2 1.6 20\n-25 30 1 20\n"
+
+TEXTS = "Who takes part *agrees*.\n\n- one\n- **two**\n\n[agree]\nI agree\n\n[title]\n# A title\n"
 
 
 def gltf():
@@ -177,6 +181,9 @@ READERS = [
     Reader("csv", "h.csv", "evaluate --human h.csv --predicted p.csv"),
     Reader("model", "model.h5", RENDER.format("scene.pbrt --stop learned:model.h5")
            .replace("--spp 1", "--cap 20")),
+    Reader("dataset", "d.h5", "evaluate d.h5 --human v.csv --stop fixed:20"),
+    Reader("texts", "t.md", "study plain.pbrt --text t.md --name v --resolution 8x8 --cap 60 "
+           "--threads 1 --quiet -o s.html"),
     Reader("checkpoint", "c.h5", RENDER.format("scene.pbrt --checkpoint c.h5 --resume")
            .replace("--spp 1", "--spp 4000")),
 ]
@@ -211,7 +218,9 @@ def verdict(code, said, folder):
     errors = [line for line in said.split("\n") if line.startswith("lull: error: ")]
     is_last = said.endswith("\n") and said.rstrip("\n").split("\n")[-1:] == errors[-1:]
     names = [p.name for p in folder.iterdir()]
-    if code == 1 and len(errors) == 1 and is_last and any(n in errors[0] for n in names):
+    rest = errors[:-1] if re.fullmatch(r"lull: error: and \d+ more", "".join(errors[-1:])) else errors
+    if code == 1 and 1 <= len(rest) <= 10 and is_last and \
+            all(any(n in error for n in names) for error in rest):
         return "clear"
     return "else"
 
@@ -220,14 +229,16 @@ def make_files(lull, folder):
     """Returns the good files by their names, those of them that lull writes made by it."""
     lens = 'Camera "realistic" "string lensfile" "lens.dat" "float focusdistance" [3]'
     files = {"scene.pbrt": SCENE, "m.ply": PLY, "lens.dat": LENS, "m.gltf": gltf(),
-             "h.csv": "a;20;40;60;80\nb;100;200;300;400\n", "p.csv": "a;20;20;20;20\nb;9;9;9;9\n",
+             "v.csv": "v;30\n", "t.md": TEXTS, "h.csv": "a;20;40;60;80\nb;100;200;300;400\n", "p.csv": "a;20;20;20;20\nb;9;9;9;9\n",
              "lens.pbrt": re.sub(r"Camera .*", lens, SCENE),
              "exr.pbrt": SCENE.replace("t.png", "t.exr")}
     for name, text in files.items():
         (folder / name).write_text(text)
     plain = 'WorldBegin\nLightSource "infinite"\nShape "sphere"\nWorldEnd\n'
     (folder / "plain.pbrt").write_text(plain)
-    for arguments in ("render plain.pbrt --resolution 8x8 --spp 1 --quiet -o t.exr",):
+    for arguments in ("render plain.pbrt --resolution 8x8 --spp 1 --quiet -o t.exr",
+                      "record plain.pbrt --name v --resolution 40x40 --block 40 --cap 40 "
+                      "--quiet -o d.h5"):
         code, said = run(lull, arguments, folder)
         if code != 0:
             raise SystemExit("no files to begin with: " + said)
@@ -241,7 +252,7 @@ def make_files(lull, folder):
         time.sleep(0.01)
     process.terminate()
     process.wait()
-    kept = ["scene.pbrt", "exr.pbrt", "lens.pbrt", "m.ply", "lens.dat", "m.gltf", "h.csv", "p.csv",
+    kept = ["plain.pbrt", "v.csv", "d.h5", "t.md", "scene.pbrt", "exr.pbrt", "lens.pbrt", "m.ply", "lens.dat", "m.gltf", "h.csv", "p.csv",
             "t.png", "t.exr", "model.h5", "c.h5"]
     return {name: (folder / name).read_bytes() for name in kept if (folder / name).exists()}
 
@@ -276,26 +287,66 @@ def try_case(lull, reader, files, seed, number, keep):
         return found
 
 
-def try_kills(lull, files, seed, kills):
+def without_seconds(path):
+    """Returns the bytes of a result, of a table those of the columns that are no times."""
+    data = path.read_bytes()
+    if path.suffix != ".csv" or b"seconds" not in data:
+        return data
+    rows = [line.split(b",") for line in data.split(b"\n")]
+    kept = [i for i, title in enumerate(rows[0]) if b"seconds" not in title]
+    return b"\n".join(b",".join(row[i] for i in kept if i < len(row)) for row in rows)
+
+
+class Killed:
+    """A command that is killed, how it is resumed, and the results that have to be the same."""
+
+    def __init__(self, arguments, resume, results):
+        self.arguments, self.resume, self.results = arguments, resume, results
+
+
+COMMON = "scene.pbrt --block 20 --checkpoint-interval 0.1 --threads 2 --quiet"
+KILLED = [
+    Killed(f"render {COMMON} --resolution 60x60 --spp 300 --checkpoint c.h5 -o out.exr", "--resume",
+           ["out.png", "out.spp.png"]),
+    Killed(f"compare {COMMON} --resolution 60x60 --cap 300 --stop entropy --snapshots "
+           "--checkpoint c.h5 -o out", "--resume",
+           ["out.automatic.png", "out.reference.png", "out.thresholds.csv"]),
+    Killed(f"bench {COMMON} --resolution 60x60 --cap 200 --samplers random sobol --rule entropy "
+           "-o out", "", ["out.csv"]),
+    Killed(f"record {COMMON.replace('20', '60', 1)} --resolution 120x60 --cap 200 --name v "
+           "-o out.h5", "", ["out.h5"]),
+]
+
+
+def try_kills(lull, files, seed, kills, command):
     """Returns how many kills there were and what was wrong with them."""
-    rng = random.Random(f"{seed} kills")
+    rng = random.Random(f"{seed} {command.arguments}")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for other, data in files.items():
-            (folder / other).write_bytes(data)
-        (folder / "c.h5").unlink(missing_ok=True)
-        common = "render scene.pbrt --resolution 60x60 --block 20 --spp 300 --quiet"
+
+        def begin():
+            for path in folder.iterdir():
+                path.unlink()
+            for other, data in files.items():
+                (folder / other).write_bytes(data)
+            (folder / "c.h5").unlink(missing_ok=True)
+
+        begin()
         start = time.monotonic()
-        if run(lull, f"{common} -o whole.exr", folder)[0] != 0:
-            return 0, ["the whole render failed"]
+        code, said = run(lull, command.arguments, folder)
+        if code != 0:
+            return 0, ["the whole of it failed: " + said]
         whole = time.monotonic() - start
+        results = {result: without_seconds(folder / result) for result in command.results}
         problems, done = [], 0
         while done < kills:
-            (folder / "parts.png").unlink(missing_ok=True)
+            begin()
+            resume = ""
             while True:
                 process = subprocess.Popen(
-                    [lull] + f"{common} -o parts.exr --checkpoint c.h5 --resume "
-                    "--checkpoint-interval 0.1".split(), cwd=folder, stderr=subprocess.DEVNULL)
+                    [lull] + f"{command.arguments} {resume}".split(), cwd=folder,
+                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                resume = command.resume
                 try:
                     process.wait(rng.uniform(0, 1.2 * whole))
                     break
@@ -304,12 +355,13 @@ def try_kills(lull, files, seed, kills):
                     process.wait()
                     done += 1
                 left = [p.name for p in folder.iterdir() if p.name.startswith(".")]
-                if len(left) > 5:  # one for each file that a render writes
+                if len(left) > 6:  # one for each file that is written, and a lock
                     problems.append(f"left: {left}")
             if process.returncode != 0:
                 problems.append(f"exit code {process.returncode}")
-            elif (folder / "parts.png").read_bytes() != (folder / "whole.png").read_bytes():
-                problems.append("another image")
+                continue
+            problems += [f"another {result}" for result, data in results.items()
+                         if without_seconds(folder / result) != data]
         return done, problems
 
 
@@ -318,7 +370,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("lull")
     parser.add_argument("--cases", type=int, default=500, help="of each reader")
-    parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--kills", type=int, default=20, help="of each command")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", help="one reader", choices=[r.name for r in READERS])
     parser.add_argument("--keep", default="faults-found")
@@ -346,9 +398,11 @@ def main():
             print(f"{reader.name:10}" + "".join(f"{n:7}" for n in [args.cases] + counts) +
                   f"  {time.monotonic() - start:7.1f}", flush=True)
     if args.kills > 0 and not args.only:
-        kills, problems = try_kills(lull, files, args.seed, args.kills)
-        others += len(problems)
-        print(f"{kills} kills: " + ("; ".join(problems) or "the same bits in the end"))
+        for command in KILLED:
+            kills, problems = try_kills(lull, files, args.seed, args.kills, command)
+            others += len(problems)
+            print(f"{command.arguments.split()[0]}: {kills} kills: " +
+                  ("; ".join(problems) or "the same results in the end"), flush=True)
     return 1 if others else 0
 
 

@@ -9,6 +9,8 @@
 #include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/lab/pages/study_page.h"
+#include "renderer/render/checkpoint.h"
 #include "renderer/scene/cameras/lens_file.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
@@ -203,13 +205,42 @@ void FuzzDataset(std::span<const char> bytes) {
     }
 }
 
-// The contents behind the checksum of a file.
-void FuzzTrainingCheckpoint(std::span<const char> bytes) {
+// Writes bytes with the checksum that belongs to them, and returns the path.
+std::string WriteSealed(std::span<const char> bytes) {
     std::vector<std::byte> sealed(bytes.size());
     std::ranges::copy(std::as_bytes(bytes), sealed.begin());
     Seal(&sealed);
-    const std::string path =
-        WriteInput({reinterpret_cast<const char*>(sealed.data()), sealed.size()});
+    return WriteInput({reinterpret_cast<const char*>(sealed.data()), sealed.size()});
+}
+
+// What is behind the checksum of a file; most of what is found is in the HDF5 library.
+void FuzzCheckpoint(std::span<const char> bytes) {
+    const std::string path = WriteSealed(bytes);
+    Film film({{0, 0}, {4, 4}}, {.grid = {4, 4}});
+    try {
+        ReadCheckpoint(path, {}, &film);
+    } catch (const std::runtime_error&) {
+    }
+}
+
+void FuzzStudyPage(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        ReadStudyPage(path);
+    } catch (const Error&) {
+    }
+}
+
+void FuzzStudyTexts(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        AllStudyTexts(ReadStudyTexts(path));
+    } catch (const Error&) {
+    }
+}
+
+void FuzzTrainingCheckpoint(std::span<const char> bytes) {
+    const std::string path = WriteSealed(bytes);
     try {
         TrainingCheckpoint(path, 1, {}).Read();
     } catch (const std::runtime_error&) {
@@ -246,6 +277,9 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"single_answers", FuzzSingleAnswers},
             {"display", FuzzDisplay},
             {"dataset", FuzzDataset},
+            {"checkpoint", FuzzCheckpoint},
+            {"study_page", FuzzStudyPage},
+            {"study_texts", FuzzStudyTexts},
             {"training_checkpoint", FuzzTrainingCheckpoint},
             {"criterion_state", FuzzCriterionState}};
 }

@@ -16,8 +16,8 @@ struct NamedFuzzTarget {
     FuzzTarget run;
 };
 
-// Most findings of `model` and `dataset` are in the HDF5 library, which does not withstand files
-// made to harm it.
+// Most findings of `model`, `dataset` and `checkpoint` are in the HDF5 library, which does not
+// withstand files made to harm it.
 std::vector<NamedFuzzTarget> FuzzTargets();
 
 }  // namespace lull

@@ -66,6 +66,11 @@ struct RanksTest : testing::Test {
     TemporaryDirectory directory;
 };
 
+TEST_F(RanksTest, SayNothingOfThreads) {
+    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort));
+    EXPECT_FALSE(Contains(outcome.err, "workers")) << outcome.err;
+}
+
 TEST_F(RanksTest, RefuseViewers) {
     const Outcome outcome = Run(Ranks(2) + kRender + kShort + "--display 127.0.0.1:9");
     EXPECT_NE(outcome.exitCode, 0);

@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/dataset.h"
@@ -123,6 +124,55 @@ TEST(Messages, AreShortAndCommandNoTerminal) {
         EXPECT_LT(outcome.err.size(), 2000u) << command;
         EXPECT_NE(outcome.err, "") << command;
     }
+}
+
+TEST(Messages, AreShortHoweverLongTheCommandIs) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    directory.Write("h.csv", "v;20\n");
+    for (const char* command :
+         {"render scene.pbrt --stop learned:$L", "render scene.pbrt --stop thresholds:h.csv:$L",
+          "render scene.pbrt -o $L.exr", "render $L", "render scene.pbrt --aov $L", "$L",
+          "record scene.pbrt --name $L -o d.h5", "render scene.pbrt --checkpoint $L"}) {
+        const Outcome outcome = RunShell(
+            directory, "L=$(printf 'x%.0s' $(seq 20000)); " + std::string(kLimit) + command);
+        EXPECT_LT(outcome.err.size(), 2200u) << command;
+        EXPECT_EQ(CountErrorLines(outcome.err), 1) << command << "\n" << outcome.err;
+        EXPECT_FALSE(Contains(outcome.err, "filesystem error")) << outcome.err;
+    }
+}
+
+TEST(Messages, AreNotThoseOfALibraryForManyThreads) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const Outcome outcome =
+        ExpectSuccess(directory, "render scene.pbrt --spp 1 --threads 4096 -o a.exr --quiet");
+    EXPECT_EQ(outcome.err, "");
+}
+
+TEST(Messages, QuoteBeginningsOfKinds) {
+    const TemporaryDirectory directory;
+    const std::string kind = '"' + std::string(4000, 'k') + '"';
+    for (const std::string& world :
+         {"Material " + kind, "LightSource " + kind, "Shape " + kind, "AreaLightSource " + kind,
+          "MakeNamedMaterial \"m\" \"string type\" " + kind}) {
+        directory.Write("scene.pbrt", SceneText(world + "\n" + kSphere));
+        const Outcome outcome = RunLull(directory, "render scene.pbrt --spp 1 -o a.exr --quiet");
+        EXPECT_EQ(outcome.exitCode, 1) << world;
+        EXPECT_TRUE(Contains(outcome.err, std::string(60, 'k') + "...\"")) << outcome.err;
+    }
+}
+
+TEST(Layers, HoldNoInfinityWhereTheFilmIsScaled) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText("AreaLightSource \"area\" \"rgb L\" [1e30 1e20 1e38] " +
+                                            std::string(kSphere)));
+    const Outcome outcome = ExpectSuccess(
+        directory, "render scene.pbrt --spp 20 --exposure 100 --denoise --denoise-layers -o a.exr");
+    EXPECT_TRUE(Contains(outcome.err, "samples were not finite")) << outcome.err;
+    for (const ExrChannel& channel : ReadExr(directory.File("a.exr")).channels)
+        EXPECT_TRUE(std::ranges::all_of(channel.values, [](float v) { return std::isfinite(v); }))
+            << channel.name;
 }
 
 }  // namespace

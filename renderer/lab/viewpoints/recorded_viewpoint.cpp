@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
 #include "renderer/files/file_lock.h"
 #include "renderer/render/peers.h"
 #include "stopping/base/block_view.h"
+#include "stopping/base/input_file.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -59,7 +59,7 @@ std::string CheckViewpointName(const std::string& name) {
 }
 
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path) {
-    if (!std::filesystem::exists(path)) return {};
+    if (!IsThere(path)) return {};
     return ReadDataset(path);
 }
 

@@ -14,9 +14,10 @@ class Accelerator {
     Accelerator(Accelerator&&) noexcept;
     Accelerator& operator=(Accelerator&&) noexcept;
 
-    // Builds over the shapes with `threads` threads (0: all). `shapes` and `textures` must outlive
-    // the accelerator and stay where they are. Throws Error when memory runs out.
-    Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads);
+    // Builds over the shapes, on as many threads as RunWithThreads() allows. `shapes` and
+    // `textures` must outlive the accelerator and stay where they are. Throws Error when memory
+    // runs out.
+    Accelerator(const ShapeTable& shapes, const TextureTable& textures);
 
     // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
     bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;

@@ -3,7 +3,6 @@
 
 #include "renderer/scene/geometry/accelerator_internal.h"
 #include "renderer/scene/geometry/coverage.h"
-#include "stopping/base/parallel.h"
 
 namespace lull {
 namespace {
@@ -144,11 +143,11 @@ Accelerator::~Accelerator() = default;
 Accelerator::Accelerator(Accelerator&&) noexcept = default;
 Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 
-Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures, int threads)
+Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures)
     : implementation(std::make_unique<Implementation>()) {
     Implementation& impl = *implementation;
-    impl.device.reset(rtcNewDevice(
-        threads > 0 ? fmt::format("threads={}", ThreadCount(threads)).c_str() : nullptr));
+    // A number of threads for the device would limit oneTBB as long as it lives.
+    impl.device.reset(rtcNewDevice(nullptr));
     if (!impl.device)
         throw Error(rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
                         ? "Embree does not support this processor"

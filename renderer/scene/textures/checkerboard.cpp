@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "stopping/base/input_file.h"
+
 namespace lull {
 
 template <typename T>
@@ -21,7 +23,8 @@ Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input) {
         board.mapping = MakeMapping2D(input);
         const std::string mode = entity.parameters.GetString("aamode", "closedform");
         if (mode != "none" && mode != "closedform")
-            input.warnings.Add(entity.loc, "unknown aamode of checkerboard ignored", mode);
+            input.warnings.Add(entity.loc, "unknown aamode of checkerboard ignored",
+                               Printable(mode));
     } else {
         board.mapping = MakeMapping3D(input);
     }

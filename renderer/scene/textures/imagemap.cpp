@@ -27,7 +27,8 @@ Wrap GetWrap(const TextureInput& input, const char* parameter) {
     if (wrap == "clamp") return Wrap::Clamp;
     if (wrap == "mirrored") return Wrap::Mirror;
     if (wrap != "repeat")
-        input.warnings.Add(input.entity.loc, "unknown wrap mode replaced by repeat", wrap);
+        input.warnings.Add(input.entity.loc, "unknown wrap mode replaced by repeat",
+                           Printable(wrap));
     return Wrap::Repeat;
 }
 
@@ -52,7 +53,8 @@ TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     if (channel == "blue") return TextureChannels::Blue;
     if (channel == "alpha") return TextureChannels::Alpha;
     if (!channel.empty())
-        input.warnings.Add(input.entity.loc, "unknown channel replaced by luminance", channel);
+        input.warnings.Add(input.entity.loc, "unknown channel replaced by luminance",
+                           Printable(channel));
     return TextureChannels::Luminance;
 }
 

@@ -11,8 +11,8 @@ BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::
     BlockSplit split;
     for (const std::string& name : names) {
         if (std::ranges::find(blocks, name, &LabelledBlock::viewpoint) == blocks.end())
-            throw std::invalid_argument("there is no viewpoint '" + Printable(name) +
-                                        "' to leave out");
+            throw std::invalid_argument("--leave-out: there is no viewpoint '" + Printable(name) +
+                                        "'");
         split.name.append(split.name.empty() ? "" : ", ").append(name);
     }
     for (const LabelledBlock& block : blocks) {
@@ -28,7 +28,8 @@ std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks) {
         if (std::ranges::find(splits, block.viewpoint, &BlockSplit::name) == splits.end())
             splits.push_back(LeaveOut(blocks, {&block.viewpoint, 1}));
     if (splits.size() < 2)
-        throw std::invalid_argument("two viewpoints are needed to leave each out in turn");
+        throw std::invalid_argument(
+            "--cross-validate: two viewpoints are needed, to leave each out in turn");
     return splits;
 }
 

@@ -145,6 +145,9 @@ TEST(OneLine, JoinsWhatLibrariesSayInSeveral) {
     EXPECT_EQ(OneLine("one"), "one");
     EXPECT_EQ(OneLine("one\ntwo\r\n\nthree\n"), "one; two; three");
     EXPECT_EQ(OneLine("\n"), "");
+    EXPECT_EQ(OneLine("abcdefgh", 8), "abcdefgh");
+    EXPECT_EQ(OneLine("abcdefghi", 4), "ab ... hi");
+    EXPECT_EQ(OneLine("\u00e4\u00e4\u00e4\u00e4", 6), "\u00e4 ... \u00e4");  // no half characters
 }
 
 TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {

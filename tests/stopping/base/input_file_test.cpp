@@ -25,6 +25,16 @@ TEST(OpenInput, ReadsRegularFilesAlone) {
     EXPECT_NE(ReasonNotToRead(std::string("a\0b", 3)), "");
 }
 
+TEST(IsThere, TellsWhyItCannotTell) {
+    const ScratchFile text(".txt", "a"), missing(".txt");
+    EXPECT_TRUE(IsThere(text.path));
+    EXPECT_TRUE(IsThere("/"));
+    EXPECT_FALSE(IsThere(missing.path));
+    EXPECT_FALSE(IsThere(text.path + "/of-a-file"));
+    const std::string tooLong(300, 'x');
+    EXPECT_EQ(WhatOf([&] { IsThere(tooLong); }), tooLong + ": File name too long");
+}
+
 TEST(Printable, QuotesBrieflyAndWithoutControl) {
     EXPECT_EQ(Printable("a \x1b[31m\a"), "a \\x1b[31m\\x07");
     EXPECT_EQ(Printable(std::string("\0\x7f\xc3", 3)), "\\x00\\x7f\\xc3");

@@ -8,6 +8,7 @@
 #include "renderer/scene/geometry/shapes/patches.h"
 #include "renderer/scene/geometry/shapes/placement.h"
 #include "renderer/scene/kinds.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -296,10 +297,10 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
         shape = kind->make({description, entity, textures, warnings});
         entity.parameters.ReportUnused("Shape \"" + entity.name + "\"", warnings);
     } else {
-        warnings.Substitute(
-            entity.loc,
-            fmt::format("Shape \"{}\" is not supported; {} are", entity.name, NamesOf(kShapes)),
-            "it is left out");
+        warnings.Substitute(entity.loc,
+                            fmt::format("Shape \"{}\" is not supported; {} are",
+                                        Printable(entity.name), NamesOf(kShapes)),
+                            "it is left out");
     }
     shape.material = entity.material;
     return shape;
