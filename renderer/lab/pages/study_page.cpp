@@ -18,6 +18,11 @@ namespace {
 
 constexpr const char* kFormat = "lull-study";
 constexpr int kVersion = 1;
+constexpr int kMostPixels = 1 << 20;  // a side
+
+Error NotAStudy(const std::string& path) {
+    return Error(path + ": not a page made by lull study, or damaged");
+}
 
 Json BlockJson(const StudyBlock& block) {
     Json json = RectJson(block.pixels);
@@ -99,19 +104,24 @@ Json ReadStudyPage(const std::string& path) try {
     Json study = Json::parse(ScriptText(page, "study"));
     if (study.at("format") != kFormat || study.at("version") != kVersion)
         throw Error(path + ": is the page of another program or version");
-    for (const char* key : {"width", "height"}) study.at(key).get<int>();
+    // JSON has numbers that no int can hold.
+    const auto checkPixels = [&](const Json& pixels) {
+        if (!pixels.is_number_integer() || pixels < 0 || pixels > kMostPixels)
+            throw NotAStudy(path);
+    };
+    for (const char* key : {"width", "height"}) checkPixels(study.at(key));
     study.at("id").get<std::string>();
     study["references"] = Json::array();
     for (size_t i = 0; i < study.at("blocks").size(); ++i) {
         for (const char* key : {"x", "y", "width", "height"})
-            study.at("blocks").at(i).at(key).get<int>();
+            checkPixels(study.at("blocks").at(i).at(key));
         const Json pictures = Json::parse(ScriptText(page, fmt::format("pictures-{}", i)));
         study["references"].push_back("data:image/png;base64," +
                                       pictures.at(pictures.size() - 1).get<std::string>());
     }
     return study;
 } catch (const Json::exception&) {
-    throw Error(path + ": not a page made by lull study, or damaged");
+    throw NotAStudy(path);
 }
 
 }  // namespace lull

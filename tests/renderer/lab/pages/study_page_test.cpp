@@ -97,9 +97,11 @@ TEST(StaircaseOctaves, FallsWithTheAnswers) {
 TEST(ReadStudyPage, RefusesOtherPages) {
     const TemporaryDirectory folder;
     const std::string page = MakeStudyPage(TwoBlocks(), {});
+    std::string huge = page;  // a width that no int can hold
+    huge.insert(huge.find("\"width\":") + 8, "99999999999");
     for (const std::string& text :
          {std::string(), std::string("<html></html>"), page.substr(0, page.find("\"levels\"")),
-          page.substr(0, page.find("pictures-1"))}) {
+          page.substr(0, page.find("pictures-1")), huge}) {
         const std::string path = folder.Write("other.html", text);
         try {
             ReadStudyPage(path);
