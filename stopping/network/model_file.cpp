@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -227,6 +228,24 @@ Model ReadModel(const std::string& path) {
         throw std::runtime_error(path + ": " + error.what());
     }
     return model;
+}
+
+std::map<std::string, std::vector<int>> ReadTrainingBlocks(const std::string& path) try {
+    const Hdf5Group file = Hdf5Group::Open(path);
+    if (!file.HasGroup("lull") || !file.Group("lull").HasGroup("training")) return {};
+    const Hdf5Group training = file.Group("lull").Group("training");
+    if (!training.HasAttribute("training_blocks")) return {};
+    std::map<std::string, std::vector<int>> blocks;
+    std::istringstream lines(training.String("training_blocks"));
+    for (std::string line; std::getline(lines, line);) {
+        const size_t colon = line.rfind(':');
+        if (colon == std::string::npos) continue;  // "none"
+        std::istringstream numbers(line.substr(colon + 1));
+        for (int block; numbers >> block;) blocks[line.substr(0, colon)].push_back(block);
+    }
+    return blocks;
+} catch (const std::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
 }
 
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,

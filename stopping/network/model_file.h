@@ -38,4 +38,9 @@ void WriteModel(const std::string& path, const Network& network, const ModelSett
                 const std::map<std::string, std::string>& record = {},
                 std::span<const double> logRatios = {});
 
+// Returns the blocks that a model was trained on, by viewpoint, as `record` had them in
+// `training_blocks`: a line "VIEWPOINT: BLOCK BLOCK ..." for each. Empty where the file does not
+// have them, as published models. Throws std::runtime_error beginning with the path.
+std::map<std::string, std::vector<int>> ReadTrainingBlocks(const std::string& path);
+
 }  // namespace lull

@@ -58,6 +58,7 @@ threshold, and the masking of noise by detail (8 to 40; 1e+09: none).
 Columns:
   views   number of viewpoints, and of their
   blocks  evaluated blocks
+  seen    blocks that the model was trained on: figures of these do not show how it does on others
   open    recordings that ended, before 10,000 spp, when the rule had not stopped the block. Such
           rules have two rows: "at least", with these blocks stopped at the ends, which is a lower
           bound of the error if observers wanted no more; and "extended", with recordings

@@ -49,16 +49,16 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
         width = std::max(width, (row.*first).size());
         settingWidth = std::max(settingWidth, row.setting.size());
     }
-    fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", label, width, "setting", settingWidth,
-               "views", "blocks", "open");
+    fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}  {:>4}", label, width, "setting",
+               settingWidth, "views", "blocks", "seen", "open");
     for (const double margin : options.margins)
         fmt::print(out, "  {:>6}", fmt::format("ce{:g}", margin));
     fmt::print(out, "  {:>11}  {:>6}  {:>5}  {:>5}  {:>5}  {:>5}  {:>5}  {:>6}  {:>7}\n", "95 %",
                "error", "err%", "early", "late", "acc", "auc", "within", "between");
     for (const Row& row : rows) {
         const Scores& j = row.scores;
-        fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}", row.*first, width, row.setting,
-                   settingWidth, j.viewpoints, j.blocks, j.open);
+        fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}  {:>4}", row.*first, width,
+                   row.setting, settingWidth, j.viewpoints, j.blocks, j.seen, j.open);
         for (const double error : j.criticalErrors) fmt::print(out, "  {:>6.2f}", 100 * error);
         fmt::print(out,
                    "  {:>11}  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}  {:>6}  {:>7}\n",
@@ -86,7 +86,7 @@ void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
 }
 
 std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOptions& options) {
-    std::string csv = "rule,viewpoint,setting,viewpoints,blocks,open";
+    std::string csv = "rule,viewpoint,setting,viewpoints,blocks,seen,open";
     const auto out = std::back_inserter(csv);
     for (const double margin : options.margins) fmt::format_to(out, ",critical_error_{:g}", margin);
     csv +=
@@ -95,8 +95,8 @@ std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOp
     for (const EvaluatedRule& rule : rules)
         for (const Row& row : MakeRows(rule, options)) {
             const Scores& j = row.scores;
-            fmt::format_to(out, "{},{},{},{},{},{}", CsvField(row.rule), CsvField(row.viewpoint),
-                           CsvField(row.setting), j.viewpoints, j.blocks, j.open);
+            fmt::format_to(out, "{},{},{},{},{},{},{}", CsvField(row.rule), CsvField(row.viewpoint),
+                           CsvField(row.setting), j.viewpoints, j.blocks, j.seen, j.open);
             for (const double error : j.criticalErrors) fmt::format_to(out, ",{:.6f}", error);
             const auto interval = j.criticalInterval;
             fmt::format_to(out, ",{},{},{:.2f},{:.6f},{:.6f},{},{},{},{}\n",
@@ -109,14 +109,14 @@ std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOp
 }
 
 std::string BlocksCsv(const std::vector<EvaluatedRule>& rules) {
-    std::string csv = "rule,viewpoint,setting,block,human,stop,open\n";
+    std::string csv = "rule,viewpoint,setting,block,seen,human,stop,open\n";
     for (const EvaluatedRule& rule : rules)
         for (const ViewpointOutcome& viewpoint : rule.viewpoints)
             for (const BlockOutcome& b : viewpoint.blocks)
-                fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{}\n",
+                fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{}\n",
                                CsvField(LabelOf(rule)), CsvField(viewpoint.name),
-                               CsvField(viewpoint.setting), b.block, b.human, b.outcome.stop,
-                               int(b.outcome.open));
+                               CsvField(viewpoint.setting), b.block, int(b.seen), b.human,
+                               b.outcome.stop, int(b.outcome.open));
     return csv;
 }
 

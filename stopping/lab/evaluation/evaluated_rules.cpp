@@ -9,6 +9,7 @@
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
+#include "stopping/rules/learned.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -64,6 +65,26 @@ EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBloc
     return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
 }
 
+// Marks the blocks that a model was trained on.
+void MarkSeen(const std::map<std::string, std::vector<int>>& trainedOn, EvaluatedRule* rule) {
+    for (ViewpointOutcome& viewpoint : rule->viewpoints) {
+        const auto known = trainedOn.find(viewpoint.name);
+        if (known == trainedOn.end()) continue;
+        for (BlockOutcome& block : viewpoint.blocks)
+            block.seen = std::ranges::find(known->second, block.block) != known->second.end();
+    }
+}
+
+// Returns the blocks that the model of a rule was trained on; none of other rules.
+std::map<std::string, std::vector<int>> TrainingBlocksOf(const std::string& rule,
+                                                         const RuleContext& context) {
+    const RuleEntry* entry = FindRule(rule);
+    if (!entry || entry->name != "learned") return {};
+    const size_t colon = rule.find(':');
+    const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);
+    return ReadTrainingBlocks(ModelPath(argument, context.models));
+}
+
 }  // namespace
 
 std::vector<ThresholdsRow> ReadHumanThresholds(const std::string& human,
@@ -112,9 +133,12 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
     for (const std::string& rule : wanted.rules) {
         const Simulator simulator = MakeSimulator(rule, context);
         const double threshold = ThresholdOf(rule, context);
+        const auto trainedOn = TrainingBlocksOf(rule, context);
         const auto run = [&](std::span<const LabelledBlock> on) {
-            return EvaluatedRule{
+            EvaluatedRule made{
                 .name = rule, .viewpoints = Simulate(on, simulator, ""), .threshold = threshold};
+            MarkSeen(trainedOn, &made);
+            return made;
         };
         AddTwoFigures(
             blocks, run(blocks), [&] { return run(extended.blocks); }, &rules);

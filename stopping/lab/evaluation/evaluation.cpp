@@ -124,6 +124,7 @@ Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& o
         AddMeans(viewpoint, options, &result);
         for (const BlockOutcome& block : viewpoint.blocks) {
             result.open += block.outcome.open;
+            result.seen += block.seen;
             verdicts.Add(block);
         }
     }

@@ -34,7 +34,8 @@ RuleOutcome OutcomeOfStop(int stop, int grid);
 struct BlockOutcome {
     int human = 0;  // the threshold of people in spp, kJudgedCap where they saw noise even there
     RuleOutcome outcome = {};
-    int block = 0;  // row-major number in the image
+    int block = 0;      // row-major number in the image
+    bool seen = false;  // whether the rule is a model that was trained on it
 };
 struct ViewpointOutcome {
     std::string name;
@@ -76,7 +77,7 @@ struct ScoreOptions {
 
 // The measures of some viewpoints. Shares are in [0, 1].
 struct Scores {
-    int viewpoints = 0, blocks = 0, open = 0;
+    int viewpoints = 0, blocks = 0, seen = 0, open = 0;
     // Means over the viewpoints of the means over their blocks:
     std::vector<double> criticalErrors = {};  // for each margin
     double absoluteError = 0;                 // |stop - human| in spp

@@ -107,6 +107,20 @@ TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
     EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
 }
 
+TEST(ModelFile, TellsTheBlocksItWasTrainedOn) {
+    const ScratchFile file(".h5");
+    const auto blocksOf = [&](const std::map<std::string, std::string>& record) {
+        WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 4}, record);
+        return ReadTrainingBlocks(file.path);
+    };
+    EXPECT_EQ(blocksOf({{"training_blocks", "a: 0 1\nb:c: 2"}}),
+              (std::map<std::string, std::vector<int>>{{"a", {0, 1}}, {"b:c", {2}}}));
+    EXPECT_TRUE(blocksOf({{"training_blocks", "none"}}).empty());
+    EXPECT_TRUE(blocksOf({{"seed", "7"}}).empty());
+    EXPECT_TRUE(blocksOf({}).empty());
+    EXPECT_THROW(ReadTrainingBlocks(file.path + ".no"), std::runtime_error);
+}
+
 TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const ScratchFile file(".h5");
     const ModelSettings settings{

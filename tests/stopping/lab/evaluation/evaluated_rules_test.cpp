@@ -4,7 +4,9 @@
 
 #include <stdexcept>
 
+#include "stopping/network/model_file.h"
 #include "tests/stopping/lab/training/learning_data.h"
+#include "tests/stopping/network/random_network.h"
 
 namespace lull {
 namespace {
@@ -70,6 +72,20 @@ TEST(EvaluatedRules, RunOnRecordings) {
     EXPECT_NEAR(open[1].viewpoints[0].blocks[0].outcome.stop, 1600, 150);
     const ScratchFile part(".csv", Line(MakeHumanRow("attic")));
     EXPECT_THROW(EvaluateOnBlocks(blocks, {.predicted = {part.path}}), std::runtime_error);
+}
+
+TEST(EvaluatedRules, TellWhichBlocksAModelHasSeen) {
+    const LearningData data;
+    const ScratchFile model(".h5");
+    WriteModel(model.path, RandomNetwork(25, {4}, 1), {.k = 2, .m = 25, .voteSpacing = 40},
+               {{"training_blocks", "attic: 0 2\nshed: 1"}});
+    const EvaluatedRule rule =
+        EvaluateOnBlocks(data.Blocks(), {.rules = {"learned:" + model.path}}).front();
+    EXPECT_EQ(Score(rule.viewpoints, {}).seen, 2);
+    for (const BlockOutcome& block : rule.viewpoints.at(0).blocks)
+        EXPECT_EQ(block.seen, block.block == 0 || block.block == 2);
+    const EvaluatedRule other = EvaluateOnBlocks(data.Blocks(), {.rules = {"fixed:400"}}).front();
+    EXPECT_EQ(Score(other.viewpoints, {}).seen, 0);
 }
 
 }  // namespace
