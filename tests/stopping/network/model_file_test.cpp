@@ -246,7 +246,7 @@ TEST(ModelFile, RefusesWeightsOfAnotherShape) {
 TEST(ModelFile, RefusesContradictingSettings) {
     const ScratchFile file(".h5");
     WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 25});
-    ExpectError(file.path, "/lull says 8 steps of 25 values, but the network takes 8 steps of 4");
+    ExpectError(file.path, "/lull has 8 steps of 25 values, but the network takes 8 steps of 4");
 }
 
 TEST(ModelFile, RefusesSettingsOfNoSense) {
