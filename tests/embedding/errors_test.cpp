@@ -84,7 +84,7 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
         refuse(bad, spp, "mean is null");
         bad = good;
         bad.half = nullptr;
-        refuse(bad, spp, "half of the samples");
+        refuse(bad, spp, "half buffer");
         refuse(good, 0, "above 0");
         refuse(good, spp - 20, spp == 20 ? "above 0" : "spp must increase");
         ExpectError(LULL_BAD_ARGUMENT,
