@@ -92,9 +92,9 @@ TEST(Evaluate, RunsRulesOnRecordings) {
     // Seven blocks of two viewpoints; at 0.3 all but the one at the cap end before they stop.
     EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.51"), "  2       7     0")) << outcome.out;
     EXPECT_EQ(Line(outcome.out, "lnoise:0.51, "), "");
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, at least"), "  2       7     6"))
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, at least"), "  2       7     0     6"))
         << outcome.out;
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, extended"), "  2       7     6"))
+    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, extended"), "  2       7     0     6"))
         << outcome.out;
     // fixed: 500, 0, 700, 1600 and 275, 9100, 325: means of 700 and 3233.
     EXPECT_TRUE(Contains(Line(outcome.out, "fixed:900"), "  1967   19.7")) << outcome.out;

@@ -257,7 +257,7 @@ def main(lull, chromium):
               "render: legends have numbers before anybody points at them")
         texts = "document.querySelectorAll('.stage:not([hidden]) svg text').length"
         check(browser.evaluate(texts) == 0, "render: nothing is over the image at first")
-        choose(browser, "Over it", "spp:image")
+        choose(browser, "Overlay", "spp:image")
         check(browser.evaluate(texts) == 6, "render: the samples can be")
         check_saved(browser, "render", 3, 1)
         check_dark(browser)
