@@ -53,7 +53,9 @@ TEST(MissingDetail, IsTextureThatWasRemoved) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 product += double(missing.Row(0, y)[x]) * Waves(x, y) / (kSide * kSide);
-        if (noise <= 1) EXPECT_GT(product, 0.7) << noise;
+        if (noise <= 1) {
+            EXPECT_GT(product, 0.7) << noise;
+        }
     }
 }
 
