@@ -74,7 +74,7 @@ TEST(LightnessError, IsEstimatedWithoutBias) {
 // One part of which little is known, as its noise is strong, leaves the bound of all others alone.
 TEST(LightnessError, IsBoundedDespiteOneNoisyPart) {
     EstimatedError error{Planes(100, 100, 1, 50), Planes(100, 100, 1, 1), Planes(100, 100, 1, 0.5f),
-                         Planes(100, 100, 1), Planes(100, 100, 1), {}};
+                         Planes(100, 100, 1),     Planes(100, 100, 1),    {}};
     const double calm = MeasureLightnessError(error, {{0, 0}, {100, 100}}).upper;
     for (int y = 0; y < 10; ++y)
         for (int x = 0; x < 10; ++x) error.deviation.Row(0, y)[x] = 200;
