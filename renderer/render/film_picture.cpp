@@ -46,13 +46,19 @@ struct Split {
     }
 };
 
-// Calls use(split, pixel, p) for each pixel p that has samples.
-template <typename Use>
-void ForEachSampled(const Film& film, const PixelRect& rect, const Use& use) {
+constexpr auto kSkip = [](const Vec2i&) {};
+
+// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others.
+template <typename Use, typename UseEmpty = decltype(kSkip)>
+void ForEachPixel(const Film& film, const PixelRect& rect, const Use& use,
+                  const UseEmpty& useEmpty = kSkip) {
     for (int y = rect.min.y(); y < rect.max.y(); ++y)
         for (int x = rect.min.x(); x < rect.max.x(); ++x) {
             const FilmPixel pixel = film.At({x, y});
-            if (pixel.count == 0) continue;
+            if (pixel.count == 0) {
+                useEmpty({x, y});
+                continue;
+            }
             const double inA = HalfCount(pixel.count);
             use(Split{pixel.count >= kLeastDenoisedSpp, inA, pixel.count - inA}, pixel,
                 Vec2i(x, y));
@@ -78,7 +84,7 @@ NoisyPicture FeaturesOf(const Film& film, const FeatureFilm& features, const Pix
 
 Halves ColoursOf(const Film& film, const PixelRect& rect) {
     Halves colour = MakeHalves(rect.Width(), rect.Height(), kColours);
-    ForEachSampled(film, rect, [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
+    const auto put = [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
         for (int c = 0; c < kColours; ++c) {
             const double half = pixel.halfSum[size_t(c)];
             split.Put(half, pixel.sum[size_t(c)] - half, c, p - rect.min, &colour);
@@ -90,21 +96,20 @@ Halves ColoursOf(const Film& film, const PixelRect& rect) {
         Planes& other = (p.x() + p.y()) % 2 == 0 ? colour.b : colour.a;
         for (int c = 0; c < kColours && neighbours; ++c)
             other.Row(c, p.y() - rect.min.y())[p.x() - rect.min.x()] = (*neighbours)[c];
-    });
-    for (int y = rect.min.y(); y < rect.max.y(); ++y)
-        for (int x = rect.min.x(); x < rect.max.x(); ++x) {
-            if (film.At({x, y}).count > 0) continue;
-            const Rgb look = film.MeanAt({x, y});
-            for (Planes* half : {&colour.a, &colour.b})
-                for (int c = 0; c < kColours; ++c)
-                    half->Row(c, y - rect.min.y())[x - rect.min.x()] = look[c];
-        }
+    };
+    const auto putFirstLook = [&](const Vec2i& p) {
+        const Rgb look = film.MeanAt(p);
+        for (Planes* half : {&colour.a, &colour.b})
+            for (int c = 0; c < kColours; ++c)
+                half->Row(c, p.y() - rect.min.y())[p.x() - rect.min.x()] = look[c];
+    };
+    ForEachPixel(film, rect, put, putFirstLook);
     return colour;
 }
 
 Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
     Halves halves = MakeHalves(rect.Width(), rect.Height(), kFeatures);
-    ForEachSampled(film, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
+    ForEachPixel(film, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
         const FeaturePixel& feature = features.At(p);
         for (int f = 0; f < kFeatures; ++f)
             split.Put(feature.sums[0][size_t(f)], feature.sums[1][size_t(f)], f, p - rect.min,
@@ -115,7 +120,7 @@ Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const Pixe
 
 Planes VarianceOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
     Planes variance(rect.Width(), rect.Height(), 1);
-    ForEachSampled(film, rect, [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
+    ForEachPixel(film, rect, [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
         float& v = variance.Row(0, p.y() - rect.min.y())[p.x() - rect.min.x()];
         if (split.isSplit)
             v = VarianceOfMean(features.At(p).squares, Luminance(pixel.Mean()), pixel.count);

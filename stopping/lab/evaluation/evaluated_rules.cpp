@@ -80,9 +80,7 @@ std::map<std::string, std::vector<int>> TrainingBlocksOf(const std::string& rule
                                                          const RuleContext& context) {
     const RuleEntry* entry = FindRule(rule);
     if (!entry || entry->name != "learned") return {};
-    const size_t colon = rule.find(':');
-    const std::string argument = colon == std::string::npos ? "" : rule.substr(colon + 1);
-    return ReadTrainingBlocks(ModelPath(argument, context.models));
+    return ReadTrainingBlocks(ModelPath(ArgumentOf(rule), context.models));
 }
 
 }  // namespace
