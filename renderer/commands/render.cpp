@@ -174,8 +174,8 @@ SessionOptions MakeOptions(PreparedRender* p) {
     return how;
 }
 
-// Takes back what is said of blocks that have too few samples to know how wrong they are: they may
-// be as wrong as can be. Returns how many there are.
+// Removes the error estimates of blocks with too few samples for one, and sets the error of their
+// pixels to the largest. Returns the number of these blocks.
 int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
     constexpr float mostLightness = 100;
     int count = 0;

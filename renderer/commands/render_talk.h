@@ -13,8 +13,8 @@ namespace lull {
 // Prints the summary of a render, of whose samples `rejected` were rejected.
 void PrintResult(const RenderSettings&, const Provenance&, const RenderResult&, int64_t rejected);
 
-// Returns a listener that passes on what it hears and says once of a render without denoising, as
-// soon as it is known to take more than ten minutes, how --denoise would shorten it.
+// Returns a listener that forwards progress. Once a render without denoising is predicted to take
+// more than ten minutes, it prints a note on --denoise, one time.
 ProgressListener AdviseDenoising(int64_t pixels, const Talk&, ProgressListener listener);
 
 // Returns a callback that prints the stop of a block, as JSON.

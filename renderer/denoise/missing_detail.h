@@ -9,7 +9,7 @@ namespace lull {
 // of the samples, each of the other samples.
 struct CrossedResiduals {
     Planes a, b;   // denoised half A less the samples of B, and the other way round
-    Planes noise;  // the samples of A less those of B
+    Planes noise;  // the samples of A less the samples of B
     Planes half;   // half the difference of the denoised halves
 };
 

@@ -17,7 +17,7 @@ struct GuideState {
     GuideRecord record;  // of all that has been found so far
 };
 
-// Returns a guide whose densities are those of the record, and whose trees have been refined and
+// Returns a guide with the densities of the record, and with trees that have been refined and
 // coarsened to suit them. It keeps the recorded light, to which later records add, but not the
 // recorded costs, which belong to the old guide.
 GuideState Refine(const GuideState& state, const RefineOptions& options);

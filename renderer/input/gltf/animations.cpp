@@ -93,7 +93,7 @@ std::vector<size_t> Choose(const GltfDocument& document, const std::string& want
     return all;
 }
 
-// Gives a node what a channel, at `loc`, moves it to.
+// Sets the property of a node that a channel, at `loc`, animates.
 void PoseChannel(double seconds, const tinygltf::Animation& animation,
                  const tinygltf::AnimationChannel& channel, const FileLoc& loc,
                  GltfDocument* document, Warnings& warnings) {

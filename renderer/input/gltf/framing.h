@@ -8,7 +8,7 @@
 
 namespace lull {
 
-// Returns those of the points, three numbers each, that lie farthest out in a hundred directions: a
+// Returns the points, of three numbers each, that lie farthest out in a hundred directions: a
 // view of these contains all points up to a hundredth of their extent.
 std::vector<Vec3f> OutlineOf(const std::vector<float>& points);
 

@@ -31,7 +31,7 @@ struct Revolved {
 //
 // pbrt-v3's hyperboloid is swept by the line from p1 to p2 only where the line's waist is at z = 0:
 // its waist always is, and it goes through p2 and the point as far behind p2 as p1 is before it.
-// Heights end where the line does; uv, tangents and normals are those of the line.
+// Heights end where the line does, which also gives uv, tangents and normals.
 Revolved MakeCylinder(float radius, float zMin, float zMax, float phiMax);
 Revolved MakeCone(float radius, float height, float phiMax);
 Revolved MakeParaboloid(float radius, float zMin, float zMax, float phiMax);
