@@ -187,9 +187,12 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
         const PixelRect& rect = state.blocks[i].block.pixels;
         if (MostSamples(rect, film) > 0) WritePlanes(group.MakeGroup("pixels"), rect, film, layers);
     }
-    std::vector<std::byte> bytes = root.Image();
-    Seal(&bytes);
-    WriteFileAtomically(path, bytes);
+    const std::span<const std::byte> content = root.Content();
+    const std::string seal = SealOf(content);
+    AtomicFile file(path);
+    file.WriteAt(0, content);
+    file.WriteAt(int64_t(content.size()), std::as_bytes(std::span(seal)));
+    file.Commit();
 } catch (const Error&) {
     throw;
 } catch (const std::runtime_error& e) {

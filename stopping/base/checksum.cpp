@@ -59,8 +59,10 @@ std::string FileChecksum(const std::string& path) {
     return Text(crc);
 }
 
+std::string SealOf(std::span<const std::byte> content) { return SealOf(Continue(0, content)); }
+
 void Seal(std::vector<std::byte>* content) {
-    const std::string seal = SealOf(Continue(0, *content));
+    const std::string seal = SealOf(*content);
     const auto bytes = std::as_bytes(std::span(seal));
     content->insert(content->end(), bytes.begin(), bytes.end());
 }

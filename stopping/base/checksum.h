@@ -13,8 +13,10 @@ namespace lull {
 // apart and is no protection against forgery. Throws std::runtime_error if it cannot be read.
 std::string FileChecksum(const std::string& path);
 
-// Appends a seal to the content of a file: a mark, and the CRC-32 of all bytes before it, which any
-// flipped bit changes. HDF5 ignores bytes after the end of its files.
+// Returns the seal of the content of a file, to be appended to it: a mark, and the CRC-32 of all
+// bytes before it, which any flipped bit changes. HDF5 ignores bytes after the end of its files.
+std::string SealOf(std::span<const std::byte> content);
+// Appends it.
 void Seal(std::vector<std::byte>* content);
 
 // Throws std::runtime_error, which does not name the file, if it cannot be read, or is not as it

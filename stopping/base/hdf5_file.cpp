@@ -142,13 +142,12 @@ Hdf5Group Hdf5Group::CreateInMemory() {
         Share(H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what));
 }
 
-std::vector<std::byte> Hdf5Group::Image() {
+std::span<const std::byte> Hdf5Group::Content() {
     Flush();
     const ssize_t size = H5Fget_file_image(*id, nullptr, 0);
-    if (size < 0) Fail("copy a file in memory");
-    std::vector<std::byte> bytes(static_cast<size_t>(size));
-    if (H5Fget_file_image(*id, bytes.data(), bytes.size()) < 0) Fail("copy a file in memory");
-    return bytes;
+    void* handle = nullptr;  // points to the driver's pointer
+    if (size < 0 || H5Fget_vfd_handle(*id, H5P_DEFAULT, &handle) < 0) Fail("read a file in memory");
+    return {*static_cast<const std::byte**>(handle), static_cast<size_t>(size)};
 }
 
 void Hdf5Group::Flush() { Check(H5Fflush(*id, H5F_SCOPE_GLOBAL), "write it to the end"); }

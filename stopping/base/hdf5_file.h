@@ -21,9 +21,9 @@ class Hdf5Group {
     // Opens a file for reading, or creates one (replacing an old one) for writing.
     static Hdf5Group Open(const std::string& path);
     static Hdf5Group Create(const std::string& path);
-    // Creates a file in memory; Image() returns its bytes.
+    // Creates a file in memory; Content() returns its bytes, valid until something is added.
     static Hdf5Group CreateInMemory();
-    std::vector<std::byte> Image();
+    std::span<const std::byte> Content();
     // Writes everything so far to disk.
     void Flush();
 

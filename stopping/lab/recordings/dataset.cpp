@@ -145,7 +145,8 @@ std::vector<std::byte> EncodeDataset(std::span<const ViewpointRecording> viewpoi
             blockGroup.SetString("note", note == viewpoint.blockNotes.end() ? "" : note->second);
         }
     }
-    return root.Image();
+    const auto content = root.Content();
+    return {content.begin(), content.end()};
 }
 
 void AddToDataset(const ViewpointRecording& added, std::vector<ViewpointRecording>* viewpoints) {

@@ -200,7 +200,8 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
     const auto fileOf = [&](const char* format) {
         Hdf5Group root = Hdf5Group::CreateInMemory();
         root.SetString("format", format);
-        std::vector<std::byte> bytes = root.Image();
+        const auto content = root.Content();
+        std::vector<std::byte> bytes(content.begin(), content.end());
         Seal(&bytes);
         return directory.Write("c.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     };
