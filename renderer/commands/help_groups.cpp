@@ -21,13 +21,13 @@ constexpr std::array<std::string_view, 11> kCommon = {
 
 struct Subject {
     const char* name;
-    std::array<std::string_view, 11> options;  // long names
+    std::array<std::string_view, 12> options;  // long names
 };
 constexpr Subject kSubjects[] = {
     {"Scene",
-     {"camera", "orbit", "frame", "animation", "shutter", "variant", "solid-glass", "environment",
-      "environment-rotation", "substitute", "verbose"}},
-    {"Image", {"resolution", "crop", "exposure", "tone-map", "transparent"}},
+     {"camera", "orbit", "frame", "frames", "animation", "shutter", "variant", "solid-glass",
+      "environment", "environment-rotation", "substitute", "verbose"}},
+    {"Image", {"resolution", "crop", "exposure", "tone-map", "ocio", "view", "transparent"}},
     {"Sampling", {"spp", "sampler", "seed", "max-depth"}},
     {"Stopping", {"stop", "cap", "caution", "pass", "block"}},
     {"Denoising", {"denoise", "denoise-layers"}},

@@ -20,6 +20,14 @@ struct EnumNames<ToneMap> {
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     AddChoiceOption(app, "--tone-map", &options->format.toneMap,
                     "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white");
+    CLI::Option* toneMap = app.get_option("--tone-map");
+    app.add_option("--ocio", options->ocio,
+                   "Map the PNG by a view of this OpenColorIO configuration [with --view: $OCIO]")
+        ->type_name("CONFIG.ocio")
+        ->excludes(toneMap);
+    app.add_option("--view", options->view, "Choose OpenColorIO's view [that of the configuration]")
+        ->type_name("NAME")
+        ->excludes(toneMap);
     app.add_option("--png-bits", options->format.pngBits, "Set the bits per channel of the PNG")
         ->check(OneOf(std::set{8, 16}))
         ->type_name("8|16")
@@ -39,6 +47,11 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     app.add_option("--preview", options->preview, "Write the current image every SECONDS")
         ->check(CLI::Range(0.1, 1e6))
         ->type_name("SECONDS");
+}
+
+void LoadView(PictureOptions* options) {
+    if (options->ocio || options->view)
+        options->format.view = LoadView(options->ocio.value_or(""), options->view.value_or(""));
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,

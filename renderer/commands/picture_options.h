@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <memory>
+#include <optional>
 
 #include "renderer/commands/talk.h"
 #include "renderer/film/display.h"
@@ -12,12 +13,17 @@ namespace lull {
 
 struct PictureOptions {
     PictureFormat format;
+    // OpenColorIO's configuration, empty: $OCIO, and view; nothing: neither is used.
+    std::optional<std::string> ocio, view;
     std::string display;  // empty: none
     double preview = 0;   // seconds between pictures on the way; 0: none
 };
 
-// Adds --tone-map, --png-bits, --exr-half, --display and --preview.
+// Adds --tone-map, --ocio, --view, --png-bits, --exr-half, --display and --preview.
 void AddPictureOptions(CLI::App& app, PictureOptions* options);
+
+// Loads the view of the format, where one is asked for. Throws Error.
+void LoadView(PictureOptions*);
 
 // Begins to show a render whose image is called `name`; null where that is not wanted. Throws Error
 // on several ranks.

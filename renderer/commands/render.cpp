@@ -19,6 +19,7 @@
 #include "renderer/render/film_picture.h"
 #include "renderer/render/half_buffer.h"
 #include "renderer/results/denoiser_channels.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -101,6 +102,15 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->guideMegabytes = p.request.guide.megabytes;
 }
 
+RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
+    const std::string output = request.output.empty()
+                                   ? DefaultOutput(film.filename, request.render.scene.file)
+                                   : request.output;
+    if (const int frame = request.frameNumber; frame > 0)
+        return NameFiles(NumberedFile(output, frame), NumberedFile(request.report, frame));
+    return NameFiles(output, request.report);
+}
+
 // Checks all that can be wrong before the work begins.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks) {
     auto p = std::make_unique<PreparedRender>(request, ranks);
@@ -109,10 +119,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks
     ReadRule(p.get());
     CheckBlocks(region, render.settings.schedule, render.input.warnings);
     p->film = CheckedFilm(*p);
-    p->files = NameFiles(request.output.empty()
-                             ? DefaultOutput(render.input.film.filename, render.settings.scene.file)
-                             : request.output,
-                         request.report);
+    p->files = NameFilesOf(request, render.input.film);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
@@ -298,16 +305,47 @@ ExitCode RunPath(const RenderRequest& request, Job* ranks) {
     return kDone;
 }
 
-ExitCode RunRender(RenderRequest request, Job* ranks) {
-    CheckRequest(request);
-    if (request.path.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
-    SetWording(request.render, ranks);
-    request.aovs.alpha |= request.pictures.format.isTransparent;
+// Renders one image.
+ExitCode RunImage(const RenderRequest& request, Job* ranks) {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
     Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();
     return p->render.Leads() ? Write(*p, result, &session) : kDone;
+}
+
+// Renders all frames, each with a checkpoint of its own. To be resumed are those without an image,
+// and those whose checkpoint has been left.
+ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
+    if (ranks->Count() > 1)
+        throw UsageError("--frames: needs one process; give each rank frames of its own");
+    const Talk talk = TalkOf(request.render);
+    const int count = request.sequence->Count();
+    for (int number = 1; number <= count; ++number) {
+        RenderRequest frame = request;
+        const double time = request.sequence->TimeOf(number - 1);
+        frame.frameNumber = number;
+        frame.render.scene.view.frame = time;
+        CheckpointOptions& checkpoint = frame.render.checkpoint;
+        checkpoint.file = NumberedFile(checkpoint.file, number);
+        const std::string image = NumberedFile(
+            request.output.empty() ? DefaultOutput("", request.render.scene.file) : request.output,
+            number);
+        if (checkpoint.resume && IsThere(image) && !IsThere(checkpoint.file)) continue;
+        if (!request.render.quiet)
+            talk.Note(fmt::format("frame {} of {}, at {:.6g} s", number, count, time));
+        if (const ExitCode code = RunImage(frame, ranks); code != kDone) return code;
+    }
+    return kDone;
+}
+
+ExitCode RunRender(RenderRequest request, Job* ranks) {
+    CheckRequest(request);
+    if (request.path.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
+    SetWording(request.render, ranks);
+    request.aovs.alpha |= request.pictures.format.isTransparent;
+    LoadView(&request.pictures);
+    return request.sequence ? RunSequence(request, ranks) : RunImage(request, ranks);
 }
 
 }  // namespace

@@ -93,11 +93,19 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
                  "Remove the directly visible background; the PNG gets alpha");
     AddPathOptions(app, &o->path);
     AddClockOptions(app, &o->clock);
+    AddSequenceOptions(app, &o->sequence);
     AddCheckpoints(app, &o->render.checkpoint);
     app.footer("Stopping rules (--stop); a block stops\n" + RuleHelp(100) + "\n" + kFooter);
 }
 
 void CheckRequest(const RenderRequest& request) {
+    const GltfOptions& view = request.render.scene.view;
+    if (!view.frame && !request.sequence && (!view.animation.empty() || view.shutter > 0))
+        throw UsageError("--animation and --shutter need --frame or --frames");
+    if (request.sequence && request.path.pixel)
+        throw UsageError("--pixel: a path is of one image; choose it with --frame");
+    if (request.sequence && !request.clock.until.empty())
+        throw UsageError("--until: it is one moment for all frames; --time holds for each");
     if (request.path.pixel && request.guide.mode != GuideMode::Off)
         throw UsageError("--pixel: guided paths depend on all earlier samples; leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.

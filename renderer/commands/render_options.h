@@ -5,6 +5,7 @@
 #include "renderer/commands/path_printer.h"
 #include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_settings.h"
+#include "renderer/commands/sequence_options.h"
 
 namespace lull {
 
@@ -19,6 +20,8 @@ struct RenderRequest {
     bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
     PathOfSample path;  // to print, instead
+    std::optional<Sequence> sequence;
+    int frameNumber = 0;  // in the sequence, from 1; 0: there is none
 
     // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;

@@ -1,6 +1,7 @@
-// Writes PNGs other than 8-bit sRGB.
+// Writes PNGs with other bits, tones and colours than 8-bit sRGB.
 #pragma once
 
+#include "renderer/image/color_view.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/tone_map.h"
 
@@ -10,13 +11,15 @@ namespace lull {
 struct PngFormat {
     int bits = 8;  // a component, or 16
     ToneMap toneMap = ToneMap::None;
+    // Encodes the colours instead of sRGB and the tone map; null: none.
+    std::shared_ptr<const ViewTransform> view = {};
     // Rows have alpha as a fourth value, by which the colours are multiplied; in the file, as PNG
     // has it, they are not.
     bool hasAlpha = false;
     std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 
-// Write sRGB PNGs in this format, whole or not at all, otherwise as WritePng() does. Throw Error.
+// Write PNGs in this format, whole or not at all, otherwise as WritePng() does. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format);
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,

@@ -66,17 +66,25 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     return exr;
 }
 
-// Adds a word on the tone map of the PNG, and sets which channels take 16 bits.
+// Returns a word on the tones of the PNG; empty for those of sRGB.
+std::string TonesOf(const PictureFormat& wanted) {
+    if (wanted.view) return fmt::format("OpenColorIO {}", wanted.view->Name());
+    return wanted.toneMap == ToneMap::Filmic ? kFilmic : "";
+}
+
+// Adds a word on the tones of the PNG, and sets which channels take 16 bits.
 void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
-    if (wanted.toneMap == ToneMap::Filmic) exr->attributes["pngToneMap"] = kFilmic;
+    if (const std::string tones = TonesOf(wanted); !tones.empty())
+        exr->attributes["pngToneMap"] = tones;
     if (!wanted.exrHalf) return;
     for (ExrChannel& channel : exr->channels) channel.isHalf |= MayBeHalf(channel.name);
 }
 
 // Its header tells of a tone map and of the scene's exposure, in stops.
 PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
-    PngFormat format{.bits = wanted.pngBits, .toneMap = wanted.toneMap, .text = {}};
-    if (wanted.toneMap == ToneMap::Filmic) format.text["ToneMap"] = kFilmic;
+    PngFormat format{
+        .bits = wanted.pngBits, .toneMap = wanted.toneMap, .view = wanted.view, .text = {}};
+    if (const std::string tones = TonesOf(wanted); !tones.empty()) format.text["ToneMap"] = tones;
     format.hasAlpha = wanted.isTransparent;
     if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
     return format;

@@ -209,6 +209,37 @@ TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
     EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
 }
 
+// A view whose display shows half of what it is given.
+TEST_F(LayersTest, PicturesAreMappedByOpenColorIo) {
+    directory.Write("half.ocio", R"(ocio_profile_version: 1
+roles: {scene_linear: lin, default: lin}
+displays: {screen: [!<View> {name: plain, colorspace: lin}, !<View> {name: half, colorspace: dim}]}
+colorspaces:
+  - !<ColorSpace> {name: lin, bitdepth: 32f}
+  - !<ColorSpace>
+    name: dim
+    bitdepth: 32f
+    from_reference: !<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}
+)");
+    const std::string ocio = "--spp 4 --ocio " + directory.File("half.ocio");
+    Render(ocio + " --view half -o a.exr");
+    EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("pngToneMap"), "OpenColorIO screen/half");
+    const ExrImage exr = ReadExr(directory.File("a.exr"));
+    const Image png = ReadImage(directory.File("a.png"));
+    const auto& shown = std::get<std::vector<uint8_t>>(png.texels);
+    const std::vector<float>& green = exr.Find("G")->values;
+    for (size_t i = 0; i < green.size(); ++i)
+        ASSERT_NEAR(shown[3 * i + 1], 255 * std::clamp(green[i] / 2, 0.f, 1.f), 0.51f);
+    Render(ocio + " --view half --transparent --png-bits 16 -o b.exr");
+    EXPECT_EQ(ReadImage(directory.File("b.png")).channels, 4);
+    const Outcome unknown =
+        RunLull(directory, "render scene.pbrt -o c.exr " + ocio + " --view filmic");
+    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_TRUE(Contains(unknown.err, "no view \"filmic\", but: plain, half")) << unknown.err;
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio a --tone-map filmic").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio no.ocio").exitCode, 1);
+}
+
 // What a viewer has put together at the end is what is in the file.
 TEST_F(LayersTest, ViewersSeeTheImage) {
     ViewerServer server;

@@ -117,11 +117,18 @@ T EncodeSrgb(float linear) {
     return T(std::min(v, most));
 }
 
-// Encodes alpha, without a transfer function.
+// Does so without a transfer function: alpha, and what is encoded. NaN is black.
 template <typename T>
-T EncodeAlpha(float alpha) {
+T EncodeLinear(float value) {
     constexpr float most = std::numeric_limits<T>::max();
-    return T(most * std::clamp(alpha, 0.f, 1.f) + 0.5f);
+    return T(most * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
+}
+
+// Maps the colours of a row, whose pixels have `components` values, by a view.
+void ApplyView(const ViewTransform& view, size_t components, std::span<float> row) {
+    const size_t pixels = row.size() / components;
+    if (components == 3) return view.Apply(row.data(), pixels);
+    for (size_t x = 0; x < pixels; ++x) view.Apply(&row[components * x], 1);
 }
 
 // Divides the colours of a row R, G, B, A by alpha; transparent pixels are black.
@@ -143,10 +150,11 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     for (int y = 0; y < height; ++y) {
         rows(y, linear);
         if (format.hasAlpha) DivideByAlpha(linear);
+        if (format.view) ApplyView(*format.view, components, linear);
         for (size_t i = 0; i < row.size(); ++i) {
             const bool isMapped = format.toneMap == ToneMap::Filmic;
-            row[i] = i % components == 3
-                         ? EncodeAlpha<T>(linear[i])
+            row[i] = i % components == 3 || format.view
+                         ? EncodeLinear<T>(linear[i])
                          : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
         }
         writer->WriteRow(row.data());

@@ -1,0 +1,85 @@
+// Renders sequences: the frames of an animation in one run.
+#include <array>
+#include <span>
+
+#include "renderer/image/image_io.h"
+#include "tests/integration/run_lull.h"
+
+namespace lull::sequence_test {
+namespace {
+
+// A triangle that moves by 1 to the right in a second, seen by a camera.
+struct SequenceDirectory : TemporaryDirectory {
+    SequenceDirectory() {
+        constexpr std::array<float, 17> values = {0, 0, 0, 1, 0, 0, 0, 1, 0,  // positions
+                                                  0, 1,                       // seconds
+                                                  0, 0, 0, 1, 0, 0};          // translations
+        const auto bytes = std::as_bytes(std::span(values));
+        Write("moving.bin", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        Write("moving.gltf", R"({
+"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+"nodes": [{"mesh": 0}, {"camera": 0, "translation": [0.5, 0.5, 4]}],
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"buffers": [{"uri": "moving.bin", "byteLength": 68}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+               "min": [0, 0, 0], "max": [1, 1, 0]},
+              {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR",
+               "min": [0], "max": [1]},
+              {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+"animations": [{"samplers": [{"input": 1, "output": 2}],
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]})");
+    }
+
+    bool Same(const std::string& a, const std::string& b) const {
+        return ReadImage(File(a)).texels == ReadImage(File(b)).texels;
+    }
+};
+
+constexpr const char* kRender = "render moving.gltf --resolution 40x30 --spp 4 --quiet ";
+
+TEST(Sequence, IsItsFrames) {
+    const SequenceDirectory directory;
+    ExpectSuccess(directory, std::string(kRender) +
+                                 "--frames 0:0.75:4fps --shutter 0.1 -o a.exr --report a.json");
+    for (int frame = 0; frame < 3; ++frame) {
+        ExpectSuccess(directory,
+                      fmt::format("{}--frame {} --shutter 0.1 -o one.exr", kRender, 0.25 * frame));
+        EXPECT_TRUE(directory.Same(fmt::format("a.{:04}.exr", frame + 1), "one.exr")) << frame;
+        EXPECT_TRUE(
+            std::filesystem::exists(directory.File(fmt::format("a.{:04}.json", frame + 1))));
+    }
+    EXPECT_FALSE(directory.Same("a.0001.exr", "a.0003.exr"));
+    EXPECT_FALSE(std::filesystem::exists(directory.File("a.0004.exr")));
+}
+
+TEST(Sequence, GoesOnWithTheFramesThatAreLeft) {
+    const SequenceDirectory directory;
+    const std::string command =
+        std::string(kRender) + "--frames 0:0.5:4 --checkpoint c.h5 --resume";
+    ExpectSuccess(directory, command);
+    EXPECT_FALSE(std::filesystem::exists(directory.File("c.0001.h5")));
+    const auto first = std::filesystem::last_write_time(directory.File("moving.0001.exr"));
+    std::filesystem::remove(directory.File("moving.0002.exr"));
+    const Outcome again = ExpectSuccess(directory, command);
+    EXPECT_EQ(std::filesystem::last_write_time(directory.File("moving.0001.exr")), first);
+    EXPECT_TRUE(again.out.starts_with("moving.0002.exr\n")) << again.out;
+}
+
+TEST(Sequence, IsRefusedWhereItCannotBe) {
+    const SequenceDirectory directory;
+    for (const char* frames : {"0:1", "1:0:24", "0:1:0", "0:1:24mm", "0:1e9:24", "nan:1:1"})
+        EXPECT_EQ(RunLull(directory, kRender + std::string("--frames ") + frames).exitCode, 2)
+            << frames;
+    EXPECT_EQ(RunLull(directory, kRender + std::string("--frames 0:1:2 --frame 0")).exitCode, 2);
+    EXPECT_EQ(RunLull(directory, kRender + std::string("--frames 0:1:2 --until 09:00")).exitCode,
+              2);
+    EXPECT_EQ(RunLull(directory, kRender + std::string("--shutter 0.1")).exitCode, 2);
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --frames 0:1:2").exitCode, 1);
+}
+
+}  // namespace
+}  // namespace lull::sequence_test
