@@ -109,10 +109,11 @@ void CheckRequest(const RenderRequest& request) {
     if (request.path.pixel && request.guide.mode != GuideMode::Off)
         throw UsageError("--pixel: guided paths depend on all earlier samples; leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.
-    if (request.CollectsFeatures() && request.spp > 0 && request.spp < int(kLeastDenoisedSpp))
+    if (request.denoiseLayers && request.spp > 0 && request.spp < int(kLeastDenoisedSpp))
         throw UsageError(
-            fmt::format("--spp {}: {} needs at least {}, to estimate the noise", request.spp,
-                        request.denoise ? "--denoise" : "--denoise-layers", kLeastDenoisedSpp));
+            fmt::format("--spp {}: --denoise-layers needs at least {}, to estimate the "
+                        "noise",
+                        request.spp, kLeastDenoisedSpp));
 }
 
 }  // namespace lull

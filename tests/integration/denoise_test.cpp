@@ -113,7 +113,10 @@ TEST(DenoiseCommand, TakesTwoRendersOfOthers) {
 // No error is said to be 0 that nobody knows.
 TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
     const BoxDirectory directory;
-    ExpectFailure(directory, "render scene.pbrt --spp 3 --denoise -o out.exr", {"--spp 3", "4"}, 2);
+    ExpectFailure(directory, "render scene.pbrt --spp 3 --denoise-layers -o out.exr",
+                  {"--spp 3", "4"}, 2);
+    const Outcome few = ExpectSuccess(directory, "render scene.pbrt --spp 1 --denoise -o few.exr");
+    EXPECT_NE(few.err.find("fewer than 4 samples"), std::string::npos) << few.err;
     const Outcome small =
         ExpectSuccess(RunShell(directory,
                                "LULL render scene.pbrt --spp 20 --denoise --resolution 8x8 "
