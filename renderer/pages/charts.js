@@ -13,6 +13,9 @@ function drawMark(u, kind, x, y, size) {
   kind < 4 ? c.fill() : c.stroke();
 }
 
+// The same marks as characters, for legends.
+const markCharacters = "\u25cf\u25a0\u25b2\u25c6\u2715";
+
 // Joins series that have their own x into the one table that uPlot wants.
 function joinSeries(series) {
   const xs = [...new Set(series.flatMap(s => s.x))].sort((a, b) => a - b);
@@ -92,7 +95,7 @@ function drawChart(parent, series, options) {
     axes: [axis(options.xLabel, 34, true), axis(options.yLabel, 58, isLogY)],
     series: [{label: options.xLabel, value: inLegend},
       ...series.map(s => ({
-        label: s.label, stroke: () => s.colour || themeColour("--ink"), width: s.line === false ? 0 : 2, dash: s.dash, spanGaps: true,
+        label: s.mark == null ? s.label : `${markCharacters[s.mark]} ${s.label}`, stroke: () => s.colour || themeColour("--ink"), width: s.line === false ? 0 : 2, dash: s.dash, spanGaps: true,
         value: inLegend,
         points: s.mark == null ? {show: false} : {show: (u, i) => {
           const c = u.ctx, [xs, ys] = [u.data[0], u.data[i]];
