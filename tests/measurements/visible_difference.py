@@ -143,6 +143,19 @@ def best(human, choices, stops_of):
     return min(choices, key=lambda c: np.mean([critical_error(human[v], stops_of(v, c)) for v in human]))
 
 
+def interval(human, limits, stops_of, seed, draws=2000):
+    """Returns the central 95 % of the best limit, where viewpoints and their blocks are drawn again with replacement."""
+    random = np.random.default_rng(seed)
+    errors = [np.array([[critical_error([h], [s]) for h, s in zip(human[v], stops_of(v, limit))] for limit in limits])
+              for v in human]
+    found = []
+    for _ in range(draws):
+        views = random.integers(len(errors), size=len(errors))
+        total = sum(errors[v][:, random.integers(errors[v].shape[1], size=errors[v].shape[1])].mean(1) for v in views)
+        found.append(limits[int(np.argmin(total))])
+    return np.percentile(found, [2.5, 97.5])
+
+
 def correlation(a, b):
     return np.corrcoef(np.log(a), np.log(b))[0, 1] if np.std(np.log(b)) > 0 else float('nan')
 
@@ -165,8 +178,9 @@ def report(o, viewing, blocks):
     together = correlation(np.concatenate([human[v] for v in views]), np.concatenate([r[-1] for r in rows]))
     every = np.concatenate([accepted[v] for v in views])
     limit = best(human, limits, stops_of)
+    low, high = interval(human, limits, stops_of, o.seed)
     print(f'{viewing}: critical error {np.mean([r[2] for r in rows]):.1f} %, correlation of logarithms {together:.2f}, within '
-          f'viewpoints {np.mean([r[3] for r in rows]):.2f}; with one limit for all, {limit:.3g}, '
+          f'viewpoints {np.mean([r[3] for r in rows]):.2f}; with one limit for all, {limit:.3g} (95 %: {low:.2g} to {high:.2g}), '
           f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
           f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
     for v, limit, error, r, h, s, a, _ in rows:
