@@ -1,7 +1,8 @@
 #include "renderer/denoise/denoiser.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -14,9 +15,10 @@ DenoiserResult RunDenoiser(NoisyPicture picture, std::span<const PixelRect> bloc
     denoised.noisy = {};  // a large picture needs the memory
     result.blocks.resize(blocks.size());
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(size_t(0), blocks.size(), [&](size_t i) {
-            if (std::min(blocks[i].Width(), blocks[i].Height()) >= kSmallestMeasuredSide)
-                result.blocks[i] = MeasureVisibleError(denoised, error, blocks[i]);
+        ForEachIndex(int(blocks.size()), [&](int i) {
+            const PixelRect& block = blocks[size_t(i)];
+            if (std::min(block.Width(), block.Height()) >= kSmallestMeasuredSide)
+                result.blocks[size_t(i)] = MeasureVisibleError(denoised, error, block);
         });
     });
     denoised.halves = {};

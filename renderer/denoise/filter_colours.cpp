@@ -57,7 +57,7 @@ struct CandidateRows {
     // Makes the rows [y0, y1).
     void Fit(const Level& level, int y0, int y1) {
         ForEachTile(level.Width(), y0, y1, [&](const ImageTile& tile) {
-            tbb::parallel_for(0, 2, [&](int i) {
+            ForEachIndex(2, [&](int i) {
                 const auto half = i == 0 ? &Halves::a : &Halves::b;
                 const auto other = i == 0 ? &Halves::b : &Halves::a;
                 const PatchGuide guide{level.noisy.*other, level.variance};

@@ -116,8 +116,8 @@ Cutout WithMargin(const Planes& image) {
 
 Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& picture) {
     Planes pixels(variance.width, variance.height, Residual::kChannels);
-    tbb::parallel_for(0, variance.height,
-                      [&](int y) { MeasureResidual(noisy, variance, picture, y, &pixels); });
+    ForEachIndex(variance.height,
+                 [&](int y) { MeasureResidual(noisy, variance, picture, y, &pixels); });
     BlurChannel(Residual::kAround, &pixels);
     BlurChannel(Residual::kTails, &pixels);
     for (size_t i = 0; i < pixels.Area(); ++i)
@@ -178,7 +178,7 @@ void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x,
 std::vector<std::vector<Found>> Find(const Residual& residual, const std::vector<Kernel>& kernels,
                                      int width, int height) {
     std::vector<std::vector<Found>> rows{size_t(height)};
-    tbb::parallel_for(0, height, [&](int y) {
+    ForEachIndex(height, [&](int y) {
         for (int x = 0; x < width; x += kLanes)
             FindAt(residual, kernels, x, y, width, &rows[size_t(y)]);
     });
@@ -213,9 +213,13 @@ Rgb MeanResidual(const Planes& noisy, const Planes& picture, const Kernel& kerne
 void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
               const Planes& noisy, Planes* picture) {
     std::vector<Rgb> means(all.size());
-    tbb::parallel_for(size_t(0), all.size(), [&](size_t i) {
-        const Found& f = all[i];
-        means[i] = f.share * MeanResidual(noisy, *picture, kernels[f.kernel], f.x, f.y);
+    constexpr size_t kAtOnce = 64;
+    ForEachIndex(int((all.size() + kAtOnce - 1) / kAtOnce), [&](int part) {
+        const size_t first = size_t(part) * kAtOnce;
+        for (size_t i = first; i < std::min(first + kAtOnce, all.size()); ++i) {
+            const Found& f = all[i];
+            means[i] = f.share * MeanResidual(noisy, *picture, kernels[f.kernel], f.x, f.y);
+        }
     });
     Planes change(noisy.width, noisy.height, kColours), weight(noisy.width, noisy.height, 1);
     for (size_t i = 0; i < all.size(); ++i)

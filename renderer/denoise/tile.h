@@ -1,12 +1,12 @@
 // Cuts images into tiles whose pixels are computed sixteen side by side.
 #pragma once
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <Eigen/Core>
 
 #include "renderer/denoise/planes.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -36,7 +36,7 @@ template <typename Use>
 void ForEachTile(int width, int y0, int y1, const Use& use) {
     // Isolated, so that a thread that waits here takes up no other task of a render.
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(0, (width + kTileWidth - 1) / kTileWidth, [&](int i) {
+        ForEachIndex((width + kTileWidth - 1) / kTileWidth, [&](int i) {
             const int x = i * kTileWidth;
             use(ImageTile{x, y0, std::min(x + kTileWidth, width), y1});
         });

@@ -1,8 +1,5 @@
 #include "renderer/render/first_look.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -37,9 +34,7 @@ void TakeFirstLook(const SampleSource& source, const RenderOptions& options, Fil
                 source(sampler, pixel, 0, nullptr).radiance;
         }
     };
-    tbb::task_arena(ThreadCount(options.threads)).execute([&] {
-        tbb::parallel_for(0, rows, takeRow);
-    });
+    RunWithThreads(options.threads, [&] { ForEachIndex(rows, takeRow); });
     if (!isCancelled()) film->SetFirstLook(std::move(look));
 }
 
