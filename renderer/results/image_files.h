@@ -12,7 +12,7 @@ namespace lull {
 
 // How pictures are stored.
 struct PictureFormat {
-    ToneMap toneMap = ToneMap::None;                  // of the PNG
+    ToneMap toneMap = ToneMap::None;                 // of the PNG
     std::shared_ptr<const ViewTransform> view = {};  // of the PNG, instead; null: none
     int pngBits = 8;
     // Colours and normals of the EXR take 16 bits; depths, positions, numbers and counts 32.
