@@ -15,6 +15,12 @@ class GuideRecord;
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
 
+// How many samples the strategies of bidirectional path tracing take for one of a pixel.
+struct BdptShares {
+    float lightPaths = 0;   // that are seen from the camera, in [0, 1]
+    float connections = 1;  // subpaths from lights to connect to, in (0, 1]
+};
+
 // How paths are traced. Its pointees must outlive it.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
@@ -29,6 +35,7 @@ struct PathOptions {
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;
+    BdptShares shares = {};  // of scenes with a BdptIntegrator
 };
 
 struct PathSample {

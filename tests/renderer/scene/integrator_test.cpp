@@ -16,7 +16,7 @@ Integrator Read(const std::string& directive, Warnings* warnings, int maxDepth =
     Warnings ofParser;
     const Description description =
         ParsePbrt(directory.Write("test.pbrt", directive + "\nWorldBegin\nWorldEnd\n"), ofParser);
-    return MakeIntegrator(description.integrator, maxDepth, isVolumetric, *warnings);
+    return MakeIntegrator(description.integrator, maxDepth, isVolumetric, nullptr, *warnings);
 }
 
 TEST(Integrator, IsPathUnlessTheSceneSays) {
