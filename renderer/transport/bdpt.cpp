@@ -35,11 +35,10 @@ class Vertices {
     Vertices& operator=(const Vertices&) = delete;
 
     template <typename... Arguments>
-    const SubpathVertex& Add(Arguments&&... arguments) {
+    SubpathVertex& Add(Arguments&&... arguments) {
         return *new (&storage[size_t(count++) * sizeof(SubpathVertex)])
             SubpathVertex(std::forward<Arguments>(arguments)...);
     }
-    void DropLast() { --count; }
     int Count() const { return count; }
     const SubpathVertex& operator[](int i) const {
         return *std::launder(reinterpret_cast<const SubpathVertex*>(
@@ -70,8 +69,8 @@ double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const Emitt
     return density / double(ray.density.origin);
 }
 
-// Follows light from a light; calls visit(vertex, bounces) with each surface that it comes to, of
-// as many bounces at most, where `place` makes the vertex. Stops where that returns false.
+// Follows light from a light; calls visit(vertex, hit) with each surface that it comes to, of as many
+// bounces at most, where `place` makes the vertex of the hit.
 template <typename Place, typename Visit>
 void FollowLight(const Context& context, int mostBounces, const Place& place, const Visit& visit) {
     const Scene& scene = context.scene;
@@ -100,9 +99,10 @@ void FollowLight(const Context& context, int mostBounces, const Place& place, co
                               context.time);
         Arrival arrival = Arrive(stride, hit.p, hit.n, context.Connected(stride.connects));
         if (!(arrival.density > 0)) return;
-        const SubpathVertex& v = place(hit, stride.beta, arrival);
-        if (bounces == 1) const_cast<SubpathVertex&>(v).arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
-        if (!visit(v, bounces) || bounces == mostBounces) return;
+        SubpathVertex& v = place(hit, stride.beta, arrival);
+        if (bounces == 1) v.arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
+        visit(v, hit);
+        if (bounces == mostBounces) return;
         bool isSpecular, isTransmission;
         if (!Scatter(Origin::Light, v, sampler.Get2D(), &stride, &isSpecular, &isTransmission) ||
             !SurvivesRoulette(stride.beta.maxCoeff() / brightest, bounces,
@@ -216,8 +216,8 @@ class LightSubpath {
         FollowLight(
             context, mostBounces,
             [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
-                -> const SubpathVertex& { return vertices.Add(context.scene, hit, beta, arrival); },
-            [](const SubpathVertex&, int) { return true; });
+                -> SubpathVertex& { return vertices.Add(context.scene, hit, beta, arrival); },
+            [](const SubpathVertex&, const SurfaceInteraction&) {});
         return vertices;
     }
 
@@ -237,13 +237,16 @@ template <typename Recorder>
     LightChoice choice;  // at the last vertex
     Stride stride;
     stride.ray = start.ray;
+    // Of a camera whose transform scales, rays are not of unit length; recorders know them so.
+    const float length = start.ray.d.norm();
+    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length;
     stride.beta = Rgb::Ones();
     stride.p = start.ray.o;
-    stride.n = start.ray.d;
+    stride.n = stride.ray.d;
     stride.connects = false;
     if (context.lightPaths > 0)
         stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
-    Path path{.ray = start.ray};  // as recorders know it
+    Path path{.ray = start.ray};  // for recorders
     Rgb L = Rgb::Zero();
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
@@ -265,6 +268,7 @@ template <typename Recorder>
         if (!(arrival.density > 0)) break;
         if (hit.areaLight >= 0)
             L += stride.beta * EmittedLight(context, stride, hit, found, arrival, choice);
+        if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted()) break;
 
@@ -324,6 +328,63 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
     return {Follow(context, start, recorder), false};
 }
 
+namespace {
+
+// Shows a vertex of a light path to the camera.
+class Onlooker {
+  public:
+    Onlooker(const Context& context, const std::function<void(const Splat&)>& splat)
+        : context(context),
+          splat(splat),
+          size(context.scene.film.resolution.cast<float>()),
+          reach(context.scene.filter.Radius()) {}
+
+    void Show(const SubpathVertex& v, const SurfaceInteraction& hit) {
+        if (!v.Connects()) return;
+        const Scene& scene = context.scene;
+        CameraSample at;
+        at.time = context.time;
+        if (scene.camera.HasLens()) at.lens = context.sampler.Get2D();
+        const auto view = ViewOf(scene.camera, hit.p, at.lens, at.time);
+        if (!view || (view->film.array() < -reach.array()).any() ||
+            (view->film.array() > (size + reach).array()).any())
+            return;
+        at.film = view->film;
+        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint))
+            return Add(v, *view);
+        SurfaceInteraction seen = hit;
+        ComputeFootprint(scene.camera, at, &seen);
+        Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view);
+    }
+
+  private:
+    void Add(const SubpathVertex& v, const CameraView& view) {
+        const Scene& scene = context.scene;
+        const Vec3f d = view.lens - v.hit.p;
+        const float distance2 = d.squaredNorm();
+        const Vec3f w = d / std::sqrt(distance2);
+        const BsdfValue value = v.TowardsCamera(w);
+        Rgb L = value.f * v.beta * (view.perSolidAngle / distance2);
+        if (IsBlack(L) || !IsFinite(L)) return;
+        const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
+        if (scene.accelerator.Occluded({origin, view.lens - origin, 1}, context.time)) return;
+        const double seen = double(view.perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
+        const double samples = context.lightPaths;
+        L *= float(samples / (Sqr(samples) + Sqr(seen) * v.arrival.Sum(value.pdf)));
+        const float luminance = Luminance(L);
+        if (luminance > scene.film.maxSampleLuminance)
+            L *= scene.film.maxSampleLuminance / luminance;
+        L *= scene.film.scale;
+        if (IsFinite(L)) splat({view.film, L});
+    }
+
+    const Context& context;
+    const std::function<void(const Splat&)>& splat;
+    const Vec2f size, reach;  // of the image and the filter, pixels
+};
+
+}  // namespace
+
 void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampler, uint32_t round,
                     uint32_t index, const std::function<void(const Splat&)>& splat) {
     // Numbers of no pixel: one Sobol sequence for each round.
@@ -335,42 +396,13 @@ void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampl
                           time,
                           LightPathCount(scene, shares),
                           double(shares.connections)};
-    const Vec2f size = scene.film.resolution.cast<float>(), reach = scene.filter.Radius();
-    const auto look = [&](const SubpathVertex& v, int) {
-        if (!v.Connects()) return true;
-        const Vec2f lens = scene.camera.HasLens() ? sampler.Get2D() : Vec2f(0.5f, 0.5f);
-        const auto view = ViewOf(scene.camera, v.hit.p, lens, time);
-        if (!view || (view->film.array() < -reach.array()).any() ||
-            (view->film.array() > (size + reach).array()).any())
-            return true;
-        const Vec3f d = view->lens - v.hit.p;
-        const float distance2 = d.squaredNorm();
-        const Vec3f w = d / std::sqrt(distance2);
-        const BsdfValue value = v.TowardsCamera(w);
-        Rgb L = value.f * v.beta * (view->perSolidAngle / distance2);
-        if (IsBlack(L) || !IsFinite(L)) return true;
-        const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
-        if (scene.accelerator.Occluded({origin, view->lens - origin, 1}, time)) return true;
-        const double seen =
-            double(view->perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
-        const double samples = context.lightPaths;
-        const double others = Sqr(seen) * v.arrival.Sum(value.pdf);
-        L *= float(samples / (Sqr(samples) + others));
-        const float luminance = Luminance(L);
-        if (luminance > scene.film.maxSampleLuminance)
-            L *= scene.film.maxSampleLuminance / luminance;
-        L *= scene.film.scale;
-        if (IsFinite(L)) splat({view->film, L});
-        return true;
-    };
+    Onlooker onlooker(context, splat);
     alignas(SubpathVertex) std::byte storage[sizeof(SubpathVertex)];
     FollowLight(
         context, context.integrator.maxDepth,
-        [&](const SurfaceInteraction& hit, const Rgb& beta,
-            const Arrival& arrival) -> const SubpathVertex& {
-            return *new (storage) SubpathVertex(scene, hit, beta, arrival);
-        },
-        look);
+        [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
+            -> SubpathVertex& { return *new (storage) SubpathVertex(scene, hit, beta, arrival); },
+        [&](const SubpathVertex& v, const SurfaceInteraction& hit) { onlooker.Show(v, hit); });
 }
 
 }  // namespace lull

@@ -21,7 +21,7 @@ namespace lull {
 
 // The way of a subpath from its last vertex to the next.
 struct Stride {
-    Ray ray;              // unit direction
+    Ray ray;              // of unit direction
     Rgb beta;             // radiance, or power, over the density of the subpath
     float pdf = 1;        // of the direction, 1/sr; from lights at infinity 1/m^2 across it
     Vec3f p, n;           // the last vertex; n zero if it has none

@@ -37,9 +37,9 @@ Scenes Both(const std::string& file, int size, int maxDepth) {
 Scenes BothOf(const std::string& world, int size, int maxDepth,
               const std::string& camera = "LookAt 0 0 -3  0 0 0  0 1 0\n"
                                           "Camera \"perspective\" \"float fov\" [60]\n") {
-    const std::string file =
-        TemporaryDirectory().Write("test.pbrt", WorldText(world, camera + "PixelFilter \"box\"\n"));
-    return Both(file, size, maxDepth);
+    const TemporaryDirectory folder;
+    return Both(folder.Write("test.pbrt", WorldText(world, camera + "PixelFilter \"box\"\n")), size,
+                maxDepth);
 }
 
 // Expects no more blocks beyond 3 standard errors than chance has, and the total within 4.
@@ -72,7 +72,7 @@ void Compare(const Scenes& scenes, int spp, int pictures, const std::string& nam
                                shares.connections));
 }
 
-constexpr BdptShares kThree[] = {kFromCamera, kAll, kFew};
+constexpr BdptShares kThree[] = {kFromCamera, kAll, kFew, kOnlyLightPaths};
 
 const std::string kBox =
     "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Lit{"Area", "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
                     "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
-                    "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] \"point P\" [-1 1.5 -1 0 1.5 -1 0 1.5 0 -1 1.5 0]\n"
+                    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 1.5 -1 0 1.5 0 -1 1.5 0]\n"
                     "AttributeEnd\n"},
         Lit{"TwoSided", "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"bool twosided\" [\"true\"]\n"
                         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 .5 -1 0 .5 0 -1 1.5 0]\n"
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BdptCameras,
     testing::Values(
         Lens{"Lens", "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] \"float lensradius\" [.2] \"float focaldistance\" [2.5]\n"},
-        Lens{"Shifted", "Scale -2 2 2 LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] \"float screenwindow\" [-.7 .8 -.3 1]\n"},
+        Lens{"Shifted", "Scale -1 1 1 LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] \"float screenwindow\" [-.7 .8 -.3 1]\n"},
         Lens{"Orthographic", "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1.5 1.5]\n"},
         Lens{"Environment", "LookAt 0 0 -1.5  0 0 0  0 1 0\nCamera \"environment\"\n"}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -156,7 +156,8 @@ TEST_P(BdptMaterials, HaveTheMeanOfPaths) {
         "Shape \"sphere\" \"float radius\" [.4] AttributeEnd\n" + kBox +
         std::string(GetParam().material) +
         "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] TransformEnd\n";
-    Compare(BothOf(world, 32, 5), 32, 32, GetParam().name, kThree);
+    const int more = std::getenv("LULL_MORE") ? std::atoi(std::getenv("LULL_MORE")) : 1;
+    Compare(BothOf(world, 32, 5), 32, 32*more, GetParam().name, kThree);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -171,6 +172,36 @@ INSTANTIATE_TEST_SUITE_P(
         Matter{"Translucent", "Material \"translucent\""},
         Matter{"Disney", "Material \"disney\" \"rgb color\" [.6 .3 .2] \"float metallic\" [.3] \"float clearcoat\" [.5] \"float sheen\" [.4]"},
         Matter{"Mix", "MakeNamedMaterial \"a\" \"string type\" \"mirror\" MakeNamedMaterial \"b\" \"string type\" \"matte\" Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\""}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+struct Room {
+    const char* name;
+    std::string file;
+    int maxDepth, spp;
+};
+
+class BdptScenes : public testing::TestWithParam<Room> {};
+
+// Where paths find all light, so do all strategies together.
+TEST_P(BdptScenes, HaveTheMeanOfPaths) {
+    const auto& [name, own, maxDepth, spp] = GetParam();
+    const std::string file = own.starts_with("/") ? own : (SharedFolder() / own).string();
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "scenes of others are not in ../shared: " << file;
+    constexpr BdptShares all[] = {kFromCamera, kAll, kFew};
+    Compare(Both(file, 40, maxDepth), spp, 16, name, all);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, BdptScenes,
+    testing::Values(Room{"Glossy", LULL_SCENES_DIR "/glossy/scene.pbrt", 4, 16},
+                    Room{"ManyLights", LULL_SCENES_DIR "/many-lights/scene.pbrt", 3, 8},
+                    Room{"Textured", LULL_SCENES_DIR "/textured/scene.pbrt", 3, 16},
+                    Room{"CornellBox", "pbrt-scenes/cornell-box/scene.pbrt", 5, 16},
+                    Room{"VeachMis", "pbrt-scenes/veach-mis/scene.pbrt", 4, 16},
+                    Room{"Staircase2", "pbrt-scenes/staircase2/scene.pbrt", 4, 16},
+                    Room{"Matpreview", "pbrt-scenes/matpreview/scene.pbrt", 4, 16},
+                    Room{"Killeroo", "pbrt-scenes/killeroo-simple/scene.pbrt", 4, 16}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
