@@ -26,6 +26,7 @@ struct Provenance {
     RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
     int maxDepth = 0;
+    std::string integrator = {};  // empty: paths from the camera alone
     int threads = 0;  // 0: all
     bool substitute = false;
     TextureFiltering filtering = TextureFiltering::Bilinear;

@@ -47,6 +47,10 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         context.layers.features = &*features;
         options.identity["features"] = "yes";
     }
+    if (IsBidirectional(scene.integrator)) {
+        light.emplace(scene, region, options.render.sampler, options.render.seed);
+        context.light = &*light;
+    }
     if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
     learner.emplace(scene,
                     LearningOptions{.mode = options.guide.mode,
@@ -129,7 +133,9 @@ void Session::SetSource() {
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
     context.source =
-        learner ? SamplesOf(scene, *learner, paths.throughSpecular) : SamplesOf(scene, paths);
+        learner ? SamplesOf(scene, *learner, paths.throughSpecular)
+        : light ? SamplesOf(scene, *light, paths.throughSpecular)
+                : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the

@@ -8,6 +8,7 @@
 
 #include "renderer/render/checkpoint.h"
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -92,6 +93,7 @@ class Session {
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
+    std::optional<LightRounds> light;
     RenderContext context;
 };
 

@@ -1,0 +1,101 @@
+#include "renderer/render/light_rounds.h"
+
+#include <tbb/parallel_for.h>
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
+
+}  // namespace
+
+LightRounds::LightRounds(const Scene& scene, const PixelRect& region, SamplerKind kind,
+                         uint64_t seed)
+    : scene(scene),
+      region(region),
+      kind(kind),
+      seed(seed),
+      shares{.lightPaths = 1, .connections = 1},
+      unit(FindUnit()),
+      plane(region, unit) {}
+
+// Returns about the mean of what light paths bring, from a few of them.
+double LightRounds::FindUnit() const {
+    constexpr uint32_t kMost = 1 << 16;
+    constexpr int kEnough = 256;
+    if (LightPathCount(scene, shares) == 0) return 1;
+    Sampler sampler(kind, seed);
+    double sum = 0;
+    int count = 0;
+    for (uint32_t i = 0; i < kMost && count < kEnough; ++i)
+        TraceLightPath(scene, shares, sampler, 0, i, [&](const Splat& splat) {
+            const double y = double(Luminance(splat.radiance));
+            if (!(y > 0)) return;
+            sum += y;
+            ++count;
+        });
+    if (count == 0) return double(scene.film.scale);
+    return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
+}
+
+void LightRounds::Begin(int from, int to) {
+    first = from;
+    end = to;
+    plane = LightPlane(region, unit);
+}
+
+bool LightRounds::Trace(const std::function<bool()>& isCancelled) {
+    const auto paths = uint32_t(LightPathCount(scene, shares));
+    const uint32_t chunks = (paths + kChunk - 1) / kChunk;
+    std::atomic<bool> isWhole = true;
+    tbb::parallel_for(uint64_t(0), uint64_t(chunks) * uint64_t(end - first), [&](uint64_t i) {
+        if (isCancelled && isCancelled()) isWhole = false;
+        if (!isWhole) return;
+        const auto begin = uint32_t(i % chunks) * kChunk;
+        TraceSome(uint32_t(first) + uint32_t(i / chunks), begin, std::min(begin + kChunk, paths));
+    });
+    return isWhole;
+}
+
+void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
+    Sampler sampler(kind, seed);
+    const Filter& filter = scene.filter;
+    const Vec2f radius = filter.Radius(), middle(0.5f, 0.5f);
+    const bool inHalf = InHalf(sample);
+    const std::function<void(const Splat&)> splat = [&](const Splat& s) {
+        const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
+        const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
+        const Vec2i to = high.array().floor().cast<int>().matrix().cwiseMin(region.max -
+                                                                             Vec2i(1, 1));
+        for (int y = from.y(); y <= to.y(); ++y)
+            for (int x = from.x(); x <= to.x(); ++x) {
+                const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
+                if (weight != 0) plane.Add({x, y}, s.radiance * weight, inHalf);
+            }
+    };
+    for (uint32_t i = begin; i < stop; ++i)
+        TraceLightPath(scene, shares, sampler, sample, i, splat);
+}
+
+void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel* sums,
+                        const Layers& layers) const {
+    const LightPlane::Sums light = plane.SumsAt(p);
+    // Passes of a render that goes on with another rule may begin within a round.
+    const double samples = double(end) - double(from), share = samples / double(end - first);
+    for (size_t c = 0; c < 3; ++c) {
+        sums->sum[c] += light.sum[c] * share;
+        sums->halfSum[c] += light.halfSum[c] * share;
+    }
+    if (!layers.aovs && !layers.features) return;
+    // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
+    // process.
+    const double each = (0.212671 * light.sum[0] + 0.715160 * light.sum[1] +
+                         0.072169 * light.sum[2]) / double(end - first);
+    const double squares =
+        light.squares * share + 2 * each * camera + samples * each * each;
+    if (layers.aovs) layers.aovs->At(p).squares += squares;
+    if (layers.features) layers.features->At(p).squares += float(squares);
+}
+
+}  // namespace lull
