@@ -37,6 +37,7 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
                 sum += y;
                 squares += Sqr(y);
                 spread->vertices += sample.vertices;
+                spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
             if (end > first) finish(pixel, first, &sums);
@@ -100,8 +101,7 @@ bool Executor::IsPauseDue() const {
 }
 
 void Executor::BeginLight() {
-    const auto begin = schedule.Locked([](const Schedule& s) { return s.LeastSpp(); });
-    context.light->Begin(begin, PassEndAfter(begin, schedule.Unlocked().Options()));
+    context.light->Begin(schedule.Unlocked());
     schedule.BeginRound(context.light->End());
     isLit = context.light->Trace([this] { return IsCancelled(); });
 }
@@ -109,6 +109,7 @@ void Executor::BeginLight() {
 bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
     if (context.light && !IsCancelled() && schedule.IsRoundOver()) {
+        context.light->Learn(*context.film);
         BeginLight();
         return true;
     }
@@ -145,7 +146,9 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
     SampleSpread* spread =
-        context.learner ? context.learner->SpreadOf(*film, tile.pixels) : nullptr;
+        context.learner ? context.learner->SpreadOf(*film, tile.pixels)
+        : context.light ? context.light->SpreadOf(*film, tile.pixels)
+                        : nullptr;
     const auto render = [&](const auto& take) {
         if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
         return RenderTile(take, tile, sampler, film, spread,

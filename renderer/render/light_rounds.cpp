@@ -8,15 +8,30 @@ namespace {
 
 constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
 
+// Shares below which no strategy falls: it has to be seen where it would bring much.
+constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.05f;
+// Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
+// with the light that is sampled at their vertices (renderer/docs/bdpt.md).
+constexpr double kCostOfPath = 0.5, kCostOfConnections = 1;
+
+// Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over
+// `cost`, has it beside the variance of camera's subpaths, whose cost is 1.
+float Moved(float share, double variance, double cost, double ofCamera, float least) {
+    if (!(ofCamera > 0)) return share;
+    const double best = std::sqrt(variance / cost / ofCamera);
+    return std::clamp(float(std::sqrt(double(share) * best)), least, 1.f);
+}
+
 }  // namespace
 
-LightRounds::LightRounds(const Scene& scene, const PixelRect& region, SamplerKind kind,
-                         uint64_t seed)
+LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind, uint64_t seed)
     : scene(scene),
-      region(region),
+      region(film.Region()),
       kind(kind),
       seed(seed),
-      shares{.lightPaths = 1, .connections = 1},
+      learned{.lightPaths = 1, .connections = 1},
+      shares(learned),
+      spreads(film.TileCount()),
       unit(FindUnit()),
       plane(region, unit) {}
 
@@ -39,9 +54,17 @@ double LightRounds::FindUnit() const {
     return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
 }
 
-void LightRounds::Begin(int from, int to) {
-    first = from;
-    end = to;
+// Blocks that have stopped in the round were active when it began.
+void LightRounds::Begin(const Schedule& schedule) {
+    first = schedule.LeastSpp();
+    end = PassEndAfter(first, schedule.Options());
+    int64_t active = 0;
+    for (const Block& block : schedule.Blocks())
+        if (!block.stopped || block.spp > first) active += block.pixels.Area();
+    const double part = double(active) / double(std::max<int64_t>(1, region.Area()));
+    shares = learned;
+    shares.lightPaths =
+        std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
     plane = LightPlane(region, unit);
 }
 
@@ -96,6 +119,54 @@ void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel*
         light.squares * share + 2 * each * camera + samples * each * each;
     if (layers.aovs) layers.aovs->At(p).squares += squares;
     if (layers.features) layers.features->At(p).squares += float(squares);
+}
+
+void LightRounds::Learn(const Film& film) {
+    // Sums over tiles, by the square of their brightness.
+    std::vector<double> light(spreads.size(), 0), brightness(spreads.size(), 0);
+    std::vector<int> pixels(spreads.size(), 0);
+    double mean = 0;
+    for (int y = region.min.y(); y < region.max.y(); ++y)
+        for (int x = region.min.x(); x < region.max.x(); ++x) {
+            const size_t tile = film.TileAt({x, y});
+            const double l = double(Luminance(film.MeanAt({x, y})));
+            light[tile] += plane.SumsAt({x, y}).squares;
+            brightness[tile] += l;
+            ++pixels[tile];
+            mean += l / double(region.Area());
+        }
+    double ofCamera = 0, ofConnections = 0, ofPaths = 0;  // variances of a sample
+    for (size_t i = 0; i < spreads.size(); ++i) {
+        const SampleSpread& spread = spreads[i];
+        if (spread.freedom <= 0) continue;
+        const double l = brightness[i] / pixels[i] + 0.1 * mean, weight = pixels[i] / (l * l);
+        if (!(weight > 0 && weight < double(kInfinity))) continue;
+        const double samples = double(spread.samples);
+        ofCamera += weight * spread.squares / double(spread.freedom);
+        ofConnections += weight * spread.connected / samples;
+        ofPaths += weight * light[i] / samples;
+    }
+    spreads.assign(spreads.size(), {});
+    if (!(ofCamera > 0)) return;
+    const double rest = std::max(ofCamera - ofConnections, 0.1 * ofCamera);
+    learned.connections =
+        Moved(learned.connections, ofConnections * double(shares.connections), kCostOfConnections,
+              rest, kLeastConnections);
+    learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(shares.lightPaths), kCostOfPath,
+                               ofCamera, kLeastPaths);
+}
+
+std::vector<std::byte> LightRounds::Save() const {
+    StateWriter writer;
+    writer.Put(learned);
+    writer.PutAll(std::span(spreads));
+    return std::move(writer.bytes);
+}
+
+void LightRounds::Take(std::span<const std::byte> bytes) {
+    StateReader reader(bytes);
+    learned = reader.Get<BdptShares>();
+    reader.GetAll(std::span(spreads));
 }
 
 }  // namespace lull

@@ -8,7 +8,6 @@
 
 #include "renderer/render/checkpoint.h"
 #include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -53,6 +52,7 @@ class Session {
   public:
     // The scene must outlive it. Where it cannot be guided it is not, see Guidance().
     Session(const Scene&, const PixelRect& region, SessionOptions);
+    ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
@@ -93,7 +93,7 @@ class Session {
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
-    std::optional<LightRounds> light;
+    std::unique_ptr<LightRounds> light;
     RenderContext context;
 };
 

@@ -227,9 +227,10 @@ class LightSubpath {
     Vertices vertices;
 };
 
-// Follows the camera's ray, and returns its radiance.
+// Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
 template <typename Recorder>
-[[gnu::noinline]] Rgb Follow(const Context& context, const SampleStart& start, Recorder& recorder) {
+[[gnu::noinline]] Rgb Follow(const Context& context, const SampleStart& start, Recorder& recorder,
+                             Rgb* connected) {
     const Scene& scene = context.scene;
     const int maxDepth = context.integrator.maxDepth;
     const bool canConnect = scene.emission->Any() && context.connections > 0;
@@ -247,7 +248,7 @@ template <typename Recorder>
     if (context.lightPaths > 0)
         stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
     Path path{.ray = start.ray};  // for recorders
-    Rgb L = Rgb::Zero();
+    Rgb L = Rgb::Zero();  // without connections
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
         Hit found;
@@ -282,7 +283,8 @@ template <typename Recorder>
             if (canConnect && left > 0) {
                 const Vertices& vertices = fromLight.All(left);
                 for (int i = 0; i < std::min(left, vertices.Count()); ++i)
-                    if (vertices[i].Connects()) L += v.beta * ConnectedLight(context, v, vertices[i]);
+                    if (vertices[i].Connects())
+                        *connected += v.beta * ConnectedLight(context, v, vertices[i]);
             }
         }
         bool isSpecular, isTransmission;
@@ -301,7 +303,7 @@ template <typename Recorder>
         path.beta = stride.beta;
     }
     recorder.End(path);
-    return L;
+    return L + *connected;
 }
 
 }  // namespace
@@ -320,12 +322,15 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
                           start.camera.time,
                           LightPathCount(scene, options.shares),
                           double(options.shares.connections)};
-    if (!firstHit) {
-        NoRecorder nobodyAsks;
-        return {Follow(context, start, nobodyAsks), false};
-    }
-    FirstHitRecorder recorder(scene, options, start.ray.d, start.camera.time, firstHit);
-    return {Follow(context, start, recorder), false};
+    Rgb connected = Rgb::Zero();
+    const auto follow = [&](auto recorder) {
+        PathSample sample{Follow(context, start, recorder, &connected), false};
+        const float luminance = Luminance(sample.radiance);
+        if (luminance > 0) sample.connected = Luminance(connected) / luminance;
+        return sample;
+    };
+    if (!firstHit) return follow(NoRecorder());
+    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, firstHit));
 }
 
 namespace {

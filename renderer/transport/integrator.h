@@ -42,6 +42,9 @@ struct PathSample {
     Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
     bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
     int vertices = 0;  // of the path, without the camera; of guided paths alone
+    // The share of the luminance that connections to subpaths from lights have found; of
+    // BdptIntegrator alone.
+    float connected = 0;
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,
