@@ -32,7 +32,8 @@ struct SceneOptions {
     double environmentRotation = 0, exposure = 0;
 };
 
-// Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute, --filtering, --exposure,
+// Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
+// --filtering, --exposure,
 // --environment, --environment-rotation, --camera, --orbit, --frame, --animation, --shutter,
 // --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);

@@ -145,10 +145,9 @@ void Executor::RunTile() {
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
-    SampleSpread* spread =
-        context.learner ? context.learner->SpreadOf(*film, tile.pixels)
-        : context.light ? context.light->SpreadOf(*film, tile.pixels)
-                        : nullptr;
+    SampleSpread* spread = context.learner ? context.learner->SpreadOf(*film, tile.pixels)
+                           : context.light ? context.light->SpreadOf(*film, tile.pixels)
+                                           : nullptr;
     const auto render = [&](const auto& take) {
         if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
         return RenderTile(take, tile, sampler, film, spread,

@@ -9,10 +9,13 @@ namespace {
 constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
 
 // Shares below which no strategy falls: it has to be seen where it would bring much.
-constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.05f;
+constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.03f;
+// With few connections the weights leave to other strategies all that these can find as well: only
+// the rest makes them more.
+constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
 // Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
 // with the light that is sampled at their vertices (renderer/docs/bdpt.md).
-constexpr double kCostOfPath = 0.5, kCostOfConnections = 1;
+constexpr double kCostOfPath = 1, kCostOfConnections = 2.5;
 
 // Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over
 // `cost`, has it beside the variance of camera's subpaths, whose cost is 1.
@@ -29,7 +32,7 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
       region(film.Region()),
       kind(kind),
       seed(seed),
-      learned{.lightPaths = 1, .connections = 1},
+      learned(kFirst),
       shares(learned),
       spreads(film.TileCount()),
       unit(FindUnit()),
@@ -63,8 +66,7 @@ void LightRounds::Begin(const Schedule& schedule) {
         if (!block.stopped || block.spp > first) active += block.pixels.Area();
     const double part = double(active) / double(std::max<int64_t>(1, region.Area()));
     shares = learned;
-    shares.lightPaths =
-        std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
+    shares.lightPaths = std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
     plane = LightPlane(region, unit);
 }
 
@@ -89,8 +91,8 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
     const std::function<void(const Splat&)> splat = [&](const Splat& s) {
         const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
         const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
-        const Vec2i to = high.array().floor().cast<int>().matrix().cwiseMin(region.max -
-                                                                             Vec2i(1, 1));
+        const Vec2i to =
+            high.array().floor().cast<int>().matrix().cwiseMin(region.max - Vec2i(1, 1));
         for (int y = from.y(); y <= to.y(); ++y)
             for (int x = from.x(); x <= to.x(); ++x) {
                 const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
@@ -113,10 +115,10 @@ void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel*
     if (!layers.aovs && !layers.features) return;
     // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
     // process.
-    const double each = (0.212671 * light.sum[0] + 0.715160 * light.sum[1] +
-                         0.072169 * light.sum[2]) / double(end - first);
-    const double squares =
-        light.squares * share + 2 * each * camera + samples * each * each;
+    const double each =
+        (0.212671 * light.sum[0] + 0.715160 * light.sum[1] + 0.072169 * light.sum[2]) /
+        double(end - first);
+    const double squares = light.squares * share + 2 * each * camera + samples * each * each;
     if (layers.aovs) layers.aovs->At(p).squares += squares;
     if (layers.features) layers.features->At(p).squares += float(squares);
 }
@@ -149,9 +151,8 @@ void LightRounds::Learn(const Film& film) {
     spreads.assign(spreads.size(), {});
     if (!(ofCamera > 0)) return;
     const double rest = std::max(ofCamera - ofConnections, 0.1 * ofCamera);
-    learned.connections =
-        Moved(learned.connections, ofConnections * double(shares.connections), kCostOfConnections,
-              rest, kLeastConnections);
+    learned.connections = Moved(learned.connections, ofConnections * double(shares.connections),
+                                kCostOfConnections, rest, kLeastConnections);
     learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(shares.lightPaths), kCostOfPath,
                                ofCamera, kLeastPaths);
 }

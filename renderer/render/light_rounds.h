@@ -66,7 +66,7 @@ class LightRounds {
     const PixelRect region;
     SamplerKind kind;
     uint64_t seed;
-    BdptShares learned, shares;  // for all pixels, and of this round
+    BdptShares learned, shares;         // for all pixels, and of this round
     std::vector<SampleSpread> spreads;  // of the round, by tile
     int first = 0, end = 0;
     double unit = 1;

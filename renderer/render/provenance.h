@@ -27,7 +27,7 @@ struct Provenance {
     ScheduleOptions schedule;
     int maxDepth = 0;
     std::string integrator = {};  // empty: paths from the camera alone
-    int threads = 0;  // 0: all
+    int threads = 0;              // 0: all
     bool substitute = false;
     TextureFiltering filtering = TextureFiltering::Bilinear;
     Vec2i resolution = {0, 0};

@@ -49,8 +49,8 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         options.identity["features"] = "yes";
     }
     if (IsBidirectional(scene.integrator)) {
-        light = std::make_unique<LightRounds>(scene, film, options.render.sampler,
-                                              options.render.seed);
+        light =
+            std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
         context.light = light.get();
     }
     if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
@@ -136,10 +136,9 @@ void Session::SetSource() {
     // the same hits, take precedence.
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
-    context.source =
-        learner ? SamplesOf(scene, *learner, paths.throughSpecular)
-        : light ? SamplesOf(scene, *light, paths.throughSpecular)
-                : SamplesOf(scene, paths);
+    context.source = learner ? SamplesOf(scene, *learner, paths.throughSpecular)
+                     : light ? SamplesOf(scene, *light, paths.throughSpecular)
+                             : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the

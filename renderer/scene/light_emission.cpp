@@ -38,9 +38,11 @@ Cone ConeOf(const ProjectionLight& light) {
             std::min(1 / std::sqrt(1 + Sqr(1.001f * tangent)), 1 - 1e-6f)};
 }
 
-// Returns the luminance of a light's power, for its choice; 0 if float cannot hold it.
+// Returns the luminance of a light's power, for its choice; 0 if float cannot hold it. Of the sky,
+// Power() is that from one steradian.
 float Weight(const Light& light) {
-    const float power = Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
+    float power = Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
+    if (TypeOf(light) == LightType::Infinite) power *= 4 * kPi;
     return power > 0 && std::isfinite(power) ? power : 0;
 }
 

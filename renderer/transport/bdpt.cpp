@@ -41,8 +41,8 @@ class Vertices {
     }
     int Count() const { return count; }
     const SubpathVertex& operator[](int i) const {
-        return *std::launder(reinterpret_cast<const SubpathVertex*>(
-            &storage[size_t(i) * sizeof(SubpathVertex)]));
+        return *std::launder(
+            reinterpret_cast<const SubpathVertex*>(&storage[size_t(i) * sizeof(SubpathVertex)]));
     }
 
   private:
@@ -69,8 +69,8 @@ double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const Emitt
     return density / double(ray.density.origin);
 }
 
-// Follows light from a light; calls visit(vertex, hit) with each surface that it comes to, of as many
-// bounces at most, where `place` makes the vertex of the hit.
+// Follows light from a light; calls visit(vertex, hit) with each surface that it comes to, of as
+// many bounces at most, where `place` makes the vertex of the hit.
 template <typename Place, typename Visit>
 void FollowLight(const Context& context, int mostBounces, const Place& place, const Visit& visit) {
     const Scene& scene = context.scene;
@@ -143,9 +143,8 @@ Rgb EmittedLight(const Context& context, const Stride& stride, const SurfaceInte
     const Light& light = scene.lights[hit.areaLight];
     const Rgb L = Le(light, hit.n, hit.wo, found);
     if (IsBlack(L)) return L;
-    const float direct = stride.connects
-                             ? Pdf(light, stride.p, hit.p, hit.n) * choice.Pmf(hit.areaLight)
-                             : 0;
+    const float direct =
+        stride.connects ? Pdf(light, stride.p, hit.p, hit.n) * choice.Pmf(hit.areaLight) : 0;
     return L * float(EmissionWeight(stride, arrival.density, arrival.fewer, direct,
                                     scene.emission->Density(hit.areaLight, hit.n, hit.wo)));
 }
@@ -210,8 +209,8 @@ class LightSubpath {
     const Vertices& All(int mostBounces) {
         if (isTraced) return vertices;
         isTraced = true;
-        const bool isChosen = context.connections >= 1 ||
-                              double(context.sampler.Get1D()) < context.connections;
+        const bool isChosen =
+            context.connections >= 1 || double(context.sampler.Get1D()) < context.connections;
         if (!isChosen) return vertices;
         FollowLight(
             context, mostBounces,
@@ -248,7 +247,7 @@ template <typename Recorder>
     if (context.lightPaths > 0)
         stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
     Path path{.ray = start.ray};  // for recorders
-    Rgb L = Rgb::Zero();  // without connections
+    Rgb L = Rgb::Zero();          // without connections
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
         Hit found;
@@ -355,8 +354,7 @@ class Onlooker {
             (view->film.array() > (size + reach).array()).any())
             return;
         at.film = view->film;
-        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint))
-            return Add(v, *view);
+        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint)) return Add(v, *view);
         SurfaceInteraction seen = hit;
         ComputeFootprint(scene.camera, at, &seen);
         Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view);

@@ -65,8 +65,7 @@ bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stri
     stride->p = hit.p;
     stride->n = hit.n;
     stride->density = v.arrival.density;
-    stride->sum =
-        (sample->isSpecular ? 0 : v.arrival.own) + Sqr(double(back)) * v.arrival.fewer;
+    stride->sum = (sample->isSpecular ? 0 : v.arrival.own) + Sqr(double(back)) * v.arrival.fewer;
     stride->connects = !sample->isSpecular;
     stride->fromInfinity = false;
     return stride->density > 0;

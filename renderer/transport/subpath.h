@@ -1,12 +1,12 @@
 // Subpaths of bidirectional path tracing, from the camera or from a light, and the weights of the
 // ways in which a path can be put together from two of them.
 //
-// A path of k vertices is found by k + 1 strategies: with s vertices from a light and t = k - s from
-// the camera. Veach's power heuristic (1997, section 9.2; exponent 2) weighs one by n_i p_i, the
-// samples that it takes times its density. Sums over the strategies of fewer vertices on one's own
-// side follow from vertex to vertex (van Antwerpen 2011; Georgiev 2012), so that a weight costs the
-// same at any length. With P(i) the density of vertex i by area from its own side, and Q(i) that
-// from the other side,
+// A path of k vertices is found by k + 1 strategies: with s vertices from a light and t = k - s
+// from the camera. Veach's power heuristic (1997, section 9.2; exponent 2) weighs one by n_i p_i,
+// the samples that it takes times its density. Sums over the strategies of fewer vertices on one's
+// own side follow from vertex to vertex (van Antwerpen 2011; Georgiev 2012), so that a weight costs
+// the same at any length. With P(i) the density of vertex i by area from its own side, and Q(i)
+// that from the other side,
 //
 //     sum(i) = (Q(i) / P(i))^2 [c(i) + (Q(i-1) / P(i-1))^2 [c(i-1) + ...]],
 //
@@ -21,13 +21,13 @@ namespace lull {
 
 // The way of a subpath from its last vertex to the next.
 struct Stride {
-    Ray ray;              // of unit direction
-    Rgb beta;             // radiance, or power, over the density of the subpath
-    float pdf = 1;        // of the direction, 1/sr; from lights at infinity 1/m^2 across it
-    Vec3f p, n;           // the last vertex; n zero if it has none
-    double density = 1;   // P of the last vertex
-    double sum = 0;       // c(i) + (Q(i-1) / P(i-1))^2 [...] of the last vertex
-    bool connects = true; // the last vertex scatters into more than one direction
+    Ray ray;               // of unit direction
+    Rgb beta;              // radiance, or power, over the density of the subpath
+    float pdf = 1;         // of the direction, 1/sr; from lights at infinity 1/m^2 across it
+    Vec3f p, n;            // the last vertex; n zero if it has none
+    double density = 1;    // P of the last vertex
+    double sum = 0;        // c(i) + (Q(i-1) / P(i-1))^2 [...] of the last vertex
+    bool connects = true;  // the last vertex scatters into more than one direction
     bool fromInfinity = false;
 };
 

@@ -25,8 +25,7 @@ std::optional<CameraView> ViewOf(const Camera& camera, const Vec3f& p, const Vec
     const Mat4d m = WorldFromCamera(camera, time);
     const Eigen::Matrix3d linear = m.topLeftCorner<3, 3>();
     const Eigen::Vector3d translation = m.topRightCorner<3, 1>();
-    const Vec3f at =
-        (linear.inverse() * (p.cast<double>() - translation)).cast<float>();
+    const Vec3f at = (linear.inverse() * (p.cast<double>() - translation)).cast<float>();
     Vec3f origin = Vec3f::Zero();
     if (camera.lensRadius > 0) {
         const Vec2f q = camera.lensRadius * SampleConcentricDisk(lens);

@@ -8,9 +8,9 @@ namespace lull {
 
 // How a point is seen.
 struct CameraView {
-    Vec2f film;          // pixels, of the whole image and beyond
-    Vec3f lens;          // the point on the lens
-    float perSolidAngle; // pixels per sr about the direction to the point, as seen from there
+    Vec2f film;           // pixels, of the whole image and beyond
+    Vec3f lens;           // the point on the lens
+    float perSolidAngle;  // pixels per sr about the direction to the point, as seen from there
 };
 
 // Returns whether a camera's view of points can be computed: perspective cameras, with thin lenses

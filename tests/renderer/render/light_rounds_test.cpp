@@ -18,12 +18,14 @@ std::unique_ptr<const Scene> MakeScene(bool inGlass, const char* integrator,
 LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" [45]
 Film "image" "integer xresolution" [32] "integer yresolution" [24]
-PixelFilter ")") + filter + "\"\nIntegrator \"" +
-                   integrator + R"(" "integer maxdepth" [6]
+PixelFilter ")") + filter +
+                   "\"\nIntegrator \"" + integrator + R"(" "integer maxdepth" [6]
 WorldBegin
 LightSource "point" "point from" [.2 .3 0] "rgb I" [3 2 1]
-)" + (inGlass ? "AttributeBegin Material \"glass\" Translate .2 .3 0 Shape \"sphere\" \"float radius\" [.2] AttributeEnd"
-              : "") +
+)" +
+                   (inGlass ? "AttributeBegin Material \"glass\" Translate .2 .3 0 Shape "
+                              "\"sphere\" \"float radius\" [.2] AttributeEnd"
+                            : "") +
                    R"(
 Material "matte" "rgb Kd" [.7 .5 .3]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7 3 2 6 3 6 7]

@@ -46,8 +46,8 @@ TEST(Integrator, HasTheParametersOfTheScene) {
 
 TEST(Integrator, OfAnotherKindIsPathWithAWarning) {
     Warnings warnings;
-    EXPECT_EQ(MaxDepth(Read("Integrator \"whitted\" \"integer maxdepth\" [9]", &warnings, -1, true)),
-              9);
+    EXPECT_EQ(
+        MaxDepth(Read("Integrator \"whitted\" \"integer maxdepth\" [9]", &warnings, -1, true)), 9);
     const std::map<std::string, int> expected = {
         {"Integrator \"whitted\" is rendered as \"volpath\"", 1}};
     EXPECT_EQ(warnings.Counts(), expected);

@@ -1,5 +1,5 @@
-// Renders by bidirectional path tracing, or by paths, and measures the means of blocks of pixels and
-// their standard errors, from independent pictures of different seeds.
+// Renders by bidirectional path tracing, or by paths, and measures the means of blocks of pixels
+// and their standard errors, from independent pictures of different seeds.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace lull {
 
 struct BlockMeans {
     int columns = 0, rows = 0;
-    std::vector<Eigen::Array3d> mean, error;  // row-major
+    std::vector<Eigen::Array3d> mean, error;                            // row-major
     Eigen::Array3d total = Eigen::Array3d::Zero(), totalError = total;  // of the whole image
 };
 
@@ -41,7 +41,8 @@ inline std::vector<Eigen::Array3d> Picture(const Scene& scene, const BdptShares&
             }
         }
     };
-    const auto paths = IsBidirectional(scene.integrator) ? uint32_t(LightPathCount(scene, shares)) : 0;
+    const auto paths =
+        IsBidirectional(scene.integrator) ? uint32_t(LightPathCount(scene, shares)) : 0;
     for (int k = 0; k < spp; ++k)
         for (uint32_t i = 0; i < paths; ++i)
             TraceLightPath(scene, shares, sampler, uint32_t(k), i, splat);
@@ -50,8 +51,8 @@ inline std::vector<Eigen::Array3d> Picture(const Scene& scene, const BdptShares&
 }
 
 // Takes `pictures` pictures of `spp` samples on all cores. Blocks have `side` pixels.
-inline BlockMeans MeasureBlocks(const Scene& scene, const BdptShares& shares, int spp,
-                                int pictures, int side, uint64_t seed = 1) {
+inline BlockMeans MeasureBlocks(const Scene& scene, const BdptShares& shares, int spp, int pictures,
+                                int side, uint64_t seed = 1) {
     const Vec2i size = scene.film.resolution;
     BlockMeans means{size.x() / side, size.y() / side, {}, {}};
     const size_t count = size_t(means.columns) * size_t(means.rows);

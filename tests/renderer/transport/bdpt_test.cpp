@@ -35,8 +35,9 @@ Scenes Both(const std::string& file, int size, int maxDepth) {
 }
 
 Scenes BothOf(const std::string& world, int size, int maxDepth,
-              const std::string& camera = "LookAt 0 0 -3  0 0 0  0 1 0\n"
-                                          "Camera \"perspective\" \"float fov\" [60]\n") {
+              const std::string& camera =
+                  "LookAt 0 0 -3  0 0 0  0 1 0\n"
+                  "Camera \"perspective\" \"float fov\" [60]\n") {
     const TemporaryDirectory folder;
     return Both(folder.Write("test.pbrt", WorldText(world, camera + "PixelFilter \"box\"\n")), size,
                 maxDepth);
@@ -57,8 +58,9 @@ void ExpectSame(const BlockMeans& a, const BlockMeans& b, const std::string& wha
     const double e = std::hypot(a.totalError.sum(), b.totalError.sum());
     const double n = double(a.mean.size());
     if (std::getenv("LULL_SHOW"))
-        fmt::print("{}: {:.5f} {:.5f}, {:+.2f} errors of {:.5f}; {} of {} blocks out, mean z^2 {:.2f}\n", what,
-                   a.total.mean(), b.total.mean(), d / e, e / 3, out, n, sum2 / n);
+        fmt::print(
+            "{}: {:.5f} {:.5f}, {:+.2f} errors of {:.5f}; {} of {} blocks out, mean z^2 {:.2f}\n",
+            what, a.total.mean(), b.total.mean(), d / e, e / 3, out, n, sum2 / n);
     EXPECT_LT(std::abs(d), 4 * e + 1e-7) << what << ": " << a.total.mean() << " " << b.total.mean();
     EXPECT_LE(out, 2 + 0.03 * n) << what;
 }
@@ -76,8 +78,10 @@ constexpr BdptShares kThree[] = {kFromCamera, kAll, kFew, kOnlyLightPaths};
 
 const std::string kBox =
     "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 -2 2 -1 -2 2 -1 2 -2 -1 2]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 2 2 -1 2 2 2 2 -2 2 2]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 -2 2 -1 -2 2 -1 2 "
+    "-2 -1 2]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 2 2 -1 2 2 2 2 -2 "
+    "2 2]\n"
     "Material \"plastic\" \"rgb Kd\" [.3 .1 .1] \"rgb Ks\" [.4 .4 .4] \"float roughness\" [.2]\n"
     "TransformBegin Translate .3 -.4 .2 Shape \"sphere\" \"float radius\" [.6] TransformEnd\n";
 
@@ -98,27 +102,48 @@ TEST_P(BdptLights, HaveTheMeanOfPaths) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, BdptLights,
     testing::Values(
-        Lit{"Area", "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
-                    "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
-                    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 1.5 -1 0 1.5 0 -1 1.5 0]\n"
-                    "AttributeEnd\n"},
-        Lit{"TwoSided", "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"bool twosided\" [\"true\"]\n"
-                        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 .5 -1 0 .5 0 -1 1.5 0]\n"
-                        "AttributeEnd\n"},
-        Lit{"Sphere", "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
-                      "Shape \"sphere\" \"float radius\" [.3] AttributeEnd\n"},
-        Lit{"Disk", "AttributeBegin Translate -1 1.2 0 Rotate 90 1 0 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
-                    "Shape \"disk\" \"float radius\" [.5] AttributeEnd\n"},
-        Lit{"Cylinder", "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
-                        "Shape \"cylinder\" \"float radius\" [.2] \"float zmin\" [-.5] \"float zmax\" [.5] AttributeEnd\n"},
+        Lit{"Area",
+            "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
+            "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 1.5 "
+            "-1 0 1.5 0 -1 1.5 0]\n"
+            "AttributeEnd\n"},
+        Lit{"TwoSided",
+            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"bool twosided\" "
+            "[\"true\"]\n"
+            "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 .5 "
+            "-1 0 .5 0 -1 1.5 0]\n"
+            "AttributeEnd\n"},
+        Lit{"Sphere",
+            "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"sphere\" \"float radius\" [.3] AttributeEnd\n"},
+        Lit{"Disk",
+            "AttributeBegin Translate -1 1.2 0 Rotate 90 1 0 0 AreaLightSource \"diffuse\" \"rgb "
+            "L\" [4 3 2]\n"
+            "Shape \"disk\" \"float radius\" [.5] AttributeEnd\n"},
+        Lit{"Cylinder",
+            "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"cylinder\" \"float radius\" [.2] \"float zmin\" [-.5] \"float zmax\" [.5] "
+            "AttributeEnd\n"},
         Lit{"Point", "LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n"},
-        Lit{"Spot", "LightSource \"spot\" \"point from\" [-1 1.5 -1] \"point to\" [0 -1 0] \"rgb I\" [30 40 50]\n"},
-        Lit{"Distant", "LightSource \"distant\" \"point from\" [-1 2 -1] \"point to\" [0 0 0] \"rgb L\" [1 2 3]\n"},
+        Lit{"Spot",
+            "LightSource \"spot\" \"point from\" [-1 1.5 -1] \"point to\" [0 -1 0] \"rgb I\" [30 "
+            "40 50]\n"},
+        Lit{"Distant",
+            "LightSource \"distant\" \"point from\" [-1 2 -1] \"point to\" [0 0 0] \"rgb L\" [1 2 "
+            "3]\n"},
         Lit{"Infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]\n"},
-        Lit{"Projection", "AttributeBegin Translate -.5 1.5 -2 Rotate 40 1 0 0 LightSource \"projection\" \"float fov\" [50] \"rgb I\" [8 8 8] AttributeEnd\n"},
-        Lit{"Goniometric", "AttributeBegin Translate -.5 1 -1 LightSource \"goniometric\" \"rgb I\" [3 3 3] AttributeEnd\n"},
-        Lit{"Several", "LightSource \"infinite\" \"rgb L\" [.3 .2 .1]\nLightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 1 1]\n"
-                       "AttributeBegin Translate 1 1 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] Shape \"sphere\" \"float radius\" [.2] AttributeEnd\n"}),
+        Lit{"Projection",
+            "AttributeBegin Translate -.5 1.5 -2 Rotate 40 1 0 0 LightSource \"projection\" "
+            "\"float fov\" [50] \"rgb I\" [8 8 8] AttributeEnd\n"},
+        Lit{"Goniometric",
+            "AttributeBegin Translate -.5 1 -1 LightSource \"goniometric\" \"rgb I\" [3 3 3] "
+            "AttributeEnd\n"},
+        Lit{"Several",
+            "LightSource \"infinite\" \"rgb L\" [.3 .2 .1]\nLightSource \"point\" \"point from\" "
+            "[-1 1.5 -1] \"rgb I\" [3 1 1]\n"
+            "AttributeBegin Translate 1 1 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] Shape "
+            "\"sphere\" \"float radius\" [.2] AttributeEnd\n"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 struct Lens {
@@ -129,18 +154,23 @@ struct Lens {
 class BdptCameras : public testing::TestWithParam<Lens> {};
 
 TEST_P(BdptCameras, HaveTheMeanOfPaths) {
-    Compare(BothOf("LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n" + kBox, 32, 3,
-                   GetParam().camera),
+    Compare(BothOf("LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n" + kBox,
+                   32, 3, GetParam().camera),
             16, 32, GetParam().name, kThree);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, BdptCameras,
-    testing::Values(
-        Lens{"Lens", "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] \"float lensradius\" [.2] \"float focaldistance\" [2.5]\n"},
-        Lens{"Shifted", "Scale -1 1 1 LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] \"float screenwindow\" [-.7 .8 -.3 1]\n"},
-        Lens{"Orthographic", "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1.5 1.5]\n"},
-        Lens{"Environment", "LookAt 0 0 -1.5  0 0 0  0 1 0\nCamera \"environment\"\n"}),
+    testing::Values(Lens{"Lens",
+                         "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] "
+                         "\"float lensradius\" [.2] \"float focaldistance\" [2.5]\n"},
+                    Lens{"Shifted",
+                         "Scale -1 1 1 LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float "
+                         "fov\" [60] \"float screenwindow\" [-.7 .8 -.3 1]\n"},
+                    Lens{"Orthographic",
+                         "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"orthographic\" \"float "
+                         "screenwindow\" [-1.5 1.5 -1.5 1.5]\n"},
+                    Lens{"Environment", "LookAt 0 0 -1.5  0 0 0  0 1 0\nCamera \"environment\"\n"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 struct Matter {
@@ -153,25 +183,34 @@ class BdptMaterials : public testing::TestWithParam<Matter> {};
 TEST_P(BdptMaterials, HaveTheMeanOfPaths) {
     const std::string world =
         "AttributeBegin Translate -1 1.2 -1 AreaLightSource \"diffuse\" \"rgb L\" [9 8 7]\n"
-        "Shape \"sphere\" \"float radius\" [.4] AttributeEnd\n" + kBox +
-        std::string(GetParam().material) +
-        "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] TransformEnd\n";
+        "Shape \"sphere\" \"float radius\" [.4] AttributeEnd\n" +
+        kBox + std::string(GetParam().material) +
+        "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] "
+        "TransformEnd\n";
     const int more = std::getenv("LULL_MORE") ? std::atoi(std::getenv("LULL_MORE")) : 1;
-    Compare(BothOf(world, 32, 5), 32, 32*more, GetParam().name, kThree);
+    Compare(BothOf(world, 32, 5), 32, 32 * more, GetParam().name, kThree);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, BdptMaterials,
     testing::Values(
         Matter{"Glass", "Material \"glass\""},
-        Matter{"RoughGlass", "Material \"glass\" \"float uroughness\" [.3] \"float vroughness\" [.3]"},
+        Matter{"RoughGlass",
+               "Material \"glass\" \"float uroughness\" [.3] \"float vroughness\" [.3]"},
         Matter{"Mirror", "Material \"mirror\""},
         Matter{"Metal", "Material \"metal\" \"float roughness\" [.1]"},
-        Matter{"Uber", "Material \"uber\" \"rgb Kd\" [.2 .3 .2] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.2 .2 .2] \"rgb Kt\" [.2 .1 .1] \"rgb opacity\" [.7 .7 .7]"},
+        Matter{"Uber",
+               "Material \"uber\" \"rgb Kd\" [.2 .3 .2] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.2 .2 "
+               ".2] \"rgb Kt\" [.2 .1 .1] \"rgb opacity\" [.7 .7 .7]"},
         Matter{"Substrate", "Material \"substrate\" \"rgb Kd\" [.5 .2 .2] \"rgb Ks\" [.3 .3 .3]"},
         Matter{"Translucent", "Material \"translucent\""},
-        Matter{"Disney", "Material \"disney\" \"rgb color\" [.6 .3 .2] \"float metallic\" [.3] \"float clearcoat\" [.5] \"float sheen\" [.4]"},
-        Matter{"Mix", "MakeNamedMaterial \"a\" \"string type\" \"mirror\" MakeNamedMaterial \"b\" \"string type\" \"matte\" Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\""}),
+        Matter{"Disney",
+               "Material \"disney\" \"rgb color\" [.6 .3 .2] \"float metallic\" [.3] \"float "
+               "clearcoat\" [.5] \"float sheen\" [.4]"},
+        Matter{"Mix",
+               "MakeNamedMaterial \"a\" \"string type\" \"mirror\" MakeNamedMaterial \"b\" "
+               "\"string type\" \"matte\" Material \"mix\" \"string namedmaterial1\" \"a\" "
+               "\"string namedmaterial2\" \"b\""}),
     [](const auto& info) { return std::string(info.param.name); });
 
 struct Room {

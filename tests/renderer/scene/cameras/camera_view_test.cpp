@@ -23,10 +23,10 @@ TEST(CameraView, IsWhereRaysComeFrom) {
     std::mt19937 random(3);
     const auto next = [&] { return float(random() >> 8) * 0x1p-24f; };
     for (const char* camera : kCameras) {
-        const auto scene = SceneOf(WorldText("Shape \"sphere\"\n",
-                                             std::string(camera) +
-                                                 "Film \"image\" \"integer xresolution\" [60] "
-                                                 "\"integer yresolution\" [40]\n"));
+        const auto scene =
+            SceneOf(WorldText("Shape \"sphere\"\n",
+                              std::string(camera) + "Film \"image\" \"integer xresolution\" [60] "
+                                                    "\"integer yresolution\" [40]\n"));
         ASSERT_TRUE(SeesPoints(scene->camera));
         for (int i = 0; i < 100; ++i) {
             CameraSample sample;
@@ -51,9 +51,9 @@ TEST(CameraView, IsWhereRaysComeFrom) {
             const Vec3f b = shifted(0, 0.25f) - shifted(0, -0.25f);
             const float solidAngle = 4 * a.cross(b).norm();
             EXPECT_NEAR(view->perSolidAngle * solidAngle, 1, 0.01) << camera;
-            EXPECT_NEAR(PixelsPerSolidAngle(scene->camera, ray.d, sample.time) /
-                            view->perSolidAngle,
-                        1, 1e-3);
+            EXPECT_NEAR(
+                PixelsPerSolidAngle(scene->camera, ray.d, sample.time) / view->perSolidAngle, 1,
+                1e-3);
         }
     }
 }
