@@ -46,21 +46,15 @@ Scenes BothOf(const std::string& world, int size, int maxDepth,
 // Expects no more blocks beyond 3 standard errors than chance has, and the total within 4.
 void ExpectSame(const BlockMeans& a, const BlockMeans& b, const std::string& what) {
     int out = 0;
-    double sum2 = 0;
     for (size_t i = 0; i < a.mean.size(); ++i) {
         const double d = a.mean[i].sum() - b.mean[i].sum();
         const double e = std::hypot(a.error[i].sum(), b.error[i].sum());
         const double z = e > 0 ? d / e : 0;
         out += std::abs(z) > 3;
-        sum2 += std::min(z * z, 25.);
     }
     const double d = a.total.sum() - b.total.sum();
     const double e = std::hypot(a.totalError.sum(), b.totalError.sum());
     const double n = double(a.mean.size());
-    if (std::getenv("LULL_SHOW"))
-        fmt::print(
-            "{}: {:.5f} {:.5f}, {:+.2f} errors of {:.5f}; {} of {} blocks out, mean z^2 {:.2f}\n",
-            what, a.total.mean(), b.total.mean(), d / e, e / 3, out, n, sum2 / n);
     EXPECT_LT(std::abs(d), 4 * e + 1e-7) << what << ": " << a.total.mean() << " " << b.total.mean();
     EXPECT_LE(out, 2 + 0.03 * n) << what;
 }
@@ -74,7 +68,7 @@ void Compare(const Scenes& scenes, int spp, int pictures, const std::string& nam
                                shares.connections));
 }
 
-constexpr BdptShares kThree[] = {kFromCamera, kAll, kFew, kOnlyLightPaths};
+constexpr BdptShares kWays[] = {kFromCamera, kAll, kFew, kOnlyLightPaths};
 
 const std::string kBox =
     "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
@@ -94,9 +88,9 @@ class BdptLights : public testing::TestWithParam<Lit> {};
 
 // Every kind of light gives the same mean by paths and by all strategies.
 TEST_P(BdptLights, HaveTheMeanOfPaths) {
-    for (const int depth : {1, 2, 4})
+    for (const int depth : {1, 4})
         Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 16, 32,
-                fmt::format("{} to {} bounces", GetParam().name, depth), kThree);
+                fmt::format("{} to {} bounces", GetParam().name, depth), kWays);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -156,7 +150,7 @@ class BdptCameras : public testing::TestWithParam<Lens> {};
 TEST_P(BdptCameras, HaveTheMeanOfPaths) {
     Compare(BothOf("LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n" + kBox,
                    32, 3, GetParam().camera),
-            16, 32, GetParam().name, kThree);
+            16, 32, GetParam().name, kWays);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -187,8 +181,7 @@ TEST_P(BdptMaterials, HaveTheMeanOfPaths) {
         kBox + std::string(GetParam().material) +
         "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] "
         "TransformEnd\n";
-    const int more = std::getenv("LULL_MORE") ? std::atoi(std::getenv("LULL_MORE")) : 1;
-    Compare(BothOf(world, 32, 5), 32, 32 * more, GetParam().name, kThree);
+    Compare(BothOf(world, 32, 5), 32, 32, GetParam().name, kWays);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -227,7 +220,7 @@ TEST_P(BdptScenes, HaveTheMeanOfPaths) {
     const std::string file = own.starts_with("/") ? own : (SharedFolder() / own).string();
     if (!std::filesystem::exists(file))
         GTEST_SKIP() << "scenes of others are not in ../shared: " << file;
-    constexpr BdptShares all[] = {kFromCamera, kAll, kFew};
+    constexpr BdptShares all[] = {kAll, kFew};
     Compare(Both(file, 40, maxDepth), spp, 16, name, all);
 }
 
@@ -235,7 +228,6 @@ INSTANTIATE_TEST_SUITE_P(
     Of, BdptScenes,
     testing::Values(Room{"Glossy", LULL_SCENES_DIR "/glossy/scene.pbrt", 4, 16},
                     Room{"ManyLights", LULL_SCENES_DIR "/many-lights/scene.pbrt", 3, 8},
-                    Room{"Textured", LULL_SCENES_DIR "/textured/scene.pbrt", 3, 16},
                     Room{"CornellBox", "pbrt-scenes/cornell-box/scene.pbrt", 5, 16},
                     Room{"VeachMis", "pbrt-scenes/veach-mis/scene.pbrt", 4, 16},
                     Room{"Staircase2", "pbrt-scenes/staircase2/scene.pbrt", 4, 16},
