@@ -78,9 +78,10 @@ void RenderJob::Compile() {
         throw UsageError(
             "several ranks cannot share a render by \"bdpt\"; render on one machine, or with "
             "--integrator path");
-    if (IsBidirectional(scene->integrator) && settings.estimator == Estimator::PbrtV3)
+    if (settings.scene.integrator == IntegratorKind::Bdpt &&
+        settings.estimator == Estimator::PbrtV3)
         throw UsageError(
-            "--estimator pbrt-v3 is that of paths from the camera; add --integrator path");
+            "--estimator pbrt-v3 is that of paths from the camera; leave --integrator bdpt out");
     provenance = MakeProvenance(settings, *scene, input.film);
 }
 

@@ -56,12 +56,16 @@ void ReadMedia(const Description& description, Scene* scene, Warnings& warnings)
                           (!scene->media.media.empty() || HasInterfaces(description));
 }
 
-// Returns the part of the scene that subpaths from lights cannot be traced through; null: none.
-const char* PartBeyondBdpt(const Description& description, const Scene& scene) {
+// Returns why subpaths from lights cannot be traced; null: they can.
+const char* WhyNotBdpt(const Description& description, const CompileOptions& options,
+                       const Scene& scene) {
+    if (options.lightsAsPbrtV3) return "pbrt-v3's estimator is for paths from the camera";
     if (scene.isVolumetric)
-        return scene.media.media.empty() ? "surfaces without a material" : "participating media";
+        return scene.media.media.empty() ? "the scene has surfaces without a material"
+                                         : "the scene has participating media";
     for (size_t i = 0; i < description.materials.size(); ++i)
-        if (scene.materials.Needs(int(i)) & kScattersBelow) return "subsurface scattering";
+        if (scene.materials.Needs(int(i)) & kScattersBelow)
+            return "the scene has subsurface scattering";
     return nullptr;
 }
 
@@ -87,7 +91,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     warnings.Try([&] {
         scene->integrator =
             MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric,
-                           PartBeyondBdpt(description, *scene), warnings);
+                           WhyNotBdpt(description, options, *scene), warnings);
     });
     scene->shapeSeconds = Timed([&] {
         warnings.Try([&] {

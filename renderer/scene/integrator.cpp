@@ -84,7 +84,7 @@ Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
         reportUnused();
     else
         warn(path.Name(isVolumetric),
-             AsksForBdpt(entity.name) ? fmt::format(", as the scene has {}", beyondBdpt) : "");
+             AsksForBdpt(entity.name) ? fmt::format(", as {}", beyondBdpt) : "");
     return path;
 }
 

@@ -38,11 +38,10 @@ Cone ConeOf(const ProjectionLight& light) {
             std::min(1 / std::sqrt(1 + Sqr(1.001f * tangent)), 1 - 1e-6f)};
 }
 
-// Returns the luminance of a light's power, for its choice; 0 if float cannot hold it. Of the sky,
-// Power() is that from one steradian.
+// Returns the luminance of a light's power, for its choice; 0 if float cannot hold it. Of the sky
+// it is that from one steradian, as in pbrt-v3: paths from the camera find it anyway.
 float Weight(const Light& light) {
-    float power = Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
-    if (TypeOf(light) == LightType::Infinite) power *= 4 * kPi;
+    const float power = Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
     return power > 0 && std::isfinite(power) ? power : 0;
 }
 

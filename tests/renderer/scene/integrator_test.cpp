@@ -72,9 +72,9 @@ TEST(Integrator, StartsPathsFromLightsWhereTheSceneSays) {
 
 TEST(Integrator, IsPathWhereLightPathsCannotGo) {
     Warnings warnings;
-    EXPECT_FALSE(IsBidirectional(Read("Integrator \"bdpt\"", &warnings, -1, true, "fog")));
+    EXPECT_FALSE(IsBidirectional(Read("Integrator \"bdpt\"", &warnings, -1, true, "there is fog")));
     const std::map<std::string, int> expected = {
-        {"Integrator \"bdpt\" is rendered as \"volpath\", as the scene has fog", 1}};
+        {"Integrator \"bdpt\" is rendered as \"volpath\", as there is fog", 1}};
     EXPECT_EQ(warnings.Counts(), expected);
 }
 
