@@ -28,7 +28,7 @@ constexpr Subject kSubjects[] = {
      {"camera", "orbit", "frame", "frames", "animation", "shutter", "variant", "solid-glass",
       "environment", "environment-rotation", "substitute", "verbose"}},
     {"Image", {"resolution", "crop", "exposure", "tone-map", "ocio", "view", "transparent"}},
-    {"Sampling", {"spp", "sampler", "seed", "max-depth"}},
+    {"Sampling", {"spp", "sampler", "seed", "integrator", "max-depth"}},
     {"Stopping", {"stop", "cap", "caution", "pass", "block"}},
     {"Denoising", {"denoise", "denoise-layers"}},
     {"Guiding", {"guide", "guide-memory"}},

@@ -160,6 +160,8 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, or glTF 2.0 (.gltf, .glb)")
         ->required();
     AddFilmOptions(app, &options->compile.film);
+    AddChoiceOption(app, "--integrator", &options->integrator,
+                    "Find light by paths from the camera, or from lights too [the scene's]");
     AddCompileOptions(app, &options->compile);
     app.add_flag("--substitute", options->substitute,
                  "Replace missing and unsupported parts of the scene, with warnings");
@@ -183,6 +185,8 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
             "glTF, set them in the pbrt-v3 scene");
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings);
+    if (options.integrator)
+        SetIntegrator(*options.integrator == IntegratorKind::Bdpt ? "bdpt" : "path", &description);
     if (options.exposure != 0) SetExposure(options.exposure, &description);
     if (!options.environment.empty())
         SetEnvironment(options.environment, options.environmentRotation, &description);

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/commands/talk.h"
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
@@ -11,17 +12,28 @@
 
 namespace lull {
 
+// Ways of finding light that can be chosen in place of the scene's.
+enum class IntegratorKind { Path, Bdpt };
+
+template <>
+struct EnumNames<IntegratorKind> {
+    static constexpr std::pair<IntegratorKind, const char*> all[] = {
+        {IntegratorKind::Path, "path"}, {IntegratorKind::Bdpt, "bdpt"}};
+};
+
 struct SceneOptions {
     std::string file;
     bool substitute = false;  // continue without missing and unsupported parts
     bool isVerbose = false;   // print warnings that do not concern the image
     CompileOptions compile;
+    std::optional<IntegratorKind> integrator;  // nothing: the scene's
     GltfOptions view;
     std::string environment;  // empty: the scene's own
     double environmentRotation = 0, exposure = 0;
 };
 
-// Adds SCENE, --resolution, --crop, --max-depth, --threads, --substitute, --filtering, --exposure,
+// Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
+// --filtering, --exposure,
 // --environment, --environment-rotation, --camera, --orbit, --frame, --animation, --shutter,
 // --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);

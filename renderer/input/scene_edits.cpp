@@ -59,6 +59,11 @@ bool IsEnvironment(const LightEntity& light) {
 
 }  // namespace
 
+void SetIntegrator(const std::string& name, Description* description) {
+    std::string& own = description->integrator.name;
+    own = name == "path" && IntegratorSeesMedia(own) ? "volpath" : name;
+}
+
 void SetExposure(double stops, Description* description) {
     description->film.parameters.Add({ParameterType::Float, "exposure", description->film.loc,
                                       std::vector<float>{float(stops)}});

@@ -10,6 +10,10 @@ namespace lull {
 // Brightens all that the film records by 2 to the power of `stops`.
 void SetExposure(double stops, Description* description);
 
+// Replaces the integrator by "path" or "bdpt". Where the scene's sees media, "volpath" is the path
+// that does.
+void SetIntegrator(const std::string& name, Description* description);
+
 // Surrounds the scene by an image of the radiance from all directions, in latitude-longitude form,
 // in place of its environment. The image's top is turned to glTF's up, or to the axis of the scene
 // that is nearest to the camera's up; `rotation` turns it around that axis, in degrees,

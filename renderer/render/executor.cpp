@@ -7,6 +7,7 @@
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -14,11 +15,11 @@ namespace {
 
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same part
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
-// render has taken further already keep what they have. Adds them to `spread`, if there is one.
-// Returns how many were taken.
-template <typename Take>
+// render has taken further already keep what they have. Adds them to `spread`, if there is one, and
+// ends a pixel by finish(pixel, first sample, sums). Returns how many were taken.
+template <typename Take, typename Finish>
 int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
-                   SampleSpread* spread) {
+                   SampleSpread* spread, const Finish& finish) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -36,8 +37,10 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
                 sum += y;
                 squares += Sqr(y);
                 spread->vertices += sample.vertices;
+                spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
+            if (end > first) finish(pixel, first, &sums);
             pixels.Set(pixel, sums);
             if (spread && end > first) {
                 spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
@@ -45,6 +48,11 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             }
         }
     return samples;
+}
+
+// Returns the luminance of all samples together.
+double LuminanceOf(const FilmPixel& pixel) {
+    return 0.212671 * pixel.sum[0] + 0.715160 * pixel.sum[1] + 0.072169 * pixel.sum[2];
 }
 
 }  // namespace
@@ -67,6 +75,7 @@ Executor::Executor(const RenderContext& context, const RenderOptions& options,
 
 RenderResult Executor::Run() {
     RestartIntervals();
+    if (context.light) BeginLight();
     for (;;) {
         do {
             pausing = false;
@@ -91,8 +100,19 @@ bool Executor::IsPauseDue() const {
            (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
+void Executor::BeginLight() {
+    context.light->Begin(schedule.Unlocked());
+    schedule.BeginRound(context.light->End());
+    isLit = context.light->Trace([this] { return IsCancelled(); });
+}
+
 bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
+    if (context.light && !IsCancelled() && schedule.IsRoundOver()) {
+        context.light->Learn(*context.film);
+        BeginLight();
+        return true;
+    }
     if (!learner || IsCancelled() || !schedule.IsRoundOver()) return false;
     learner->EndRound(*context.film);
     schedule.BeginRound(learner->RoundEnd());
@@ -105,7 +125,7 @@ void Executor::Quiesce() {
 }
 
 void Executor::RunTile() {
-    if (pausing || IsCancelled()) return;
+    if (pausing || IsCancelled() || !isLit) return;
     const std::optional<Tile> tile = schedule.Next();
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();
@@ -125,13 +145,23 @@ void Executor::RunTile() {
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
-    SampleSpread* spread =
-        context.learner ? context.learner->SpreadOf(*film, tile.pixels) : nullptr;
+    SampleSpread* spread = context.learner ? context.learner->SpreadOf(*film, tile.pixels)
+                           : context.light ? context.light->SpreadOf(*film, tile.pixels)
+                                           : nullptr;
+    const auto render = [&](const auto& take) {
+        if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
+        return RenderTile(take, tile, sampler, film, spread,
+                          [&](const Vec2i& pixel, uint32_t first, FilmPixel* sums) {
+                              const double camera =
+                                  LuminanceOf(*sums) - LuminanceOf(film->At(pixel));
+                              context.light->AddTo(pixel, first, camera, sums, context.layers);
+                          });
+    };
     if (!context.layers) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
             return context.source(s, pixel, index, nullptr);
         };
-        return RenderTile(alone, tile, sampler, film, spread);
+        return render(alone);
     }
     const auto withLayers = [&, asks = context.layers.NeedFirstHits()](
                                 Sampler& s, const Vec2i& pixel, uint32_t index) {
@@ -140,7 +170,7 @@ int64_t Executor::TakeSamples(const Tile& tile) {
         context.layers.Add(pixel, index, firstHit, sample.radiance);
         return sample;
     };
-    return RenderTile(withLayers, tile, sampler, film, spread);
+    return render(withLayers);
 }
 
 int Executor::DecideBlock(int i) {

@@ -63,12 +63,14 @@ class Executor {
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
+    void BeginLight();
     void RunTile();
     int64_t TakeSamples(const Tile&);
 
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
+    bool isLit = true;  // the light of the round, if there is any, has been traced
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

@@ -14,6 +14,7 @@ struct SampleSpread {
     int64_t freedom = 0;   // how many of these are independent
     int64_t vertices = 0;  // of paths, without the camera
     int64_t samples = 0;
+    double connected = 0;  // squares of the luminance that connections have found
 };
 
 // Guided relative to unguided samples.

@@ -12,6 +12,7 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
     if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
+    if (context.light) schedule.roundEnd = 0;  // until there is light
     return schedule;
 }
 

@@ -37,6 +37,8 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
         {"substitute", nullptr, "substitute", p.substitute},
         {"resolution", nullptr, "resolution", p.resolution},
         {"crop", nullptr, "crop", p.crop}};
+    if (!p.integrator.empty())
+        parts.push_back({"integrator", "integrator", "integrator", p.integrator});
     if (!p.clock.empty()) parts.push_back({nullptr, "clock", "clock", p.clock});
     if (p.filtering != TextureFiltering::Bilinear)
         parts.push_back({"filtering", "filtering", "filtering", NameOf(p.filtering)});

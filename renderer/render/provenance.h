@@ -26,7 +26,8 @@ struct Provenance {
     RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
     int maxDepth = 0;
-    int threads = 0;  // 0: all
+    std::string integrator = {};  // empty: paths from the camera alone
+    int threads = 0;              // 0: all
     bool substitute = false;
     TextureFiltering filtering = TextureFiltering::Bilinear;
     Vec2i resolution = {0, 0};

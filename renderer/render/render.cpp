@@ -7,6 +7,7 @@
 
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 #include "stopping/base/parallel.h"
 
@@ -36,6 +37,7 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
         throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
+    if (!alone && context.light) throw std::invalid_argument("several ranks trace no light paths");
     if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
@@ -57,6 +59,16 @@ SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner, bool thr
                                 FirstHit* firstHit) {
         PathOptions options = learner.Paths();
         options.throughSpecular = throughSpecular;
+        return RenderSample(scene, options, sampler, pixel, index, firstHit);
+    };
+}
+
+SampleSource SamplesOf(const Scene& scene, const LightRounds& light, bool throughSpecular) {
+    return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                FirstHit* firstHit) {
+        PathOptions options = Estimator::Combined;
+        options.throughSpecular = throughSpecular;
+        options.shares = light.Shares();
         return RenderSample(scene, options, sampler, pixel, index, firstHit);
     };
 }

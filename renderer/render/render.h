@@ -38,6 +38,7 @@ struct RenderState {
 };
 
 class GuideLearner;
+class LightRounds;
 class Peers;
 
 struct RenderOptions {
@@ -103,6 +104,9 @@ struct RenderContext {
     // Learns from the samples, in rounds; the source samples by its guide (guide_learning.h). Null:
     // nothing is learned.
     GuideLearner* learner = nullptr;
+    // Traces light paths in rounds; the source takes its shares of samples (light_rounds.h). Not
+    // with a learner, nor on several ranks. Null: none.
+    LightRounds* light = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
     // given the next pass. Then the render ends after the tiles under way: passes that are not
@@ -116,7 +120,7 @@ struct RenderContext {
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
 // callbacks; throws std::invalid_argument for layers of another region, and for a display on
-// several ranks.
+// several ranks, or for light paths.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
@@ -125,5 +129,6 @@ SampleSource SamplesOf(const Scene&, const PathOptions&);
 // The same, traced as the learner says at the time, which must outlive it too. For
 // `throughSpecular` see PathOptions.
 SampleSource SamplesOf(const Scene&, const GuideLearner&, bool throughSpecular = false);
+SampleSource SamplesOf(const Scene&, const LightRounds&, bool throughSpecular = false);
 
 }  // namespace lull

@@ -88,6 +88,13 @@ void Schedule::GoOn(int block, int target) {
     if (blocks[block].spp < options.roundEnd) StartPass(block, std::min(target, options.roundEnd));
 }
 
+int Schedule::LeastSpp() const {
+    int least = kNoRoundEnd;
+    for (const Block& block : blocks)
+        if (!block.stopped) least = std::min(least, block.spp);
+    return Done() ? 0 : least;
+}
+
 bool Schedule::IsRoundOver() const {
     return !Done() && std::ranges::none_of(progress, &Progress::underWay);
 }

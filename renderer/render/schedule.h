@@ -145,6 +145,9 @@ class Schedule {
     // schedule was.
     void CallTime();
 
+    // Returns the samples per pixel of the block that has the fewest, of those that have not
+    // stopped; 0 if all have.
+    int LeastSpp() const;
     // Returns whether all blocks that have not stopped have come to the end of the round.
     bool IsRoundOver() const;
     // Begins a round: makes the passes of these blocks ready.

@@ -6,6 +6,7 @@
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
 #include "renderer/render/first_look.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/time_limit.h"
 #include "stopping/base/input_file.h"
@@ -47,6 +48,11 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         context.layers.features = &*features;
         options.identity["features"] = "yes";
     }
+    if (IsBidirectional(scene.integrator)) {
+        light =
+            std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
+        context.light = light.get();
+    }
     if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
     learner.emplace(scene,
                     LearningOptions{.mode = options.guide.mode,
@@ -55,6 +61,8 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
                     region.Area());
     context.learner = &*learner;
 }
+
+Session::~Session() = default;
 
 void Session::DropFeatures() {
     features.reset();
@@ -75,8 +83,8 @@ void Session::Resume() {
     interrupted = ReadCheckpoint(checkpoint.file, options.identity, &film, context.layers, &guide,
                                  checkpoint.mayDiffer);
     context.interrupted = &*interrupted;
-    if (learner) try {
-            learner->Take(guide, film);
+    if (learner || light) try {
+            learner ? learner->Take(guide, film) : light->Take(guide);
         } catch (const std::runtime_error& e) {
             throw Error(checkpoint.file + ": " + e.what());
         }
@@ -128,8 +136,9 @@ void Session::SetSource() {
     // the same hits, take precedence.
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
-    context.source =
-        learner ? SamplesOf(scene, *learner, paths.throughSpecular) : SamplesOf(scene, paths);
+    context.source = learner ? SamplesOf(scene, *learner, paths.throughSpecular)
+                     : light ? SamplesOf(scene, *light, paths.throughSpecular)
+                             : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the
@@ -146,7 +155,9 @@ void Session::KeepCheckpoints() {
 // warning `said` is not repeated: a disk stays full for more than one attempt.
 std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
     WriteCheckpoint(options.checkpoint.file, options.identity, state, film, context.layers,
-                    learner ? learner->Save() : std::vector<std::byte>());
+                    learner ? learner->Save()
+                    : light ? light->Save()
+                            : std::vector<std::byte>());
     return "";
 } catch (const Error& e) {
     if (e.what() != said) Tell(options.render.events.onWarning, "no checkpoint: {}", e.what());

@@ -52,6 +52,7 @@ class Session {
   public:
     // The scene must outlive it. Where it cannot be guided it is not, see Guidance().
     Session(const Scene&, const PixelRect& region, SessionOptions);
+    ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
@@ -92,6 +93,7 @@ class Session {
     std::optional<MatteFilm> mattes;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
+    std::unique_ptr<LightRounds> light;
     RenderContext context;
 };
 

@@ -50,13 +50,23 @@ bool HasInterfaces(const Description& description) {
                        [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
 }
 
-void ReadIntegrator(const Description& description, const CompileOptions& options, Scene* scene,
-                    Warnings& warnings) {
+void ReadMedia(const Description& description, Scene* scene, Warnings& warnings) {
     scene->media = MediumTable(description, warnings);
     scene->isVolumetric = IntegratorSeesMedia(description.integrator.name) &&
                           (!scene->media.media.empty() || HasInterfaces(description));
-    scene->integrator =
-        MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric, warnings);
+}
+
+// Returns why subpaths from lights cannot be traced; null: they can.
+const char* WhyNotBdpt(const Description& description, const CompileOptions& options,
+                       const Scene& scene) {
+    if (options.lightsAsPbrtV3) return "pbrt-v3's estimator is for paths from the camera";
+    if (scene.isVolumetric)
+        return scene.media.media.empty() ? "the scene has surfaces without a material"
+                                         : "the scene has participating media";
+    for (size_t i = 0; i < description.materials.size(); ++i)
+        if (scene.materials.Needs(int(i)) & kScattersBelow)
+            return "the scene has subsurface scattering";
+    return nullptr;
 }
 
 // Refuses cameras whose rays Embree would not take.
@@ -72,11 +82,16 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     auto scene = std::make_unique<Scene>();
     const bool seesAll =
         warnings.Try([&] { ReadView(description, options, scene.get(), warnings); });
-    warnings.Try([&] { ReadIntegrator(description, options, scene.get(), warnings); });
+    warnings.Try([&] { ReadMedia(description, scene.get(), warnings); });
 
     scene->textureSeconds = Timed([&] {
         scene->textures = TextureTable(description, warnings, options.filtering);
         scene->materials = MaterialTable(description, scene->textures, warnings);
+    });
+    warnings.Try([&] {
+        scene->integrator =
+            MakeIntegrator(description.integrator, options.maxDepth, scene->isVolumetric,
+                           WhyNotBdpt(description, options, *scene), warnings);
     });
     scene->shapeSeconds = Timed([&] {
         warnings.Try([&] {
@@ -84,6 +99,9 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
             if (seesAll) CheckCamera(*scene, description.camera.loc);
             scene->lights = LightTable(description, scene->shapes, scene->textures,
                                        options.lightsAsPbrtV3, warnings);
+            if (IsBidirectional(scene->integrator))
+                scene->emission =
+                    std::make_unique<const LightEmission>(scene->lights, scene->shapes.bounds);
         });
     });
     warnings.ThrowErrors();

@@ -83,6 +83,20 @@ Filter::Filter(const Description& description, Warnings& warnings) {
     }
 }
 
+float Filter::Evaluate(const Vec2f& offset) const {
+    float product = 1;
+    for (int i = 0; i < 2; ++i) {
+        const float x = 0.5f * (offset[i] / radius[i] + 1);
+        if (!(x >= 0 && x < 1)) return 0;
+        product /= 2 * radius[i];
+        if (!tabulated) continue;
+        const Axis& axis = axes[i];
+        const int bin = std::min(int(x * float(axis.values.size())), int(axis.values.size()) - 1);
+        product *= std::copysign(axis.weightScale, axis.values[bin]) * axis.density.Pdf(x);
+    }
+    return product;
+}
+
 FilterSample Filter::SampleTable(const Vec2f& u) const {
     FilterSample sample{Vec2f::Zero(), 1};
     for (int i = 0; i < 2; ++i) {

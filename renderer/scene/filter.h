@@ -26,6 +26,11 @@ class Filter {
         return SampleTable(u);
     }
 
+    // Returns the weight of light that arrives at an offset from the pixel's centre, as if all
+    // within the radius were sampled evenly: its integral over the offsets is 1.
+    float Evaluate(const Vec2f& offset) const;
+    const Vec2f& Radius() const { return radius; }  // pixels; beyond it the filter is 0
+
   private:
     // Every filter here is a product of one function of x and one of y.
     struct Axis {

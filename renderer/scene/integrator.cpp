@@ -7,10 +7,33 @@
 
 namespace lull {
 
-std::string PathIntegrator::Text() const {
+namespace {
+
+std::string TextOfDepth(int maxDepth, float rrThreshold) {
     return fmt::format("up to {} bounce{}; Russian roulette below a throughput of {:g}", maxDepth,
                        maxDepth == 1 ? "" : "s", rrThreshold);
 }
+
+// Reads the parameters that all kinds have.
+template <typename Kind>
+Kind ReadDepth(const Entity& entity, int maxDepth) {
+    Kind kind;
+    kind.maxDepth = entity.parameters.GetInt("maxdepth", kind.maxDepth);
+    kind.rrThreshold = entity.parameters.GetFloat("rrthreshold", kind.rrThreshold);
+    if (maxDepth >= 0) kind.maxDepth = maxDepth;
+    if (kind.maxDepth < 0) throw Error(entity.loc, "\"maxdepth\" has to be at least 0");
+    entity.parameters.GetString("lightsamplestrategy", "");  // the light table reads it
+    return kind;
+}
+
+bool AsksForBdpt(const std::string& name) {
+    return name == "bdpt" || name == "mlt" || name == "sppm";
+}
+
+}  // namespace
+
+std::string PathIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
+std::string BdptIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
 
 std::string NameOf(const Integrator& integrator, bool isVolumetric) {
     return std::visit([&](const auto& kind) { return kind.Name(isVolumetric); }, integrator);
@@ -29,20 +52,39 @@ bool CanBeGuided(const Integrator& integrator) {
 }
 
 Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
-                          Warnings& warnings) {
-    const Parameters& params = entity.parameters;
+                          const char* beyondBdpt, Warnings& warnings) {
+    const auto warn = [&](const char* name, const std::string& why) {
+        warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"{}",
+                                             Printable(entity.name), name, why));
+    };
+    const auto reportUnused = [&] {
+        entity.parameters.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
+    };
+    if (AsksForBdpt(entity.name) && !beyondBdpt) {
+        auto bdpt = ReadDepth<BdptIntegrator>(entity, maxDepth);
+        if (bdpt.maxDepth > BdptIntegrator::kMostBounces) {
+            warnings.Add(entity.loc, fmt::format("paths of \"bdpt\" have {} bounces at most",
+                                                 BdptIntegrator::kMostBounces));
+            bdpt.maxDepth = BdptIntegrator::kMostBounces;
+        }
+        if (entity.name != "bdpt") {
+            warn(BdptIntegrator::Name(isVolumetric), "");
+            return bdpt;
+        }
+        // Of pbrt-v3's pictures of single strategies there are none.
+        for (const char* name : {"visualizestrategies", "visualizeweights"})
+            if (entity.parameters.GetBool(name, false))
+                warnings.Add(entity.loc, fmt::format("\"{}\" has no effect", name));
+        reportUnused();
+        return bdpt;
+    }
+    const auto path = ReadDepth<PathIntegrator>(entity, maxDepth);
     // volpath is path where there is nothing else for it to see.
-    const bool isKnown = entity.name == "path" || entity.name == "volpath";
-    PathIntegrator path;
-    if (!isKnown)
-        warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"",
-                                             Printable(entity.name), path.Name(isVolumetric)));
-    path.maxDepth = params.GetInt("maxdepth", path.maxDepth);
-    path.rrThreshold = params.GetFloat("rrthreshold", path.rrThreshold);
-    if (maxDepth >= 0) path.maxDepth = maxDepth;
-    if (path.maxDepth < 0) throw Error(entity.loc, "\"maxdepth\" has to be at least 0");
-    params.GetString("lightsamplestrategy", "");  // the light table reads it
-    if (isKnown) params.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
+    if (entity.name == "path" || entity.name == "volpath")
+        reportUnused();
+    else
+        warn(path.Name(isVolumetric),
+             AsksForBdpt(entity.name) ? fmt::format(", as {}", beyondBdpt) : "");
     return path;
 }
 

@@ -21,17 +21,37 @@ struct PathIntegrator {
     std::string Text() const;
 };
 
+// Paths from the camera and from lights, connected in all ways: pbrt-v3's "bdpt".
+struct BdptIntegrator {
+    static constexpr bool kCanBeGuided = false;
+    // Of maxDepth: longer subpaths from lights would have to be kept.
+    static constexpr int kMostBounces = 100;
+
+    int maxDepth = 5;
+    float rrThreshold = 1;
+
+    static const char* Name(bool) { return "bdpt"; }
+    std::string Text() const;
+};
+
 // All kinds.
-using Integrator = std::variant<PathIntegrator>;
+using Integrator = std::variant<PathIntegrator, BdptIntegrator>;
+
+// Returns whether it starts paths from lights.
+inline bool IsBidirectional(const Integrator& integrator) {
+    return std::holds_alternative<BdptIntegrator>(integrator);
+}
 
 std::string NameOf(const Integrator&, bool isVolumetric);
 std::string TextOf(const Integrator&);  // its parameters in words
 int MaxDepth(const Integrator&);
 bool CanBeGuided(const Integrator&);
 
-// Reads a scene's directive, with a warning if it substitutes another kind.
+// Reads a scene's directive, with a warning if it substitutes another kind: "path" stands in for
+// "bdpt" where that cannot do what the scene `asks` for, as the words say, or null.
 // `maxDepth`, unless negative, replaces the scene's, which may be `isVolumetric`. Throws
 // Error for bad parameters.
-Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, Warnings&);
+Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, const char* beyondBdpt,
+                          Warnings&);
 
 }  // namespace lull

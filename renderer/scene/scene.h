@@ -10,7 +10,7 @@
 #include "renderer/scene/geometry/accelerator.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/integrator.h"
-#include "renderer/scene/light_table.h"
+#include "renderer/scene/light_emission.h"
 #include "renderer/scene/material.h"
 #include "renderer/scene/medium_table.h"
 #include "renderer/scene/texture.h"
@@ -34,6 +34,7 @@ struct Scene {
     ShapeTable shapes;
     MediumTable media;
     LightTable lights;
+    std::unique_ptr<const LightEmission> emission;  // of a BdptIntegrator; null: none
     Accelerator accelerator;
 
     // Seconds that the parts of compilation took, for reports.

@@ -15,6 +15,12 @@ class GuideRecord;
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
 
+// How many samples the strategies of bidirectional path tracing take for one of a pixel.
+struct BdptShares {
+    float lightPaths = 0;   // that are seen from the camera, in [0, 1]
+    float connections = 1;  // subpaths from lights to connect to, in (0, 1]
+};
+
 // How paths are traced. Its pointees must outlive it.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
@@ -29,12 +35,16 @@ struct PathOptions {
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;
+    BdptShares shares = {};  // of scenes with a BdptIntegrator
 };
 
 struct PathSample {
     Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
     bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
     int vertices = 0;  // of the path, without the camera; of guided paths alone
+    // The share of the luminance that connections to subpaths from lights have found; of
+    // BdptIntegrator alone.
+    float connected = 0;
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

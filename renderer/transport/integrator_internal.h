@@ -44,5 +44,7 @@ struct SampleStart {
 // null, or gets all of a FirstHit except the data of the sample itself.
 PathSample Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
               FirstHit* firstHit);
+PathSample Li(const BdptIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
+              FirstHit* firstHit);
 
 }  // namespace lull

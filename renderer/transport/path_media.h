@@ -13,6 +13,19 @@ struct Sighting {
     Rgb share = Rgb::Ones();  // of its light that gets to where the ray starts, an estimate
 };
 
+// Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
+// the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
+// turns a grazing ray to the other side of the surface, it would pass through: that is in shadow.
+[[gnu::always_inline]] inline bool SeesLight(const Scene& scene, float time, const SurfaceVertex& v,
+                                             const LightSample& light) {
+    const auto occluded = [&](const Ray& ray) { return scene.accelerator.Occluded(ray, time); };
+    if (light.isAtInfinity) return !occluded(v.hit.SpawnRay(light.wi));
+    const Vec3f origin = v.OriginTowards(light.wi);
+    const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
+    const Vec3f d = target - origin;
+    return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
+}
+
 // Without media: nothing is there. As with pbrt-v3's path integrator, interfaces block shadow rays.
 struct NoMedia {
     static constexpr bool kExist = false;
@@ -20,20 +33,9 @@ struct NoMedia {
 
     explicit NoMedia(const Scene&) {}
 
-    // Traces the ray from a surface point to a light's point. Both ends are moved off their
-    // surfaces; the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that
-    // or rounding turns a grazing ray to the other side of the surface, it would pass through: that
-    // is in shadow.
     [[gnu::always_inline]] static bool Sees(const Context& context, const SurfaceVertex& v,
                                             const LightSample& light) {
-        const auto occluded = [&](const Ray& ray) {
-            return context.scene.accelerator.Occluded(ray, context.camera.time);
-        };
-        if (light.isAtInfinity) return !occluded(v.hit.SpawnRay(light.wi));
-        const Vec3f origin = v.OriginTowards(light.wi);
-        const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
-        const Vec3f d = target - origin;
-        return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
+        return SeesLight(context.scene, context.camera.time, v, light);
     }
 
     // Returns whether a ray in direction wi leaves the scene.

@@ -26,6 +26,8 @@
 //         returns a point as seen from `from`; nothing where all of E is seen edge-on;
 //     float Pdf(const E&, const Vec3f& from, const Vec3f& p, const Vec3f& n)
 //         returns the density, 1/sr, with which Sample finds p, where the normal is n; finite;
+//     ShapeSample SampleArea(const E&, const Vec2f& u)
+//         returns a point of E, evenly by area: its `pdf` is 1 / Area();
 //     float Area() const
 //     Bounds3f WorldBounds() const
 //     NormalBounds Normals() const

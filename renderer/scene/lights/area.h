@@ -57,8 +57,6 @@ struct AreaLight {
 
     std::optional<LightBounds> Bounds() const;
     Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
-
-  private:
     float Area() const {
         return VisitEmitter(surface, [](const auto& e) { return e.Area(); });
     }

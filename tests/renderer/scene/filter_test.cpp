@@ -133,6 +133,30 @@ TEST(Filter, PositiveOnesHaveWeightOne) {
     }
 }
 
+// The mean of a function over samples is its integral with the filter's values.
+TEST(Filter, HasTheValuesThatItSamples) {
+    const auto function = [](const Vec2f& p) { return double(1 + p.x() + Sqr(p.y())); };
+    for (const char* kind : {"box", "gaussian", "mitchell", "triangle", "sinc"}) {
+        const Filter filter = MakeFilter(kind, {});
+        const Vec2f radius = filter.Radius();
+        constexpr int kSteps = 512;
+        double integral = 0, sampled = 0, squares = 0;
+        for (int y = 0; y < kSteps; ++y)
+            for (int x = 0; x < kSteps; ++x) {
+                const Vec2f u((float(x) + 0.5f) / kSteps, (float(y) + 0.5f) / kSteps);
+                const Vec2f offset = (2 * u - Vec2f::Ones()).cwiseProduct(radius);
+                integral += double(filter.Evaluate(offset)) * function(offset) * 4 *
+                            double(radius.prod()) / Sqr(double(kSteps));
+                const FilterSample sample = filter.Sample(u);
+                const double value = double(sample.weight) * function(sample.offset);
+                sampled += value / Sqr(double(kSteps));
+                squares += value * value / Sqr(double(kSteps));
+            }
+        EXPECT_NEAR(integral, sampled, 0.01 + 0.02 * std::abs(sampled)) << kind;
+        EXPECT_EQ(filter.Evaluate(radius * 1.01f), 0) << kind;
+    }
+}
+
 TEST(Filter, RefusesWhatItCannotSample) {
     EXPECT_TRUE(Contains(ErrorOf([] { MakeFilter("lanczos", {}); }), "scene.pbrt:3: "));
     EXPECT_NE(ErrorOf([] { MakeFilter("sinc", {FloatParameter("tau", {0})}); }), "");

@@ -11,12 +11,12 @@ namespace lull::integrator_test {
 namespace {
 
 Integrator Read(const std::string& directive, Warnings* warnings, int maxDepth = -1,
-                bool isVolumetric = false) {
+                bool isVolumetric = false, const char* beyondBdpt = nullptr) {
     const TemporaryDirectory directory;
     Warnings ofParser;
     const Description description =
         ParsePbrt(directory.Write("test.pbrt", directive + "\nWorldBegin\nWorldEnd\n"), ofParser);
-    return MakeIntegrator(description.integrator, maxDepth, isVolumetric, *warnings);
+    return MakeIntegrator(description.integrator, maxDepth, isVolumetric, beyondBdpt, *warnings);
 }
 
 TEST(Integrator, IsPathUnlessTheSceneSays) {
@@ -46,12 +46,42 @@ TEST(Integrator, HasTheParametersOfTheScene) {
 
 TEST(Integrator, OfAnotherKindIsPathWithAWarning) {
     Warnings warnings;
-    EXPECT_EQ(MaxDepth(Read("Integrator \"mlt\" \"integer maxdepth\" [9] \"integer chains\" [3]",
-                            &warnings, -1, true)),
-              9);
+    EXPECT_EQ(
+        MaxDepth(Read("Integrator \"whitted\" \"integer maxdepth\" [9]", &warnings, -1, true)), 9);
     const std::map<std::string, int> expected = {
-        {"Integrator \"mlt\" is rendered as \"volpath\"", 1}};
+        {"Integrator \"whitted\" is rendered as \"volpath\"", 1}};
     EXPECT_EQ(warnings.Counts(), expected);
+}
+
+TEST(Integrator, StartsPathsFromLightsWhereTheSceneSays) {
+    Warnings warnings;
+    const Integrator bdpt = Read("Integrator \"bdpt\" \"integer maxdepth\" [9]", &warnings);
+    EXPECT_EQ(NameOf(bdpt, false), "bdpt");
+    EXPECT_EQ(MaxDepth(bdpt), 9);
+    EXPECT_TRUE(IsBidirectional(bdpt));
+    EXPECT_FALSE(CanBeGuided(bdpt));
+    EXPECT_EQ(warnings.Total(), 0);
+    for (const char* name : {"mlt", "sppm"})
+        EXPECT_TRUE(IsBidirectional(
+            Read(std::string("Integrator \"") + name + "\" \"integer chains\" [3]", &warnings)));
+    const std::map<std::string, int> expected = {
+        {"Integrator \"mlt\" is rendered as \"bdpt\"", 1},
+        {"Integrator \"sppm\" is rendered as \"bdpt\"", 1}};
+    EXPECT_EQ(warnings.Counts(), expected);
+}
+
+TEST(Integrator, IsPathWhereLightPathsCannotGo) {
+    Warnings warnings;
+    EXPECT_FALSE(IsBidirectional(Read("Integrator \"bdpt\"", &warnings, -1, true, "there is fog")));
+    const std::map<std::string, int> expected = {
+        {"Integrator \"bdpt\" is rendered as \"volpath\", as there is fog", 1}};
+    EXPECT_EQ(warnings.Counts(), expected);
+}
+
+TEST(Integrator, KeepsSubpathsFromLightsShort) {
+    Warnings warnings;
+    EXPECT_EQ(MaxDepth(Read("Integrator \"bdpt\"", &warnings, 1000)), 100);
+    EXPECT_EQ(warnings.Total(), 1);
 }
 
 TEST(Integrator, ReportsWhatItCannotUse) {

@@ -55,12 +55,18 @@ NormalBounds Disk::Normals() const {
     return {SampledNormal(*this), 1, place.reverseOrientation != place.flipNormals};
 }
 
-std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {
+ShapeSample SampleArea(const Disk& disk, const Vec2f& u) {
     const Vec2f d = disk.radius * SampleConcentricDisk(u);
     ShapeSample sample;
     std::tie(sample.p, sample.pError) = TransformWithError(
         disk.place.worldFromShape, Vec3f(d.x(), d.y(), disk.height), Vec3f::Zero());
     sample.n = SampledNormal(disk);
+    sample.pdf = 1 / disk.Area();
+    return sample;
+}
+
+std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {
+    ShapeSample sample = SampleArea(disk, u);
     sample.pdf = SolidAnglePdf(1 / disk.Area(), from, sample.p, sample.n);
     if (!(sample.pdf > 0)) return {};
     return sample;

@@ -174,8 +174,7 @@ EmittingTriangle Mesh::EmitterAt(uint32_t triangle) const {
     return {p[v[0]], p[v[1]], p[v[2]], normal, 2 / twiceArea};
 }
 
-std::optional<ShapeSample> Sample(const EmittingTriangle& triangle, const Vec3f& from,
-                                  const Vec2f& u) {
+ShapeSample SampleArea(const EmittingTriangle& triangle, const Vec2f& u) {
     const Vec2f b = SampleUniformTriangle(u);
     const Vec3f q0 = b.x() * triangle.p0, q1 = b.y() * triangle.p1,
                 q2 = (1 - b.x() - b.y()) * triangle.p2;
@@ -183,6 +182,13 @@ std::optional<ShapeSample> Sample(const EmittingTriangle& triangle, const Vec3f&
     sample.p = q0 + q1 + q2;
     sample.pError = Gamma(6) * (q0.cwiseAbs() + q1.cwiseAbs() + q2.cwiseAbs());
     sample.n = triangle.n;
+    sample.pdf = triangle.areaPdf;
+    return sample;
+}
+
+std::optional<ShapeSample> Sample(const EmittingTriangle& triangle, const Vec3f& from,
+                                  const Vec2f& u) {
+    ShapeSample sample = SampleArea(triangle, u);
     sample.pdf = SolidAnglePdf(triangle.areaPdf, from, sample.p, triangle.n);
     if (!(sample.pdf > 0)) return {};
     return sample;

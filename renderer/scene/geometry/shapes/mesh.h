@@ -21,6 +21,7 @@ struct EmittingTriangle {
 
 // Samples uniformly by area, with the barycentric coordinates of SampleUniformTriangle(u).
 std::optional<ShapeSample> Sample(const EmittingTriangle&, const Vec3f& from, const Vec2f& u);
+ShapeSample SampleArea(const EmittingTriangle&, const Vec2f& u);
 inline float Pdf(const EmittingTriangle& triangle, const Vec3f& from, const Vec3f& p,
                  const Vec3f& n) {
     return SolidAnglePdf(triangle.areaPdf, from, p, n);

@@ -48,6 +48,10 @@ void Interact(const Disk&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteract
 std::optional<ShapeSample> Sample(const Sphere&, const Vec3f& from, const Vec2f& u);
 std::optional<ShapeSample> Sample(const Disk&, const Vec3f& from, const Vec2f& u);
 
+// By area spheres are sampled where they are not clipped, disks as above.
+ShapeSample SampleArea(const Sphere&, const Vec2f& u);
+ShapeSample SampleArea(const Disk&, const Vec2f& u);
+
 float Pdf(const Sphere&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 float Pdf(const Disk&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 

@@ -219,7 +219,7 @@ void Interact(const Revolved& shape, const Ray& worldRay, const Hit& found, Surf
     hit->surfaceDpdv = hit->dpdv;
 }
 
-std::optional<ShapeSample> Sample(const Revolved& shape, const Vec3f& from, const Vec2f& u) {
+ShapeSample SampleArea(const Revolved& shape, const Vec2f& u) {
     const auto z = float((1 - u.x()) * shape.zMin + u.x() * shape.zMax);
     const float phi = u.y() * shape.phiMax, radius = float(shape.start.x());
     const Vec3f p(radius * std::cos(phi), radius * std::sin(phi), z);
@@ -228,6 +228,12 @@ std::optional<ShapeSample> Sample(const Revolved& shape, const Vec3f& from, cons
         TransformWithError(shape.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
     sample.n = TransformNormal(shape.place.shapeFromWorld, Vec3f(p.x(), p.y(), 0)).normalized();
     if (shape.place.reverseOrientation) sample.n = -sample.n;
+    sample.pdf = 1 / shape.Area();
+    return sample;
+}
+
+std::optional<ShapeSample> Sample(const Revolved& shape, const Vec3f& from, const Vec2f& u) {
+    ShapeSample sample = SampleArea(shape, u);
     sample.pdf = SolidAnglePdf(1 / shape.Area(), from, sample.p, sample.n);
     if (!(sample.pdf > 0)) return {};
     return sample;

@@ -8,7 +8,7 @@ namespace lull {
 
 struct ShapeSample {
     Vec3f p, pError, n;  // world; n unit, on the side that emits
-    float pdf = 0;       // 1/sr, as seen from the reference point; positive and finite
+    float pdf = 0;       // 1/sr, as seen from the reference point; positive and finite. Or 1/m^2
 };
 
 // Bounds normals by a cone about an axis.

@@ -111,6 +111,19 @@ std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const
     return sample;
 }
 
+ShapeSample SampleArea(const Sphere& sphere, const Vec2f& u) {
+    const float z = Lerp(u.x(), sphere.zMin, sphere.zMax), phi = u.y() * sphere.phiMax;
+    const float r = SafeSqrt(Sqr(sphere.radius) - Sqr(z));
+    const Vec3f p(r * std::cos(phi), r * std::sin(phi), z);
+    ShapeSample sample;
+    std::tie(sample.p, sample.pError) =
+        TransformWithError(sphere.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
+    sample.n = TransformNormal(sphere.place.shapeFromWorld, p).normalized();
+    if (sphere.place.reverseOrientation) sample.n = -sample.n;
+    sample.pdf = 1 / sphere.Area();
+    return sample;
+}
+
 float Pdf(const Sphere& sphere, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
     if (IsInside(sphere, from)) return SolidAnglePdf(1 / sphere.Area(), from, p, n);
     const float sin2Max = Sqr(sphere.radius) / (Center(sphere) - from).squaredNorm();

@@ -1,0 +1,67 @@
+// Sums up light that falls on pixels from light paths, as integers: the sums are the same bits in
+// any order.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+
+#include "renderer/base/color.h"
+#include "renderer/film/pixel_plane.h"
+
+namespace lull {
+
+// Sums in steps of a unit that the plane's owner knows.
+struct LightPixel {
+    std::array<int64_t, 3> sum = {}, halfSum = {};
+    int64_t squares = 0;  // of luminance
+};
+
+// The pixels of a film's region: 56 bytes a pixel.
+class LightPlane : public PixelPlane<LightPixel> {
+  public:
+    // Values are about as large as `unit`, > 0, W/(m^2 sr): differences below 2^-24 of it are lost,
+    // and values above 2^26 times it are taken as that.
+    LightPlane(const PixelRect& region, double unit)
+        : PixelPlane(region), perStep(std::ldexp(unit, -kBits)), squaresPerStep(unit * unit / 64) {}
+
+    // Adds to a pixel, from any thread.
+    void Add(const Vec2i& p, const Rgb& radiance, bool inHalf) {
+        constexpr double kMost = 0x1p50, kMostSquares = 0x1p54;
+        LightPixel& pixel = At(p);
+        for (size_t c = 0; c < 3; ++c) {
+            const auto steps = int64_t(std::llround(
+                std::clamp(double(radiance[Eigen::Index(c)]) / perStep, -kMost, kMost)));
+            if (steps == 0) continue;
+            std::atomic_ref(pixel.sum[c]).fetch_add(steps, std::memory_order_relaxed);
+            if (inHalf)
+                std::atomic_ref(pixel.halfSum[c]).fetch_add(steps, std::memory_order_relaxed);
+        }
+        const double y = double(Luminance(radiance));
+        const auto squares = int64_t(std::llround(std::min(y * y / squaresPerStep, kMostSquares)));
+        std::atomic_ref(pixel.squares).fetch_add(squares, std::memory_order_relaxed);
+    }
+
+    // Light of a pixel, in W/(m^2 sr).
+    struct Sums {
+        std::array<double, 3> sum, halfSum;
+        double squares;
+    };
+    Sums SumsAt(const Vec2i& p) const {
+        const LightPixel& pixel = At(p);
+        Sums sums;
+        for (size_t c = 0; c < 3; ++c) {
+            sums.sum[c] = double(pixel.sum[c]) * perStep;
+            sums.halfSum[c] = double(pixel.halfSum[c]) * perStep;
+        }
+        sums.squares = double(pixel.squares) * squaresPerStep;
+        return sums;
+    }
+
+  private:
+    static constexpr int kBits = 24;
+    double perStep, squaresPerStep;
+};
+
+}  // namespace lull

@@ -1,0 +1,173 @@
+#include "renderer/render/light_rounds.h"
+
+#include <tbb/parallel_for.h>
+
+namespace lull {
+
+namespace {
+
+constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
+
+// Shares below which no strategy falls: it has to be seen where it would bring much.
+constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.03f;
+// With few connections the weights leave to other strategies all that these can find as well: only
+// the rest makes them more.
+constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
+// Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
+// with the light that is sampled at their vertices (renderer/docs/bdpt.md).
+constexpr double kCostOfPath = 1, kCostOfConnections = 2.5;
+
+// Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over
+// `cost`, has it beside the variance of camera's subpaths, whose cost is 1.
+float Moved(float share, double variance, double cost, double ofCamera, float least) {
+    if (!(ofCamera > 0)) return share;
+    const double best = std::sqrt(variance / cost / ofCamera);
+    return std::clamp(float(std::sqrt(double(share) * best)), least, 1.f);
+}
+
+}  // namespace
+
+LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind, uint64_t seed)
+    : scene(scene),
+      region(film.Region()),
+      kind(kind),
+      seed(seed),
+      learned(kFirst),
+      shares(learned),
+      spreads(film.TileCount()),
+      unit(FindUnit()),
+      plane(region, unit) {}
+
+// Returns about the mean of what light paths bring, from a few of them.
+double LightRounds::FindUnit() const {
+    constexpr uint32_t kMost = 1 << 16;
+    constexpr int kEnough = 256;
+    if (LightPathCount(scene, shares) == 0) return 1;
+    Sampler sampler(kind, seed);
+    double sum = 0;
+    int count = 0;
+    for (uint32_t i = 0; i < kMost && count < kEnough; ++i)
+        TraceLightPath(scene, shares, sampler, 0, i, [&](const Splat& splat) {
+            const double y = double(Luminance(splat.radiance));
+            if (!(y > 0)) return;
+            sum += y;
+            ++count;
+        });
+    if (count == 0) return double(scene.film.scale);
+    return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
+}
+
+// Blocks that have stopped in the round were active when it began.
+void LightRounds::Begin(const Schedule& schedule) {
+    first = schedule.LeastSpp();
+    end = PassEndAfter(first, schedule.Options());
+    int64_t active = 0;
+    for (const Block& block : schedule.Blocks())
+        if (!block.stopped || block.spp > first) active += block.pixels.Area();
+    const double part = double(active) / double(std::max<int64_t>(1, region.Area()));
+    shares = learned;
+    shares.lightPaths = std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
+    plane = LightPlane(region, unit);
+}
+
+bool LightRounds::Trace(const std::function<bool()>& isCancelled) {
+    const auto paths = uint32_t(LightPathCount(scene, shares));
+    const uint32_t chunks = (paths + kChunk - 1) / kChunk;
+    std::atomic<bool> isWhole = true;
+    tbb::parallel_for(uint64_t(0), uint64_t(chunks) * uint64_t(end - first), [&](uint64_t i) {
+        if (isCancelled && isCancelled()) isWhole = false;
+        if (!isWhole) return;
+        const auto begin = uint32_t(i % chunks) * kChunk;
+        TraceSome(uint32_t(first) + uint32_t(i / chunks), begin, std::min(begin + kChunk, paths));
+    });
+    return isWhole;
+}
+
+void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
+    Sampler sampler(kind, seed);
+    const Filter& filter = scene.filter;
+    const Vec2f radius = filter.Radius(), middle(0.5f, 0.5f);
+    const bool inHalf = InHalf(sample);
+    const std::function<void(const Splat&)> splat = [&](const Splat& s) {
+        const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
+        const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
+        const Vec2i to =
+            high.array().floor().cast<int>().matrix().cwiseMin(region.max - Vec2i(1, 1));
+        for (int y = from.y(); y <= to.y(); ++y)
+            for (int x = from.x(); x <= to.x(); ++x) {
+                const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
+                if (weight != 0) plane.Add({x, y}, s.radiance * weight, inHalf);
+            }
+    };
+    for (uint32_t i = begin; i < stop; ++i)
+        TraceLightPath(scene, shares, sampler, sample, i, splat);
+}
+
+void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel* sums,
+                        const Layers& layers) const {
+    const LightPlane::Sums light = plane.SumsAt(p);
+    // Passes of a render that goes on with another rule may begin within a round.
+    const double samples = double(end) - double(from), share = samples / double(end - first);
+    for (size_t c = 0; c < 3; ++c) {
+        sums->sum[c] += light.sum[c] * share;
+        sums->halfSum[c] += light.halfSum[c] * share;
+    }
+    if (!layers.aovs && !layers.features) return;
+    // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
+    // process.
+    const double each =
+        (0.212671 * light.sum[0] + 0.715160 * light.sum[1] + 0.072169 * light.sum[2]) /
+        double(end - first);
+    const double squares = light.squares * share + 2 * each * camera + samples * each * each;
+    if (layers.aovs) layers.aovs->At(p).squares += squares;
+    if (layers.features) layers.features->At(p).squares += float(squares);
+}
+
+void LightRounds::Learn(const Film& film) {
+    // Sums over tiles, by the square of their brightness.
+    std::vector<double> light(spreads.size(), 0), brightness(spreads.size(), 0);
+    std::vector<int> pixels(spreads.size(), 0);
+    double mean = 0;
+    for (int y = region.min.y(); y < region.max.y(); ++y)
+        for (int x = region.min.x(); x < region.max.x(); ++x) {
+            const size_t tile = film.TileAt({x, y});
+            const double l = double(Luminance(film.MeanAt({x, y})));
+            light[tile] += plane.SumsAt({x, y}).squares;
+            brightness[tile] += l;
+            ++pixels[tile];
+            mean += l / double(region.Area());
+        }
+    double ofCamera = 0, ofConnections = 0, ofPaths = 0;  // variances of a sample
+    for (size_t i = 0; i < spreads.size(); ++i) {
+        const SampleSpread& spread = spreads[i];
+        if (spread.freedom <= 0) continue;
+        const double l = brightness[i] / pixels[i] + 0.1 * mean, weight = pixels[i] / (l * l);
+        if (!(weight > 0 && weight < double(kInfinity))) continue;
+        const double samples = double(spread.samples);
+        ofCamera += weight * spread.squares / double(spread.freedom);
+        ofConnections += weight * spread.connected / samples;
+        ofPaths += weight * light[i] / samples;
+    }
+    spreads.assign(spreads.size(), {});
+    if (!(ofCamera > 0)) return;
+    const double rest = std::max(ofCamera - ofConnections, 0.1 * ofCamera);
+    learned.connections = Moved(learned.connections, ofConnections * double(shares.connections),
+                                kCostOfConnections, rest, kLeastConnections);
+    learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(shares.lightPaths), kCostOfPath,
+                               ofCamera, kLeastPaths);
+}
+
+std::vector<std::byte> LightRounds::Save() const {
+    StateWriter writer;
+    writer.Put(learned);
+    writer.PutAll(std::span(spreads));
+    return std::move(writer.bytes);
+}
+
+void LightRounds::Take(std::span<const std::byte> bytes) {
+    StateReader reader(bytes);
+    learned = reader.Get<BdptShares>();
+    reader.GetAll(std::span(spreads));
+}
+
+}  // namespace lull

@@ -1,0 +1,76 @@
+// Traces the light paths of a bidirectional render, in rounds.
+//
+// Light falls anywhere on the image, whatever block it is traced for. So no block begins a pass of
+// the next round before all active blocks have completed this one. At the start of a round its
+// light paths are traced, with no other thread at work, into an image that each pixel takes at the
+// end of its samples of the round: light path (k, i) belongs to sample k of all pixels, and is in
+// the half if that is (InHalf()). It depends on the seed, k and i alone; the image's sums are
+// integers. So film, checkpoints and rules see nothing but samples, an interrupted round's light
+// is traced again to the same bits, and the memory is that of one image.
+//
+// How many samples the strategies take follows from the variance that they had in the round before,
+// as in stratified sampling (Neyman 1934): in proportion to the root of the variance over the cost.
+// A round's shares depend on samples before it alone, so that the mean stays as it is.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "renderer/film/layers.h"
+#include "renderer/film/light_plane.h"
+#include "renderer/render/guide_tally.h"
+#include "renderer/render/schedule.h"
+#include "renderer/transport/bdpt.h"
+
+namespace lull {
+
+class LightRounds {
+  public:
+    // The scene, whose integrator is BdptIntegrator, must outlive it; of the film it is the region
+    // and the number of tiles.
+    LightRounds(const Scene&, const Film&, SamplerKind, uint64_t seed);
+    LightRounds(const LightRounds&) = delete;
+    LightRounds& operator=(const LightRounds&) = delete;
+
+    // Returns the samples that the strategies of this round take.
+    const BdptShares& Shares() const { return shares; }
+    // Returns the spp at which the round ends.
+    int End() const { return end; }
+
+    // Begins the round that the active blocks are in, or come to next. Light paths are the fewer,
+    // the fewer pixels are left that wait for them.
+    void Begin(const Schedule&);
+    // Traces its light, on all threads of the task arena. Returns false if `isCancelled` ended it.
+    bool Trace(const std::function<bool()>& isCancelled);
+
+    // Returns where the samples of a tile are summed up.
+    SampleSpread* SpreadOf(const Film& film, const PixelRect& tile) {
+        return &spreads[film.TileAt(tile.min)];
+    }
+    // Adds the round's light to a pixel that has its samples from `first` on to the end; `camera`
+    // is the sum of their luminance.
+    void AddTo(const Vec2i& p, uint32_t first, double camera, FilmPixel*, const Layers&) const;
+    // At the end of a round: chooses the shares of those to come.
+    void Learn(const Film&);
+
+    // Return what has to be kept to go on with the round, and take it. Take() throws
+    // std::runtime_error for bytes of another image.
+    std::vector<std::byte> Save() const;
+    void Take(std::span<const std::byte>);
+
+  private:
+    double FindUnit() const;
+    void TraceSome(uint32_t sample, uint32_t begin, uint32_t end);
+
+    const Scene& scene;
+    const PixelRect region;
+    SamplerKind kind;
+    uint64_t seed;
+    BdptShares learned, shares;         // for all pixels, and of this round
+    std::vector<SampleSpread> spreads;  // of the round, by tile
+    int first = 0, end = 0;
+    double unit = 1;
+    LightPlane plane;
+};
+
+}  // namespace lull

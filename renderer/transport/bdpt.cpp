@@ -1,0 +1,411 @@
+#include "renderer/transport/bdpt.h"
+
+#include "renderer/base/color.h"
+#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/footprint.h"
+#include "renderer/transport/first_hit_internal.h"
+#include "renderer/transport/integrator_internal.h"
+#include "renderer/transport/path_media.h"
+#include "renderer/transport/subpath.h"
+
+namespace lull {
+namespace {
+
+// Constants of a sample, or of a light path.
+struct Context {
+    const Scene& scene;
+    const BdptIntegrator& integrator;
+    Sampler& sampler;
+    float time;
+    double lightPaths;   // for each sample of all pixels
+    double connections;  // the probability of a subpath from a light
+
+    // Return c(1) of subpaths from the camera, and c(i) of all others beyond.
+    double SeenFromCamera() const { return Sqr(lightPaths); }
+    double Connected(bool connects) const { return connects ? Sqr(connections) : 0; }
+};
+
+// Holds the vertices of a subpath, without allocations.
+class Vertices {
+  public:
+    static constexpr int kMost = BdptIntegrator::kMostBounces;
+
+    Vertices() = default;
+    Vertices(const Vertices&) = delete;
+    Vertices& operator=(const Vertices&) = delete;
+
+    template <typename... Arguments>
+    SubpathVertex& Add(Arguments&&... arguments) {
+        return *new (&storage[size_t(count++) * sizeof(SubpathVertex)])
+            SubpathVertex(std::forward<Arguments>(arguments)...);
+    }
+    int Count() const { return count; }
+    const SubpathVertex& operator[](int i) const {
+        return *std::launder(
+            reinterpret_cast<const SubpathVertex*>(&storage[size_t(i) * sizeof(SubpathVertex)]));
+    }
+
+  private:
+    static_assert(std::is_trivially_destructible_v<SubpathVertex>);
+    int count = 0;
+    alignas(SubpathVertex) std::byte storage[kMost * sizeof(SubpathVertex)];
+};
+
+// Returns the ratio of the density of sampling the point, or direction, of a light from vertex v
+// over the density with which the light starts paths there.
+double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const EmittedRay& ray) {
+    const Light& light = scene.lights[ray.light];
+    const float pmf = SurfaceVertex{v.hit, v.bsdf, 0}.Choice(scene.lights).Pmf(ray.light);
+    const LightType type = TypeOf(light);
+    double density = pmf;
+    if (type == LightType::Area) {
+        const Vec3f d = ray.p - v.hit.p;
+        const double distance2 = std::max(double(d.squaredNorm()), 1e-30);
+        density *= double(Pdf(light, v.hit.p, ray.p, ray.n)) *
+                   PerArea(ray.n, d / std::sqrt(float(distance2)), distance2);
+    } else if (type == LightType::Infinite) {
+        density *= double(LeAndPdf(light, -ray.w).pdf);
+    }
+    return density / double(ray.density.origin);
+}
+
+// Follows light from a light; calls visit(vertex, hit) with each surface that it comes to, of as
+// many bounces at most, where `place` makes the vertex of the hit.
+template <typename Place, typename Visit>
+void FollowLight(const Context& context, int mostBounces, const Place& place, const Visit& visit) {
+    const Scene& scene = context.scene;
+    Sampler& sampler = context.sampler;
+    const float u = sampler.Get1D();
+    const Vec2f origin = sampler.Get2D(), direction = sampler.Get2D();
+    const auto emitted = scene.emission->Sample(u, origin, direction);
+    if (!emitted || mostBounces < 1) return;
+    Stride stride;
+    stride.ray = {OffsetRayOrigin(emitted->p, emitted->pError, emitted->n, emitted->w), emitted->w,
+                  kInfinity};
+    stride.beta = emitted->Power();
+    stride.pdf = emitted->density.onward;
+    stride.p = emitted->p;
+    stride.n = emitted->n;
+    stride.density = double(emitted->density.origin);
+    stride.sum = IsVisible(scene.lights[emitted->light]) ? 1 : 0;
+    stride.fromInfinity = emitted->isAtInfinity;
+    const float brightest = stride.beta.maxCoeff();
+    for (int bounces = 1;; ++bounces) {
+        Hit found;
+        if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) return;
+        SurfaceInteraction hit;
+        const Shape& shape = scene.shapes.shapes[found.shape];
+        scene.shapes.Interact(stride.ray, found, scene.materials.Needs(shape.material), &hit,
+                              context.time);
+        Arrival arrival = Arrive(stride, hit.p, hit.n, context.Connected(stride.connects));
+        if (!(arrival.density > 0)) return;
+        SubpathVertex& v = place(hit, stride.beta, arrival);
+        if (bounces == 1) v.arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
+        visit(v, hit);
+        if (bounces == mostBounces) return;
+        bool isSpecular, isTransmission;
+        if (!Scatter(Origin::Light, v, sampler.Get2D(), &stride, &isSpecular, &isTransmission) ||
+            !SurvivesRoulette(stride.beta.maxCoeff() / brightest, bounces,
+                              context.integrator.rrThreshold, sampler, &stride.beta))
+            return;
+    }
+}
+
+// Returns the weight of light that the ray of a camera's subpath has found, of density `origin`
+// among those of emitted light. `direct` is the density, 1/sr, of sampling it at the last vertex.
+double EmissionWeight(const Stride& stride, double density, double fewer, float direct,
+                      const EmissionDensity& emission) {
+    const double sampled = stride.connects ? double(direct) / double(stride.pdf) : 0;
+    const double fromLight = double(emission.origin) * double(emission.onward) / density;
+    return 1 / (1 + Sqr(sampled) + Sqr(fromLight) * fewer);
+}
+
+// Returns the light of the sky that leaves the scene, weighted.
+Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice& choice) {
+    const Scene& scene = context.scene;
+    Rgb sum = Rgb::Zero();
+    for (const int i : scene.lights.Infinite()) {
+        const auto [L, pdf] = LeAndPdf(scene.lights[i], stride.ray.d);
+        if (IsBlack(L)) continue;
+        const double across = std::abs(double(stride.n.dot(stride.ray.d)));
+        const double fewer = Sqr(across / stride.density) * stride.sum;
+        const float direct = stride.connects ? pdf * choice.Pmf(i) : 0;
+        sum += L * float(EmissionWeight(stride, double(stride.pdf), fewer, direct,
+                                        scene.emission->Density(i, Vec3f::Zero(), -stride.ray.d)));
+    }
+    return sum;
+}
+
+// Returns the light of the surface, a light's, weighted.
+Rgb EmittedLight(const Context& context, const Stride& stride, const SurfaceInteraction& hit,
+                 const Hit& found, const Arrival& arrival, const LightChoice& choice) {
+    const Scene& scene = context.scene;
+    const Light& light = scene.lights[hit.areaLight];
+    const Rgb L = Le(light, hit.n, hit.wo, found);
+    if (IsBlack(L)) return L;
+    const float direct =
+        stride.connects ? Pdf(light, stride.p, hit.p, hit.n) * choice.Pmf(hit.areaLight) : 0;
+    return L * float(EmissionWeight(stride, arrival.density, arrival.fewer, direct,
+                                    scene.emission->Density(hit.areaLight, hit.n, hit.wo)));
+}
+
+// Returns the light that sampling a light brings to the vertex.
+Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoice& choice) {
+    const Scene& scene = context.scene;
+    float pmf;
+    const int index = choice.Sample(context.sampler.Get1D(), &pmf);
+    const Vec2f u = context.sampler.Get2D();
+    if (!(pmf > 0)) return Rgb::Zero();
+    const auto light = scene.lights.Sample(index, v.hit.p, u);
+    if (!light || IsBlack(light->L)) return Rgb::Zero();
+    const BsdfValue value = v.TowardsLight(light->wi);
+    if (IsBlack(value.f)) return Rgb::Zero();
+    if (!SeesLight(scene, context.time, SurfaceVertex{v.hit, v.bsdf, 0}, *light))
+        return Rgb::Zero();
+    const Rgb L = light->isOnMap ? scene.lights.Radiance(index, *light) : light->L;
+
+    const double direct = double(light->pdf) * double(pmf);
+    const double found = light->isDelta || light->isHidden ? 0 : double(value.pdf) / direct;
+    const EmissionDensity emission = scene.emission->Density(index, light->n, -light->wi);
+    const double across = std::abs(double(v.hit.n.dot(light->wi)));
+    double more = double(emission.origin) / direct * double(emission.onward) * across;
+    if (!light->isAtInfinity) {
+        const double distance2 = std::max(double((light->p - v.hit.p).squaredNorm()), 1e-30);
+        // A density by solid angle, of light that has an area.
+        if (!light->isDelta) more /= PerArea(light->n, light->wi, distance2);
+        more /= distance2;
+    }
+    if (more > 0) more = Sqr(more) * v.arrival.Sum(v.Pdf(light->wi, v.hit.wo));
+    const double weight = 1 / (1 + Sqr(found) + more);
+    return value.f * L * float(weight / direct);
+}
+
+// Returns the light that goes from vertex y of a subpath from a light to z, one from the camera's.
+Rgb ConnectedLight(const Context& context, const SubpathVertex& z, const SubpathVertex& y) {
+    const Vec3f d = y.hit.p - z.hit.p;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return Rgb::Zero();
+    const Vec3f w = d / std::sqrt(distance2);
+    const BsdfValue atZ = z.TowardsLight(w);
+    if (IsBlack(atZ.f)) return Rgb::Zero();
+    const BsdfValue atY = y.TowardsCamera(-w);
+    const Rgb L = atZ.f * atY.f * y.beta / distance2;
+    if (IsBlack(L) || !SeeEachOther(context.scene, z.hit, y.hit, context.time)) return Rgb::Zero();
+    const double towardsY = double(atZ.pdf) * PerArea(y.hit.n, w, double(distance2));
+    const double towardsZ = double(y.Pdf(y.hit.wo, -w)) * PerArea(z.hit.n, w, double(distance2));
+    double others = 0;
+    if (towardsY > 0) others += Sqr(towardsY) * y.arrival.Sum(atY.pdf);
+    if (towardsZ > 0) others += Sqr(towardsZ) * z.arrival.Sum(z.Pdf(w, z.hit.wo));
+    const double samples = context.connections;
+    return L * float(samples / (Sqr(samples) + others));
+}
+
+// The subpath from a light that belongs to a sample, traced when it is first asked for.
+class LightSubpath {
+  public:
+    explicit LightSubpath(const Context& context) : context(context) {}
+
+    // Returns all vertices, of which there may be `mostBounces` at most the first time.
+    const Vertices& All(int mostBounces) {
+        if (isTraced) return vertices;
+        isTraced = true;
+        const bool isChosen =
+            context.connections >= 1 || double(context.sampler.Get1D()) < context.connections;
+        if (!isChosen) return vertices;
+        FollowLight(
+            context, mostBounces,
+            [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
+                -> SubpathVertex& { return vertices.Add(context.scene, hit, beta, arrival); },
+            [](const SubpathVertex&, const SurfaceInteraction&) {});
+        return vertices;
+    }
+
+  private:
+    const Context& context;
+    bool isTraced = false;
+    Vertices vertices;
+};
+
+// Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
+template <typename Recorder>
+[[gnu::noinline]] Rgb Follow(const Context& context, const SampleStart& start, Recorder& recorder,
+                             Rgb* connected) {
+    const Scene& scene = context.scene;
+    const int maxDepth = context.integrator.maxDepth;
+    const bool canConnect = scene.emission->Any() && context.connections > 0;
+    LightSubpath fromLight(context);
+    LightChoice choice;  // at the last vertex
+    Stride stride;
+    stride.ray = start.ray;
+    // Of a camera whose transform scales, rays are not of unit length; recorders know them so.
+    const float length = start.ray.d.norm();
+    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length;
+    stride.beta = Rgb::Ones();
+    stride.p = start.ray.o;
+    stride.n = stride.ray.d;
+    stride.connects = false;
+    if (context.lightPaths > 0)
+        stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
+    Path path{.ray = start.ray};  // for recorders
+    Rgb L = Rgb::Zero();          // without connections
+    for (int bounces = 0;; ++bounces) {
+        const bool isLast = bounces >= maxDepth;
+        Hit found;
+        if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) {
+            L += stride.beta * LeavingLight(context, stride, choice);
+            recorder.LeaveScene(path);
+            break;
+        }
+        const Shape& shape = scene.shapes.shapes[found.shape];
+        const SurfaceNeeds needs = scene.materials.Needs(shape.material);
+        SurfaceInteraction hit;
+        scene.shapes.Interact(stride.ray, found, needs, &hit, context.time);
+        if (bounces == 0 && (needs & kNeedsFootprint))
+            ComputeFootprint(scene.camera, start.camera, &hit);
+        const Arrival arrival =
+            Arrive(stride, hit.p, hit.n,
+                   bounces == 0 ? context.SeenFromCamera() : context.Connected(stride.connects));
+        if (!(arrival.density > 0)) break;
+        if (hit.areaLight >= 0)
+            L += stride.beta * EmittedLight(context, stride, hit, found, arrival, choice);
+        if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
+        recorder.ReachSurface(path, found, hit);
+        if (isLast && !recorder.Wanted()) break;
+
+        const SubpathVertex v(scene, hit, stride.beta, arrival);
+        recorder.MeetSurface(path, found, v.hit, v.bsdf);
+        if (isLast) break;
+        if (v.Connects() && scene.lights.Count() > 0) {
+            choice = SurfaceVertex{v.hit, v.bsdf, found.shape}.Choice(scene.lights);
+            L += v.beta * SampledLight(context, v, choice);
+            const int left = maxDepth - bounces - 1;
+            if (canConnect && left > 0) {
+                const Vertices& vertices = fromLight.All(left);
+                for (int i = 0; i < std::min(left, vertices.Count()); ++i)
+                    if (vertices[i].Connects())
+                        *connected += v.beta * ConnectedLight(context, v, vertices[i]);
+            }
+        }
+        bool isSpecular, isTransmission;
+        if (!Scatter(Origin::Camera, v, context.sampler.Get2D(), &stride, &isSpecular,
+                     &isTransmission))
+            break;
+        path.beta = stride.beta;
+        path.ray = stride.ray;
+        path.seesLights &= isSpecular;
+        if (isSpecular && isTransmission)
+            path.etaScale *= SurfaceVertex{v.hit, v.bsdf, found.shape}.EtaScale();
+        recorder.Scatter(path, isTransmission);
+        if (!SurvivesRoulette(stride.beta.maxCoeff() * path.etaScale, bounces,
+                              context.integrator.rrThreshold, context.sampler, &stride.beta))
+            break;
+        path.beta = stride.beta;
+    }
+    recorder.End(path);
+    return L + *connected;
+}
+
+}  // namespace
+
+double LightPathCount(const Scene& scene, const BdptShares& shares) {
+    if (!SeesPoints(scene.camera) || !scene.emission || !scene.emission->Any()) return 0;
+    const Vec2i& size = scene.film.resolution;
+    return std::ceil(double(shares.lightPaths) * double(size.x()) * double(size.y()));
+}
+
+PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOptions& options,
+              Sampler& sampler, const SampleStart& start, FirstHit* firstHit) {
+    const Context context{scene,
+                          integrator,
+                          sampler,
+                          start.camera.time,
+                          LightPathCount(scene, options.shares),
+                          double(options.shares.connections)};
+    Rgb connected = Rgb::Zero();
+    const auto follow = [&](auto recorder) {
+        PathSample sample{Follow(context, start, recorder, &connected), false};
+        const float luminance = Luminance(sample.radiance);
+        if (luminance > 0) sample.connected = Luminance(connected) / luminance;
+        return sample;
+    };
+    if (!firstHit) return follow(NoRecorder());
+    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, firstHit));
+}
+
+namespace {
+
+// Shows a vertex of a light path to the camera.
+class Onlooker {
+  public:
+    Onlooker(const Context& context, const std::function<void(const Splat&)>& splat)
+        : context(context),
+          splat(splat),
+          size(context.scene.film.resolution.cast<float>()),
+          reach(context.scene.filter.Radius()) {}
+
+    void Show(const SubpathVertex& v, const SurfaceInteraction& hit) {
+        if (!v.Connects()) return;
+        const Scene& scene = context.scene;
+        CameraSample at;
+        at.time = context.time;
+        if (scene.camera.HasLens()) at.lens = context.sampler.Get2D();
+        const auto view = ViewOf(scene.camera, hit.p, at.lens, at.time);
+        if (!view || (view->film.array() < -reach.array()).any() ||
+            (view->film.array() > (size + reach).array()).any())
+            return;
+        at.film = view->film;
+        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint)) return Add(v, *view);
+        SurfaceInteraction seen = hit;
+        ComputeFootprint(scene.camera, at, &seen);
+        Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view);
+    }
+
+  private:
+    void Add(const SubpathVertex& v, const CameraView& view) {
+        const Scene& scene = context.scene;
+        const Vec3f d = view.lens - v.hit.p;
+        const float distance2 = d.squaredNorm();
+        const Vec3f w = d / std::sqrt(distance2);
+        const BsdfValue value = v.TowardsCamera(w);
+        Rgb L = value.f * v.beta * (view.perSolidAngle / distance2);
+        if (IsBlack(L) || !IsFinite(L)) return;
+        const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
+        if (scene.accelerator.Occluded({origin, view.lens - origin, 1}, context.time)) return;
+        const double seen = double(view.perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
+        const double samples = context.lightPaths;
+        L *= float(samples / (Sqr(samples) + Sqr(seen) * v.arrival.Sum(value.pdf)));
+        const float luminance = Luminance(L);
+        if (luminance > scene.film.maxSampleLuminance)
+            L *= scene.film.maxSampleLuminance / luminance;
+        L *= scene.film.scale;
+        if (IsFinite(L)) splat({view.film, L});
+    }
+
+    const Context& context;
+    const std::function<void(const Splat&)>& splat;
+    const Vec2f size, reach;  // of the image and the filter, pixels
+};
+
+}  // namespace
+
+void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampler, uint32_t round,
+                    uint32_t index, const std::function<void(const Splat&)>& splat) {
+    // Numbers of no pixel: one Sobol sequence for each round.
+    sampler.StartSample(Vec2i(-1, int(round)), index);
+    const float time = scene.isMoving ? sampler.Get1D() : 0;
+    const Context context{scene,
+                          std::get<BdptIntegrator>(scene.integrator),
+                          sampler,
+                          time,
+                          LightPathCount(scene, shares),
+                          double(shares.connections)};
+    Onlooker onlooker(context, splat);
+    alignas(SubpathVertex) std::byte storage[sizeof(SubpathVertex)];
+    FollowLight(
+        context, context.integrator.maxDepth,
+        [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
+            -> SubpathVertex& { return *new (storage) SubpathVertex(scene, hit, beta, arrival); },
+        [&](const SubpathVertex& v, const SurfaceInteraction& hit) { onlooker.Show(v, hit); });
+}
+
+}  // namespace lull

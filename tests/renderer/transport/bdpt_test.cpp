@@ -1,0 +1,239 @@
+// Compares bidirectional path tracing with paths from the camera where these find all light.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/renderer/scene_of.h"
+#include "tests/renderer/transport/bdpt_image.h"
+#include "tests/shared_folder.h"
+
+namespace lull {
+namespace {
+
+constexpr int kSide = 8;  // pixels of a block
+
+// How each picture is taken: with all strategies, without those that see light paths, or with few
+// samples of those that start from lights.
+constexpr BdptShares kAll{1, 1}, kFromCamera{0, 1}, kFew{0.25f, 0.3f}, kOnlyLightPaths{1, 0};
+
+struct Scenes {
+    std::unique_ptr<const Scene> path, bdpt;
+};
+
+Scenes Both(const std::string& file, int size, int maxDepth) {
+    Scenes scenes;
+    for (const bool isBdpt : {false, true}) {
+        Warnings warnings;
+        Description description = ParsePbrt(file, warnings);
+        description.integrator.name = isBdpt ? "bdpt" : "path";
+        CompileOptions options;
+        options.film.resolution = Vec2i(size, size);
+        options.maxDepth = maxDepth;
+        options.threads = 1;
+        (isBdpt ? scenes.bdpt : scenes.path) = Compile(description, options, warnings);
+    }
+    return scenes;
+}
+
+Scenes BothOf(const std::string& world, int size, int maxDepth,
+              const std::string& camera =
+                  "LookAt 0 0 -3  0 0 0  0 1 0\n"
+                  "Camera \"perspective\" \"float fov\" [60]\n") {
+    const TemporaryDirectory folder;
+    return Both(folder.Write("test.pbrt", WorldText(world, camera + "PixelFilter \"box\"\n")), size,
+                maxDepth);
+}
+
+// Expects no more blocks beyond 3 standard errors than chance has, and the total within 4.
+void ExpectSame(const BlockMeans& a, const BlockMeans& b, const std::string& what) {
+    int out = 0;
+    for (size_t i = 0; i < a.mean.size(); ++i) {
+        const double d = a.mean[i].sum() - b.mean[i].sum();
+        const double e = std::hypot(a.error[i].sum(), b.error[i].sum());
+        const double z = e > 0 ? d / e : 0;
+        out += std::abs(z) > 3;
+    }
+    const double d = a.total.sum() - b.total.sum();
+    const double e = std::hypot(a.totalError.sum(), b.totalError.sum());
+    const double n = double(a.mean.size());
+    EXPECT_LT(std::abs(d), 4 * e + 1e-7) << what << ": " << a.total.mean() << " " << b.total.mean();
+    EXPECT_LE(out, 2 + 0.03 * n) << what;
+}
+
+void Compare(const Scenes& scenes, int spp, int pictures, const std::string& name,
+             std::span<const BdptShares> all) {
+    const BlockMeans paths = MeasureBlocks(*scenes.path, {}, spp, pictures, kSide, 7);
+    for (const BdptShares& shares : all)
+        ExpectSame(MeasureBlocks(*scenes.bdpt, shares, spp, pictures, kSide, 8), paths,
+                   fmt::format("{}, {} light paths, {} connections", name, shares.lightPaths,
+                               shares.connections));
+}
+
+constexpr BdptShares kWays[] = {kFromCamera, kAll, kFew, kOnlyLightPaths};
+
+const std::string kBox =
+    "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 -2 2 -1 -2 2 -1 2 "
+    "-2 -1 2]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1 2 2 -1 2 2 2 2 -2 "
+    "2 2]\n"
+    "Material \"plastic\" \"rgb Kd\" [.3 .1 .1] \"rgb Ks\" [.4 .4 .4] \"float roughness\" [.2]\n"
+    "TransformBegin Translate .3 -.4 .2 Shape \"sphere\" \"float radius\" [.6] TransformEnd\n";
+
+struct Lit {
+    const char* name;
+    const char* lights;
+};
+
+class BdptLights : public testing::TestWithParam<Lit> {};
+
+// Every kind of light gives the same mean by paths and by all strategies.
+TEST_P(BdptLights, HaveTheMeanOfPaths) {
+    for (const int depth : {1, 4})
+        Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 16, 32,
+                fmt::format("{} to {} bounces", GetParam().name, depth), kWays);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BdptLights,
+    testing::Values(
+        Lit{"Area",
+            "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
+            "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 1.5 "
+            "-1 0 1.5 0 -1 1.5 0]\n"
+            "AttributeEnd\n"},
+        Lit{"TwoSided",
+            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"bool twosided\" "
+            "[\"true\"]\n"
+            "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 1.5 -1 0 .5 "
+            "-1 0 .5 0 -1 1.5 0]\n"
+            "AttributeEnd\n"},
+        Lit{"Sphere",
+            "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"sphere\" \"float radius\" [.3] AttributeEnd\n"},
+        Lit{"Disk",
+            "AttributeBegin Translate -1 1.2 0 Rotate 90 1 0 0 AreaLightSource \"diffuse\" \"rgb "
+            "L\" [4 3 2]\n"
+            "Shape \"disk\" \"float radius\" [.5] AttributeEnd\n"},
+        Lit{"Cylinder",
+            "AttributeBegin Translate -1 .8 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2]\n"
+            "Shape \"cylinder\" \"float radius\" [.2] \"float zmin\" [-.5] \"float zmax\" [.5] "
+            "AttributeEnd\n"},
+        Lit{"Point", "LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n"},
+        Lit{"Spot",
+            "LightSource \"spot\" \"point from\" [-1 1.5 -1] \"point to\" [0 -1 0] \"rgb I\" [30 "
+            "40 50]\n"},
+        Lit{"Distant",
+            "LightSource \"distant\" \"point from\" [-1 2 -1] \"point to\" [0 0 0] \"rgb L\" [1 2 "
+            "3]\n"},
+        Lit{"Infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]\n"},
+        Lit{"Projection",
+            "AttributeBegin Translate -.5 1.5 -2 Rotate 40 1 0 0 LightSource \"projection\" "
+            "\"float fov\" [50] \"rgb I\" [8 8 8] AttributeEnd\n"},
+        Lit{"Goniometric",
+            "AttributeBegin Translate -.5 1 -1 LightSource \"goniometric\" \"rgb I\" [3 3 3] "
+            "AttributeEnd\n"},
+        Lit{"Several",
+            "LightSource \"infinite\" \"rgb L\" [.3 .2 .1]\nLightSource \"point\" \"point from\" "
+            "[-1 1.5 -1] \"rgb I\" [3 1 1]\n"
+            "AttributeBegin Translate 1 1 0 AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] Shape "
+            "\"sphere\" \"float radius\" [.2] AttributeEnd\n"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+struct Lens {
+    const char* name;
+    const char* camera;
+};
+
+class BdptCameras : public testing::TestWithParam<Lens> {};
+
+TEST_P(BdptCameras, HaveTheMeanOfPaths) {
+    Compare(BothOf("LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n" + kBox,
+                   32, 3, GetParam().camera),
+            16, 32, GetParam().name, kWays);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BdptCameras,
+    testing::Values(Lens{"Lens",
+                         "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60] "
+                         "\"float lensradius\" [.2] \"float focaldistance\" [2.5]\n"},
+                    Lens{"Shifted",
+                         "Scale -1 1 1 LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float "
+                         "fov\" [60] \"float screenwindow\" [-.7 .8 -.3 1]\n"},
+                    Lens{"Orthographic",
+                         "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"orthographic\" \"float "
+                         "screenwindow\" [-1.5 1.5 -1.5 1.5]\n"},
+                    Lens{"Environment", "LookAt 0 0 -1.5  0 0 0  0 1 0\nCamera \"environment\"\n"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+struct Matter {
+    const char* name;
+    const char* material;
+};
+
+class BdptMaterials : public testing::TestWithParam<Matter> {};
+
+TEST_P(BdptMaterials, HaveTheMeanOfPaths) {
+    const std::string world =
+        "AttributeBegin Translate -1 1.2 -1 AreaLightSource \"diffuse\" \"rgb L\" [9 8 7]\n"
+        "Shape \"sphere\" \"float radius\" [.4] AttributeEnd\n" +
+        kBox + std::string(GetParam().material) +
+        "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] "
+        "TransformEnd\n";
+    Compare(BothOf(world, 32, 5), 32, 32, GetParam().name, kWays);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BdptMaterials,
+    testing::Values(
+        Matter{"Glass", "Material \"glass\""},
+        Matter{"RoughGlass",
+               "Material \"glass\" \"float uroughness\" [.3] \"float vroughness\" [.3]"},
+        Matter{"Mirror", "Material \"mirror\""},
+        Matter{"Metal", "Material \"metal\" \"float roughness\" [.1]"},
+        Matter{"Uber",
+               "Material \"uber\" \"rgb Kd\" [.2 .3 .2] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.2 .2 "
+               ".2] \"rgb Kt\" [.2 .1 .1] \"rgb opacity\" [.7 .7 .7]"},
+        Matter{"Substrate", "Material \"substrate\" \"rgb Kd\" [.5 .2 .2] \"rgb Ks\" [.3 .3 .3]"},
+        Matter{"Translucent", "Material \"translucent\""},
+        Matter{"Disney",
+               "Material \"disney\" \"rgb color\" [.6 .3 .2] \"float metallic\" [.3] \"float "
+               "clearcoat\" [.5] \"float sheen\" [.4]"},
+        Matter{"Mix",
+               "MakeNamedMaterial \"a\" \"string type\" \"mirror\" MakeNamedMaterial \"b\" "
+               "\"string type\" \"matte\" Material \"mix\" \"string namedmaterial1\" \"a\" "
+               "\"string namedmaterial2\" \"b\""}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+struct Room {
+    const char* name;
+    std::string file;
+    int maxDepth, spp;
+};
+
+class BdptScenes : public testing::TestWithParam<Room> {};
+
+// Where paths find all light, so do all strategies together.
+TEST_P(BdptScenes, HaveTheMeanOfPaths) {
+    const auto& [name, own, maxDepth, spp] = GetParam();
+    const std::string file = own.starts_with("/") ? own : (SharedFolder() / own).string();
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "scenes of others are not in ../shared: " << file;
+    constexpr BdptShares all[] = {kAll, kFew};
+    Compare(Both(file, 40, maxDepth), spp, 16, name, all);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, BdptScenes,
+    testing::Values(Room{"Glossy", LULL_SCENES_DIR "/glossy/scene.pbrt", 4, 16},
+                    Room{"ManyLights", LULL_SCENES_DIR "/many-lights/scene.pbrt", 3, 8},
+                    Room{"CornellBox", "pbrt-scenes/cornell-box/scene.pbrt", 5, 16},
+                    Room{"VeachMis", "pbrt-scenes/veach-mis/scene.pbrt", 4, 16},
+                    Room{"Staircase2", "pbrt-scenes/staircase2/scene.pbrt", 4, 16},
+                    Room{"Matpreview", "pbrt-scenes/matpreview/scene.pbrt", 4, 16},
+                    Room{"Killeroo", "pbrt-scenes/killeroo-simple/scene.pbrt", 4, 16}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace lull
