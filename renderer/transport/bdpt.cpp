@@ -1,7 +1,7 @@
 #include "renderer/transport/bdpt.h"
 
 #include "renderer/base/color.h"
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/camera_view.h"
 #include "renderer/scene/footprint.h"
 #include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"

@@ -50,9 +50,17 @@ inline std::vector<Eigen::Array3d> Picture(const Scene& scene, const BdptShares&
     return image;
 }
 
+// Sanitizers slow renders down by ten: errors are then larger, and the tests as strict.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr int kFewer = 16;
+#else
+inline constexpr int kFewer = 1;
+#endif
+
 // Takes `pictures` pictures of `spp` samples on all cores. Blocks have `side` pixels.
 inline BlockMeans MeasureBlocks(const Scene& scene, const BdptShares& shares, int spp, int pictures,
                                 int side, uint64_t seed = 1) {
+    spp = std::max(1, spp / kFewer);
     const Vec2i size = scene.film.resolution;
     BlockMeans means{size.x() / side, size.y() / side, {}, {}};
     const size_t count = size_t(means.columns) * size_t(means.rows);

@@ -1,4 +1,4 @@
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/camera_view.h"
 
 #include "renderer/base/sampling.h"
 
