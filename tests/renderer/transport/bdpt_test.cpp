@@ -89,7 +89,7 @@ class BdptLights : public testing::TestWithParam<Lit> {};
 // Every kind of light gives the same mean by paths and by all strategies.
 TEST_P(BdptLights, HaveTheMeanOfPaths) {
     for (const int depth : {1, 4})
-        Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 16, 32,
+        Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 8, 32,
                 fmt::format("{} to {} bounces", GetParam().name, depth), kWays);
 }
 
@@ -150,7 +150,7 @@ class BdptCameras : public testing::TestWithParam<Lens> {};
 TEST_P(BdptCameras, HaveTheMeanOfPaths) {
     Compare(BothOf("LightSource \"point\" \"point from\" [-1 1.5 -1] \"rgb I\" [3 4 5]\n" + kBox,
                    32, 3, GetParam().camera),
-            16, 32, GetParam().name, kWays);
+            8, 32, GetParam().name, kWays);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -181,7 +181,7 @@ TEST_P(BdptMaterials, HaveTheMeanOfPaths) {
         kBox + std::string(GetParam().material) +
         "\nTransformBegin Translate -.7 -.3 -.5 Shape \"sphere\" \"float radius\" [.5] "
         "TransformEnd\n";
-    Compare(BothOf(world, 32, 5), 32, 32, GetParam().name, kWays);
+    Compare(BothOf(world, 32, 5), 16, 32, GetParam().name, kWays);
 }
 
 INSTANTIATE_TEST_SUITE_P(
