@@ -33,9 +33,8 @@ struct SceneOptions {
 };
 
 // Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
-// --filtering, --exposure,
-// --environment, --environment-rotation, --camera, --orbit, --frame, --animation, --shutter,
-// --variant, --solid-glass.
+// --filtering, --exposure, --environment, --environment-rotation, --camera, --orbit, --frame,
+// --animation, --shutter, --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.

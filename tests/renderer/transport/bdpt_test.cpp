@@ -206,6 +206,30 @@ INSTANTIATE_TEST_SUITE_P(
                "\"string namedmaterial2\" \"b\""}),
     [](const auto& info) { return std::string(info.param.name); });
 
+const std::string kLamp =
+    "AttributeBegin Translate -.8 .9 0 AreaLightSource \"diffuse\" \"rgb L\" [9 8 7]\n"
+    "Shape \"sphere\" \"float radius\" [.3] AttributeEnd\n";
+
+// No light path is seen from within, but for those that no strategy can connect.
+TEST(BdptHardCases, CameraInsideGlass) {
+    Compare(BothOf(kLamp + kBox +
+                       "Material \"glass\" TransformBegin Translate 0 0 -3 Shape \"sphere\" "
+                       "\"float radius\" [.3] TransformEnd\n",
+                   32, 5),
+            8, 32, "camera inside glass", kWays);
+}
+
+TEST(BdptHardCases, RoomOfMirrors) {
+    Compare(BothOf(kLamp + "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
+                           "Shape \"sphere\" \"float radius\" [.5]\n"
+                           "Material \"mirror\" \"rgb Kr\" [.8 .8 .8]\n"
+                           "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3 4 5 6 4 6 7 3 "
+                           "2 6 3 6 7 0 1 5 0 5 4 0 3 7 0 7 4 1 2 6 1 6 5] \"point P\" [-2 -1 -4  "
+                           "2 -1 -4  2 -1 2  -2 -1 2  -2 2 -4  2 2 -4  2 2 2  -2 2 2]\n",
+                   32, 6),
+            8, 32, "room of mirrors", kWays);
+}
+
 struct Room {
     const char* name;
     std::string file;
