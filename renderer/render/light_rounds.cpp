@@ -1,6 +1,8 @@
 #include "renderer/render/light_rounds.h"
 
-#include <tbb/parallel_for.h>
+#include <atomic>
+
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -72,13 +74,15 @@ void LightRounds::Begin(const Schedule& schedule) {
 
 bool LightRounds::Trace(const std::function<bool()>& isCancelled) {
     const auto paths = uint32_t(LightPathCount(scene, shares));
-    const uint32_t chunks = (paths + kChunk - 1) / kChunk;
+    const auto chunks = int((paths + kChunk - 1) / kChunk);
     std::atomic<bool> isWhole = true;
-    tbb::parallel_for(uint64_t(0), uint64_t(chunks) * uint64_t(end - first), [&](uint64_t i) {
-        if (isCancelled && isCancelled()) isWhole = false;
-        if (!isWhole) return;
-        const auto begin = uint32_t(i % chunks) * kChunk;
-        TraceSome(uint32_t(first) + uint32_t(i / chunks), begin, std::min(begin + kChunk, paths));
+    ForEachIndex(end - first, [&](int sample) {
+        ForEachIndex(chunks, [&](int chunk) {
+            if (isCancelled && isCancelled()) isWhole = false;
+            if (!isWhole) return;
+            const uint32_t begin = uint32_t(chunk) * kChunk;
+            TraceSome(uint32_t(first + sample), begin, std::min(begin + kChunk, paths));
+        });
     });
     return isWhole;
 }
