@@ -1,5 +1,4 @@
-// Common part of the colour management of images: the second half of what the module shares with
-// the program.
+// Common part of the colour management of images, shared by the module and the program.
 #pragma once
 
 #include <cstddef>

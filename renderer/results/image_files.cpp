@@ -66,7 +66,7 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     return exr;
 }
 
-// Returns a word on the tones of the PNG; empty for those of sRGB.
+// Returns the name of the tones of the PNG; empty for those of sRGB.
 std::string TonesOf(const PictureFormat& wanted) {
     if (wanted.view) return fmt::format("OpenColorIO {}", wanted.view->Name());
     return wanted.toneMap == ToneMap::Filmic ? kFilmic : "";

@@ -47,10 +47,9 @@ std::string TextOf(const Integrator&);  // its parameters in words
 int MaxDepth(const Integrator&);
 bool CanBeGuided(const Integrator&);
 
-// Reads a scene's directive, with a warning if it substitutes another kind: "path" stands in for
-// "bdpt" where that cannot do what the scene `asks` for, as the words say, or null.
-// `maxDepth`, unless negative, replaces the scene's, which may be `isVolumetric`. Throws
-// Error for bad parameters.
+// Reads a scene's directive, with a warning if it substitutes another kind. `beyondBdpt` is the
+// reason for "path" in place of "bdpt"; null: none. `maxDepth`, unless negative, replaces the
+// scene's, which may be `isVolumetric`. Throws Error for bad parameters.
 Integrator MakeIntegrator(const Entity&, int maxDepth, bool isVolumetric, const char* beyondBdpt,
                           Warnings&);
 

@@ -25,7 +25,7 @@ struct Context {
     double Connected(bool connects) const { return connects ? Sqr(connections) : 0; }
 };
 
-// Holds the vertices of a subpath, without allocations.
+// The vertices of a subpath, without allocations.
 class Vertices {
   public:
     static constexpr int kMost = BdptIntegrator::kMostBounces;

@@ -13,7 +13,7 @@ namespace lull {
 // camera sees no points or no light shines.
 double LightPathCount(const Scene&, const BdptShares&);
 
-// What a light path brings to the image.
+// A contribution of a light path to the image.
 struct Splat {
     Vec2f film;    // pixels
     Rgb radiance;  // film scale applied; pixels are sums of these, times the filter

@@ -31,7 +31,7 @@ struct Stride {
     bool fromInfinity = false;
 };
 
-// What is known of a vertex when the subpath reaches it.
+// Densities of a vertex at which a subpath arrives.
 struct Arrival {
     double density = 0;  // P(i)
     double own = 0;      // c(i), if the vertex itself can be connected

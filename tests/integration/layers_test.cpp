@@ -209,7 +209,7 @@ TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
     EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
 }
 
-// A view whose display shows half of what it is given.
+// The view of this test halves all colours.
 TEST_F(LayersTest, PicturesAreMappedByOpenColorIo) {
     directory.Write("half.ocio", R"(ocio_profile_version: 1
 roles: {scene_linear: lin, default: lin}

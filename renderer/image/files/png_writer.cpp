@@ -117,7 +117,7 @@ T EncodeSrgb(float linear) {
     return T(std::min(v, most));
 }
 
-// Does so without a transfer function: alpha, and what is encoded. NaN is black.
+// Does so without a transfer function, for alpha and encoded colours. NaN is black.
 template <typename T>
 T EncodeLinear(float value) {
     constexpr float most = std::numeric_limits<T>::max();
