@@ -33,8 +33,8 @@ constexpr Subject kSubjects[] = {
     {"Denoising", {"denoise", "denoise-layers"}},
     {"Guiding", {"guide", "guide-memory"}},
     {"Output",
-     {"output", "report", "aov", "aov-through-specular", "png-bits", "exr-half", "display",
-      "preview", "quiet", "json-progress"}},
+     {"output", "report", "aov", "aov-through-specular", "light-groups", "png-bits", "exr-half",
+      "display", "preview", "quiet", "json-progress"}},
     {"Interruption",
      {"time", "until", "checkpoint", "checkpoint-interval", "resume", "keep-checkpoint"}},
     {"Advanced", {"threads", "estimator", "filtering", "pixel", "sample", "help", "help-all"}}};

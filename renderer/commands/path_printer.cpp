@@ -7,7 +7,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/commands/command.h"
-#include "renderer/results/scene_names.h"
+#include "renderer/scene/scene_names.h"
 
 namespace lull {
 namespace {

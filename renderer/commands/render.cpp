@@ -11,6 +11,7 @@
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
+#include "renderer/commands/light_group_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/commands/render_options.h"
@@ -37,6 +38,7 @@ struct PreparedRender {
     RenderJob render;
     Rule rule;
     FilmOptions film;
+    LightGroups lightGroups;
     RenderFiles files;
     std::unique_ptr<Display> display;  // null: none
     std::vector<BlockHistory> histories;
@@ -127,6 +129,8 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
                              region, ranks->Count(), TalkOf(render.settings));
     render.Compile();
+    p->lightGroups = ChooseLightGroups(request.lightGroups, render.input.description, *render.scene,
+                                       request.Lights(), region);
     CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
     p->histories.resize(MakeBlocks(region, render.settings.schedule).size());
@@ -169,6 +173,8 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.film = p->film;
     how.aovs = p->request.aovs;
     how.features = p->request.CollectsFeatures();
+    how.lightGroups = p->lightGroups;
+    how.lights = p->request.Lights();
     how.guide = p->request.guide;
     how.clock = p->clock;
     // An interruption or a preview finds the whole image, whatever its sample counts.
@@ -247,15 +253,22 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     Film& film = session->TheFilm();
     DenoiserResults made;
     NoisyPicture picture;
+    GroupedPicture lights;
+    const bool hasGroups = p.request.denoise && session->Lights();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, *session->Features(), region);
-    if (p.request.denoise) picture = FeaturesOf(film, *session->Features(), region);
+    if (hasGroups)
+        lights = PictureOf(film, *session->Features(), *session->Lights(), region);
+    else if (p.request.denoise)
+        picture = FeaturesOf(film, *session->Features(), region);
     session->DropFeatures();  // what follows needs the memory
-    if (p.request.denoise) picture.colour = ColoursOf(film, region);
+    if (p.request.denoise && !hasGroups) picture.colour = ColoursOf(film, region);
     film.DropHalf();
     if (!p.request.denoise) return made;
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
-    made.image = DenoiseImage(std::move(picture), region, MakeBlocks(region, settings.schedule));
+    const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
+    made.image = hasGroups ? DenoiseImage(std::move(lights), region, blocks)
+                           : DenoiseImage(std::move(picture), region, blocks);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(
             "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
@@ -274,17 +287,17 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
-    const ResultFiles written =
-        WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
-                             session->TheFilm(),
-                             result,
-                             p.histories,
-                             p.render.input.warnings,
-                             {p.request.aovs, session->Aovs(), session->Mattes()},
-                             denoised.image ? &*denoised.image : nullptr,
-                             denoised.halves,
-                             p.render.input.description,
-                             p.request.pictures.format});
+    const ResultFiles written = WriteFiles(
+        p.files, {{*p.render.scene, p.render.provenance},
+                  session->TheFilm(),
+                  result,
+                  p.histories,
+                  p.render.input.warnings,
+                  {p.request.aovs, session->Aovs(), session->Mattes(), session->Lights()},
+                  denoised.image ? &*denoised.image : nullptr,
+                  denoised.halves,
+                  p.render.input.description,
+                  p.request.pictures.format});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;

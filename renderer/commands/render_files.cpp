@@ -6,6 +6,7 @@
 #include "renderer/pages/html_page.h"
 #include "renderer/render/provenance.h"
 #include "renderer/results/block_files.h"
+#include "renderer/results/light_layers.h"
 #include "renderer/results/report.h"
 
 namespace lull {
@@ -50,6 +51,9 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     const Film& film = render.film;
     const RenderResult& result = render.result;
     ExtraLayers extra = MakeExtraLayers(render.layers, film, render.description, origin.scene);
+    if (render.layers.lights)
+        AddLightLayers(*render.layers.lights, film, render.denoised,
+                       render.pictures.isTransparent ? render.layers.mattes : nullptr, &extra);
     extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
     ResultFiles results;
     const int64_t clamped =

@@ -7,6 +7,7 @@
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
+#include "renderer/commands/light_group_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/render/film_picture.h"
 #include "stopping/rules/denoised.h"
@@ -88,6 +89,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddDenoiserOptions(app, o);
     AddGuideOptions(app, &o->guide);
     AddAovOptions(app, &o->aovs);
+    AddLightGroupOption(app, &o->lightGroups);
     AddPictureOptions(app, &o->pictures);
     app.add_flag("--transparent", o->pictures.format.isTransparent,
                  "Remove the directly visible background; the PNG gets alpha");

@@ -17,6 +17,7 @@ struct RenderRequest {
     std::optional<std::string> stop;
     int spp = 0;  // 0: as the rule says
     AovSet aovs;
+    std::vector<std::string> lightGroups;  // their names; empty: none
     bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
     PathOfSample path;  // to print, instead
@@ -27,6 +28,9 @@ struct RenderRequest {
     std::string Rule() const;
     // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
+    LightGroupOptions Lights() const {
+        return {.forDenoiser = denoise, .withBackground = pictures.format.isTransparent};
+    }
     // Returns whether the inputs of the denoiser are collected.
     bool CollectsFeatures() const { return denoise || denoiseLayers; }
 };

@@ -35,10 +35,16 @@ void ScaleVariance(const Halves& colour, int c, Planes* variance) {
             std::clamp(seen.values[i] / std::max(said.values[i], 1e-12f), 0.2f, 5.f);
 }
 
-// Estimates the variance of a pixel of either half: by the samples' squares of luminance, shared
-// out by colour, and scaled.
+Planes WithLeast(Planes variance) {
+    for (float& v : variance.values) v = std::max(v, kLeastVariance);
+    return variance;
+}
+
+}  // namespace
+
+// By the samples' squares of luminance, shared out by colour, and scaled.
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
-    if (ofMean.count == 0) return BoxMean(BoxMean(VarianceOf(colour.a, colour.b), 1), 1);
+    if (ofMean.count == 0) return WithLeast(BoxMean(BoxMean(VarianceOf(colour.a, colour.b), 1), 1));
     Planes variance(ofMean.width, ofMean.height, kColours);
     for (size_t i = 0; i < variance.Area(); ++i) {
         Rgb mean;
@@ -50,16 +56,13 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
             variance.Plane(c)[i] = std::min(relative * mean[c] * mean[c], kLargest);
     }
     for (int c = 0; c < kColours; ++c) ScaleVariance(colour, c, &variance);
-    return BoxMean(std::move(variance), 1);
+    return WithLeast(BoxMean(std::move(variance), 1));
 }
-
-}  // namespace
 
 DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
     MakeSane(&in.colour);
     DenoisedPicture result;
     result.variance = EstimateVariance(in.colour, in.variance);
-    for (float& v : result.variance.values) v = std::max(v, kLeastVariance);
     in.variance = {};  // a large picture needs the memory, here and below
     result.noisy = std::move(in.colour);
     const std::vector<Firefly> fireflies = TakeFireflies(kFireflyLimit, &result.noisy);

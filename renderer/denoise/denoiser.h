@@ -2,6 +2,7 @@
 // C library do so. Which algorithm does the work is known here alone.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -27,5 +28,23 @@ struct DenoiserResult {
 // Denoises a picture, whose memory it uses, and measures the error of blocks within it. The same
 // bits for any number of threads.
 DenoiserResult RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
+
+// A picture as the sum of the light of groups of lights.
+struct GroupedPicture {
+    int groups = 1;   // > 0
+    Planes features;  // as in NoisyPicture
+    Planes variance;  // the same, of all light
+    // Returns the light of a group, without features. Called once for each, one after the other.
+    std::function<NoisyPicture(int group)> light;
+};
+
+struct GroupedResult {
+    // Of the sum of the denoised groups. Of its blocks the largest error: of the sum, or a group.
+    DenoiserResult sum;
+    std::vector<std::vector<float>> groups;  // R, G, B of each pixel
+};
+
+// Denoises each group by itself: takes as long as so many pictures.
+GroupedResult RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
 }  // namespace lull

@@ -101,6 +101,7 @@ struct MaterialEntity : Entity {
 
 struct LightEntity : Entity {
     Mat4d worldFromLight = Mat4d::Identity();
+    std::string label;  // its name in the file; glTF: the node, else the light
 };
 
 struct MediumEntity : Entity {

@@ -4,12 +4,19 @@
 
 namespace lull {
 
-VisibleError BlockDenoiser::MeasureBlock(int block) const {
-    const PixelRect& pixels = blocks.at(size_t(block)).pixels;
+DenoiserResult BlockDenoiser::Run(const PixelRect& pixels) const {
     const PixelRect whole{{0, 0}, {pixels.Width(), pixels.Height()}};
     // The picture in the end is a little better than that which is judged.
-    const DenoiserResult result = RunDenoiser(PictureOf(*film, *featureFilm, pixels), {&whole, 1},
-                                              {.isQuick = true, .withDeviation = false});
+    const DenoiserOptions options{.isQuick = true, .withDeviation = false};
+    if (lights)
+        return RunDenoiser(PictureOf(*film, *featureFilm, *lights, pixels), {&whole, 1}, options)
+            .sum;
+    return RunDenoiser(PictureOf(*film, *featureFilm, pixels), {&whole, 1}, options);
+}
+
+VisibleError BlockDenoiser::MeasureBlock(int block) const {
+    const PixelRect& pixels = blocks.at(size_t(block)).pixels;
+    const DenoiserResult result = Run(pixels);
     if (showPicture) showPicture(pixels, result.rgb);
     return result.blocks.front().value();
 }

@@ -6,6 +6,7 @@
 
 #include "renderer/denoise/denoiser.h"
 #include "renderer/film/feature_film.h"
+#include "renderer/film/light_group_film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/rule.h"
 
@@ -17,10 +18,12 @@ class BlockDenoiser {
   public:
     explicit BlockDenoiser(std::vector<Block> blocks) : blocks(std::move(blocks)) {}
 
-    // Sets whose pixels they are; both must be there while it is asked.
-    void Show(const Film* pixels, const FeatureFilm* features) {
+    // Sets whose pixels they are; all must be there while it is asked. With light groups, each is
+    // denoised, and the largest error counts (RunDenoiser()); null: none.
+    void Show(const Film* pixels, const FeatureFilm* features, const LightGroupFilm* groups) {
         film = pixels;
         featureFilm = features;
+        lights = groups;
     }
 
     // Shows denoised blocks to a callback: their pixels, and R, G, B of each, row by row.
@@ -32,9 +35,12 @@ class BlockDenoiser {
     VisibleError MeasureBlock(int block) const;
 
   private:
+    DenoiserResult Run(const PixelRect& pixels) const;
+
     std::vector<Block> blocks;
     const Film* film = nullptr;
     const FeatureFilm* featureFilm = nullptr;
+    const LightGroupFilm* lights = nullptr;
     std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 

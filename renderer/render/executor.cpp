@@ -159,15 +159,18 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     };
     if (!context.layers) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-            return context.source(s, pixel, index, nullptr);
+            return context.source(s, pixel, index, {});
         };
         return render(alone);
     }
+    std::optional<GroupRadiance> groups;
+    if (context.layers.lights) groups.emplace(context.layers.lights->Groups());
     const auto withLayers = [&, asks = context.layers.NeedFirstHits()](
                                 Sampler& s, const Vec2i& pixel, uint32_t index) {
         FirstHit firstHit;
-        const PathSample sample = context.source(s, pixel, index, asks ? &firstHit : nullptr);
-        context.layers.Add(pixel, index, firstHit, sample.radiance);
+        const SampleDetail detail{asks ? &firstHit : nullptr, groups ? &*groups : nullptr};
+        const PathSample sample = context.source(s, pixel, index, detail);
+        context.layers.Add(pixel, index, firstHit, sample.radiance, detail.groups);
         return sample;
     };
     return render(withLayers);

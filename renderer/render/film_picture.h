@@ -1,9 +1,10 @@
 // Converts a film to the inputs of the denoiser.
 #pragma once
 
-#include "renderer/denoise/denoise.h"
+#include "renderer/denoise/denoiser.h"
 #include "renderer/film/feature_film.h"
 #include "renderer/film/film.h"
+#include "renderer/film/light_group_film.h"
 
 namespace lull {
 
@@ -15,6 +16,10 @@ inline constexpr uint32_t kLeastDenoisedSpp = 4;
 // mean, and the other that of its neighbours; the denoiser's estimate of the error is too rough
 // there to be used. Where it has none, both are the film's first look.
 NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
+
+// The same for the light of groups, which keep what tells their noise. The picture reads the film
+// and the groups, which have to be there; the first look belongs to the last group.
+GroupedPicture PictureOf(const Film&, const FeatureFilm&, const LightGroupFilm&, const PixelRect&);
 
 // Return its parts, so that a film that one of them is made of can be freed before the other is
 // made: all but the colours, and these.

@@ -31,7 +31,7 @@ void TakeFirstLook(const SampleSource& source, const RenderOptions& options, Fil
             const Vec2i middle = kSpacing * Vec2i(column, row) + Vec2i(kSpacing, kSpacing) / 2;
             const Vec2i pixel = (region.min + middle).cwiseMin(region.max - Vec2i(1, 1));
             look.colours[size_t(row) * size_t(columns) + size_t(column)] =
-                source(sampler, pixel, 0, nullptr).radiance;
+                source(sampler, pixel, 0, {}).radiance;
         }
     };
     RunWithThreads(options.threads, [&] { ForEachIndex(rows, takeRow); });

@@ -38,6 +38,8 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
     if (!alone && context.light) throw std::invalid_argument("several ranks trace no light paths");
+    if (context.light && context.layers.lights)
+        throw std::invalid_argument("light paths are of no light group");
     if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
@@ -49,27 +51,27 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
 
 SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
     return [&scene, options](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                             FirstHit* firstHit) {
-        return RenderSample(scene, options, sampler, pixel, index, firstHit);
+                             const SampleDetail& detail) {
+        return RenderSample(scene, options, sampler, pixel, index, detail);
     };
 }
 
 SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner, bool throughSpecular) {
     return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                FirstHit* firstHit) {
+                                const SampleDetail& detail) {
         PathOptions options = learner.Paths();
         options.throughSpecular = throughSpecular;
-        return RenderSample(scene, options, sampler, pixel, index, firstHit);
+        return RenderSample(scene, options, sampler, pixel, index, detail);
     };
 }
 
 SampleSource SamplesOf(const Scene& scene, const LightRounds& light, bool throughSpecular) {
     return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                FirstHit* firstHit) {
+                                const SampleDetail& detail) {
         PathOptions options = Estimator::Combined;
         options.throughSpecular = throughSpecular;
         options.shares = light.Shares();
-        return RenderSample(scene, options, sampler, pixel, index, firstHit);
+        return RenderSample(scene, options, sampler, pixel, index, detail);
     };
 }
 

@@ -79,9 +79,8 @@ struct RenderResult {
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
-// A FirstHit, if given, receives the first hit of the sample, and changes nothing else.
 using SampleSource =
-    std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*)>;
+    std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, const SampleDetail&)>;
 
 // Saves the state of a render, to resume it after an interruption.
 struct Checkpointing {
@@ -119,8 +118,8 @@ struct RenderContext {
 // Renders the film's region. The pixels are the same bits for any number of threads and ranks
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
-// callbacks; throws std::invalid_argument for layers of another region, and for a display on
-// several ranks, or for light paths.
+// callbacks; throws std::invalid_argument for layers of another region, for a display on several
+// ranks, and for light paths on these or with light groups.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the

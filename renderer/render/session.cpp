@@ -31,6 +31,10 @@ int64_t BytesOfLayers(const AovSet& wanted, bool features) {
                    (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0));
 }
 
+int64_t BytesOfLights(int groups, const LightGroupOptions& options) {
+    return groups * (LightGroupFilm::BytesOfPixel(options) + 2 * 3 * int64_t(sizeof(float)));
+}
+
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
     : scene(scene), region(region), options(std::move(given)), film(region, options.film) {
     context.film = &film;
@@ -47,6 +51,11 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
         features.emplace(region);
         context.layers.features = &*features;
         options.identity["features"] = "yes";
+    }
+    if (options.lightGroups.Count() > 0) {
+        lights.emplace(region, options.lightGroups, options.lights);
+        context.layers.lights = &*lights;
+        options.identity["light groups"] = TextOf(options.lightGroups);
     }
     if (IsBidirectional(scene.integrator)) {
         light =
@@ -127,7 +136,8 @@ void Session::SetClock() {
     if (!options.clock) return;
     double reserve = SecondsToWrite(region.Area());
     const int threads = ThreadCount(options.render.threads);
-    if (options.features) reserve += SecondsToDenoise(region.Area(), threads);
+    const int pictures = std::max(1, options.lightGroups.Count());
+    if (options.features) reserve += pictures * SecondsToDenoise(region.Area(), threads);
     context.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
 }
 

@@ -22,15 +22,18 @@ struct CheckpointOptions {
 };
 
 // Returns the bytes a pixel of such layers, and features, in addition to the film, with the
-// channels made of them in the end.
+// channels made of them in the end; and the same of so many light groups.
 int64_t BytesOfLayers(const AovSet& wanted, bool features);
+int64_t BytesOfLights(int groups, const LightGroupOptions&);
 
 struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;
-    AovSet aovs;            // AOVs to collect
-    bool features = false;  // inputs of the denoiser; the film has to keep its half buffer
+    AovSet aovs;              // AOVs to collect
+    bool features = false;    // inputs of the denoiser; the film has to keep its half buffer
+    LightGroups lightGroups;  // groups whose light is told apart; not with a BdptIntegrator
+    LightGroupOptions lights;
     // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
     bool firstLook = false;
     GuideOptions guide;
@@ -70,6 +73,7 @@ class Session {
     const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
     const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
     const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
+    const LightGroupFilm* Lights() const { return lights ? &*lights : nullptr; }     // null: none
     // Frees them, once the render is done, to free memory.
     void DropFeatures();
     // Returns the state of learning, or the reason for none; empty without a guide.
@@ -91,6 +95,7 @@ class Session {
     std::optional<AovFilm> aovs;
     std::optional<FeatureFilm> features;
     std::optional<MatteFilm> mattes;
+    std::optional<LightGroupFilm> lights;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
     std::unique_ptr<LightRounds> light;

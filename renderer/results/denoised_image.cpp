@@ -6,15 +6,35 @@
 
 namespace lull {
 
-DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
-                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
-    std::vector<PixelRect> measured;
+namespace {
+
+// Returns where blocks are in the region.
+std::vector<PixelRect> PlacesOf(const std::vector<Block>& blocks, const PixelRect& region) {
+    std::vector<PixelRect> places;
     for (const Block& block : blocks)
-        measured.push_back({block.pixels.min - region.min, block.pixels.max - region.min});
-    DenoiserResult result = RunDenoiser(std::move(picture), measured, options);
+        places.push_back({block.pixels.min - region.min, block.pixels.max - region.min});
+    return places;
+}
+
+DenoisedImage ImageOf(DenoiserResult result, const PixelRect& region) {
     return {{region.Width(), region.Height(), std::move(result.rgb)},
             std::move(result.deviation),
             std::move(result.blocks)};
+}
+
+}  // namespace
+
+DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
+                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
+    return ImageOf(RunDenoiser(std::move(picture), PlacesOf(blocks, region), options), region);
+}
+
+DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
+                           const std::vector<Block>& blocks) {
+    GroupedResult result = RunDenoiser(std::move(picture), PlacesOf(blocks, region));
+    DenoisedImage image = ImageOf(std::move(result.sum), region);
+    image.lights = std::move(result.groups);
+    return image;
 }
 
 std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {

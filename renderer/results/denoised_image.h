@@ -14,12 +14,14 @@ struct DenoisedImage {
     std::vector<float> error;  // estimated standard error of each pixel in lightness
     // Of each block; not known of those below kSmallestMeasuredSide.
     std::vector<std::optional<VisibleError>> blocks;
+    std::vector<std::vector<float>> lights = {};  // R, G, B of light groups, whose sum the image is
 };
 
 // Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
 // have had.
 DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&,
                            const DenoiserOptions& = {});
+DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&);
 
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "renderer/results/cryptomatte.h"
-#include "renderer/results/scene_names.h"
+#include "renderer/scene/scene_names.h"
 
 namespace lull {
 
@@ -23,6 +23,16 @@ std::string NamesOf(const AovFilm& aovs, uint32_t AovPixel::*number, const Name&
 }
 
 }  // namespace
+
+void RemoveBackground(double covered, double mean, double background, bool isDenoised,
+                      float* colour) {
+    if (covered == 0)
+        *colour = 0;
+    else if (isDenoised)
+        *colour *= mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
+    else
+        *colour -= float(background);
+}
 
 ExtraLayers MakeExtraLayers(const CollectedLayers& layers, const Film& film,
                             const Description& description, const Scene& scene) {

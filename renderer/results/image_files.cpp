@@ -17,7 +17,7 @@ constexpr const char* kFilmic = "filmic (Hable 2010)";
 // Returns whether a channel is a colour or a direction, to which 11 bits do no harm.
 bool MayBeHalf(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
-           name.starts_with("N.") || name.starts_with("noisy.");
+           name.starts_with("N.") || name.starts_with("noisy.") || name.starts_with("light.");
 }
 
 // Makes the header of an image of a region of the film, with channels R, G, B and spp.
@@ -118,14 +118,7 @@ RowSource MeansOf(const Film& film) {
     };
 }
 
-// Returns the share of a mean that is left without `background`.
-float ShareOfForeground(double mean, double background) {
-    return mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
-}
-
 // Returns the rows without the light of samples that hit nothing, premultiplied by alpha therefore.
-// Denoised colours, which no sample has, are split as the mean of the samples is: the rest is
-// neither negative nor more than the whole.
 RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& film,
                             const MatteFilm& mattes) {
     return [&, rows, isDenoised](int y, std::span<float> row) {
@@ -134,16 +127,9 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
             const Vec2i p = film.Region().min + Vec2i(int(x), y);
             const AlphaPixel& matte = mattes.alpha.At(p);
             const FilmPixel pixel = film.At(p);
-            for (size_t c = 0; c < 3 && pixel.count > 0; ++c) {
-                float& value = row[3 * x + c];
-                const double background = matte.background[c] / pixel.count;
-                if (matte.covered == 0)
-                    value = 0;
-                else if (isDenoised)
-                    value *= ShareOfForeground(pixel.sum[c] / pixel.count, background);
-                else
-                    value -= float(background);
-            }
+            for (size_t c = 0; c < 3 && pixel.count > 0; ++c)
+                RemoveBackground(matte.covered, pixel.sum[c] / pixel.count,
+                                 matte.background[c] / pixel.count, isDenoised, &row[3 * x + c]);
         }
     };
 }
@@ -201,8 +187,11 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, const
     exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
     ApplyTo(&exr, format);
     RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
+    const RgbImage foreground{exr.width, exr.height, std::move(extra.colours)};
     if (format.isTransparent) {
-        colours = WithoutBackground(colours, denoised != nullptr, film, *mattes);
+        colours = foreground.values.empty()
+                      ? WithoutBackground(colours, denoised != nullptr, film, *mattes)
+                      : MeansOf(foreground);
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
     int64_t clamped = 0;

@@ -4,6 +4,7 @@
 
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/kinds.h"
+#include "renderer/scene/light_groups.h"
 #include "renderer/scene/lights/light_color.h"
 #include "stopping/base/input_file.h"
 
@@ -47,6 +48,7 @@ std::optional<Light> MakeLight(const LightReader& in) {
     const LightEntity& entity = in.entity;
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
     entity.parameters.GetInt("nsamples", 1);
+    LightGroupOf(entity);
     const auto* kind = FindKind(kLights, entity.name);
     if (!kind) {
         in.warnings.Substitute(entity.loc,
@@ -85,6 +87,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     light.twoSided = params.GetBool("twosided", false);
     params.GetInt("samples", 1);
     params.GetInt("nsamples", 1);
+    LightGroupOf(entity);
     params.ReportUnused("AreaLightSource \"" + entity.name + "\"", warnings);
     light.isHidden = shape.IsInvisible();
     return light;
@@ -134,6 +137,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
             if (light) CheckReach(*light, entity, shapes.reach);
         });
         if (!light) continue;
+        entities.push_back(int(&entity - description.lights.data()));
         lights.push_back(std::move(*light));
         if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
     }

@@ -24,6 +24,9 @@ class LightTable {
 
     int Count() const { return int(lights.size()); }
     const Light& operator[](int i) const { return lights[i]; }
+    // Lists the lights of Description::lights that the table has, by their indices there: its first
+    // lights, in this order. Those of shapes follow.
+    const std::vector<int>& Entities() const { return entities; }
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
@@ -65,6 +68,7 @@ class LightTable {
 
   private:
     std::vector<Light> lights;
+    std::vector<int> entities;
     std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
     std::vector<int> infinite;
     bool anyVisible = false;

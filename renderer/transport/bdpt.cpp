@@ -314,7 +314,7 @@ double LightPathCount(const Scene& scene, const BdptShares& shares) {
 }
 
 PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOptions& options,
-              Sampler& sampler, const SampleStart& start, FirstHit* firstHit) {
+              Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const Context context{scene,
                           integrator,
                           sampler,
@@ -328,8 +328,9 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
         if (luminance > 0) sample.connected = Luminance(connected) / luminance;
         return sample;
     };
-    if (!firstHit) return follow(NoRecorder());
-    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, firstHit));
+    if (!detail.firstHit) return follow(NoRecorder());
+    return follow(
+        FirstHitRecorder(scene, options, start.ray.d, start.camera.time, detail.firstHit));
 }
 
 namespace {

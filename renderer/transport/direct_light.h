@@ -76,12 +76,12 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
-// Samples direct light as the estimator says: chooses one light of those at the vertex, and tells
-// the path how likely each was.
-template <typename Media, typename Vertex, typename Guiding>
+// Samples direct light as the estimator says: chooses one light of those at the vertex, tells the
+// path how likely each was, and the recorder of its light.
+template <typename Media, typename Vertex, typename Guiding, typename Recorder>
 [[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
                                                     const Vertex& v, const Guiding& guiding,
-                                                    Path* path) {
+                                                    Recorder& recorder, Path* path) {
     path->choice = v.Choice(context.scene.lights);
     float pmf;
     const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
@@ -89,6 +89,7 @@ template <typename Media, typename Vertex, typename Guiding>
     Rgb L = SampleLight(context, v, guiding, index, pmf);
     if (context.estimator == Estimator::PbrtV3)
         L += SampleDirectionForLight(context, v, index, pmf);
+    recorder.FindLight(*path, index, L);
     return L;
 }
 

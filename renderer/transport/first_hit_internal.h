@@ -1,5 +1,4 @@
-// Recorders, which are told of a path's vertices. The loop over a path is compiled for each of
-// them, so that where nobody asks there is not even a branch.
+// Records the first hit of a path.
 #pragma once
 
 #include "renderer/bsdf/albedo.h"
@@ -12,23 +11,6 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
     return 1 + uint32_t(found.instance < 0 ? found.shape
                                            : scene.shapes.worldShapeCount + found.instance);
 }
-
-// The default for all callbacks: records nothing.
-struct NoRecorder {
-    // Whether a path at its greatest depth has to continue for the recorder.
-    static constexpr bool Wanted() { return false; }
-    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
-    // not yet known, or is scattered by a medium at p, at this distance. The path has found the
-    // emission there.
-    static void LeaveScene(const Path&) {}
-    static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
-    static void MeetMedium(const Path&, float, const Vec3f&) {}
-    // It has come to a surface of this BSDF.
-    static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
-    // It is scattered; `isTransmission`: through the surface, or medium.
-    static void Scatter(const Path&, bool) {}
-    static void End(const Path&) {}
-};
 
 class FirstHitRecorder : public NoRecorder {
   public:
@@ -43,7 +25,9 @@ class FirstHitRecorder : public NoRecorder {
     void LeaveScene(const Path& path) {
         if (done) return;
         done = true;
-        StoreColor(Emission(scene, options.estimator, path, nullptr, {}) * scene.film.scale, path);
+        StoreColor(
+            Emission(scene, options.estimator, path, nullptr, {}, NoRecorder()) * scene.film.scale,
+            path);
     }
 
     void ReachSurface(const Path&, const Hit& found, const SurfaceInteraction&) {
@@ -59,8 +43,8 @@ class FirstHitRecorder : public NoRecorder {
         if (isSpecular && options.throughSpecular && at.areaLight < 0) return;
         Rgb color = AlbedoOf(bsdf, at.wo);
         if (at.areaLight >= 0)
-            color =
-                color.max(Emission(scene, options.estimator, path, &at, found) * scene.film.scale);
+            color = color.max(Emission(scene, options.estimator, path, &at, found, NoRecorder()) *
+                              scene.film.scale);
         Store(color, at.p, path);
         if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
         hit->object = NumberOfObject(scene, found);

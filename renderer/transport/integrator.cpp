@@ -1,17 +1,28 @@
 #include "renderer/transport/integrator_internal.h"
 
+#include "renderer/transport/group_radiance.h"
+
 namespace lull {
 
 PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index, FirstHit* firstHit) {
+                        const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
     const SampleStart start = StartSample(scene, sampler, pixel, index);
-    if (firstHit)
-        *firstHit = {.weight = start.filter.weight, .offset2 = start.filter.offset.squaredNorm()};
+    if (detail.firstHit)
+        *detail.firstHit = {.weight = start.filter.weight,
+                            .offset2 = start.filter.offset.squaredNorm()};
+    if (detail.groups) detail.groups->Clear();
     if (start.cameraWeight == 0) return {Rgb::Zero(), false};
     const auto li = [&](const auto& integrator) {
-        return Li(integrator, scene, options, sampler, start, firstHit);
+        return Li(integrator, scene, options, sampler, start, detail);
     };
-    return Weighted(scene, start, std::visit(li, scene.integrator));
+    const PathSample found = std::visit(li, scene.integrator);
+    const PathSample sample = Weighted(scene, start, found);
+    if (detail.groups && sample.rejected) detail.groups->Clear();
+    if (detail.groups) {
+        detail.groups->Scale(LimitOf(scene, Luminance(found.radiance)));
+        detail.groups->Scale(WeightOf(scene, start));
+    }
+    return sample;
 }
 
 }  // namespace lull

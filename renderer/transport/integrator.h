@@ -8,6 +8,7 @@ namespace lull {
 
 class Guide;
 class GuideRecord;
+class GroupRadiance;
 
 // PbrtV3 takes pbrt-v3's strategies as they are: at each vertex one light is chosen and sampled
 // both by the light and by a BSDF ray of its own. Combined has the same mean from fewer rays: the
@@ -47,11 +48,19 @@ struct PathSample {
     float connected = 0;
 };
 
+// What receives the data of a sample besides its radiance, which they do not change; null: not
+// wanted.
+struct SampleDetail {
+    // The first hit of the path; a path that is at its greatest depth, or ends before it finds
+    // something, has none.
+    FirstHit* firstHit = nullptr;
+    // The radiance by groups of lights, with the same weights: of a PathIntegrator alone.
+    GroupRadiance* groups = nullptr;
+};
+
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,
-// index) alone, whatever the thread or the order. `firstHit`, if given, receives the first hit
-// of the path; a path that is at its greatest depth, or ends before it finds something, has
-// none.
+// index) alone, whatever the thread or the order.
 PathSample RenderSample(const Scene&, const PathOptions&, Sampler&, const Vec2i& pixel,
-                        uint32_t index, FirstHit* firstHit = nullptr);
+                        uint32_t index, const SampleDetail& detail = {});
 
 }  // namespace lull

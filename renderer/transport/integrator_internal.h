@@ -27,24 +27,34 @@ struct SampleStart {
     return start;
 }
 
+// Returns the factor that limits radiance of this luminance.
+inline float LimitOf(const Scene& scene, float luminance) {
+    const float most = scene.film.maxSampleLuminance;
+    return luminance > most ? most / luminance : 1;
+}
+
+inline float WeightOf(const Scene& scene, const SampleStart& start) {
+    return start.cameraWeight * start.filter.weight * scene.film.scale;
+}
+
 // Rejects invalid radiance, limits it, and applies the weights.
 [[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
                                                   PathSample sample) {
     Rgb& L = sample.radiance;
     const float luminance = Luminance(L);
     const bool isRadiance = IsFinite(L) && !(luminance < -1e-5f);
-    if (luminance > scene.film.maxSampleLuminance) L *= scene.film.maxSampleLuminance / luminance;
-    L *= start.cameraWeight * start.filter.weight * scene.film.scale;
+    L *= LimitOf(scene, luminance);
+    L *= WeightOf(scene, start);
     // The scale of the film may be 2^100.
     if (!isRadiance || !IsFinite(L)) return {Rgb::Zero(), true, sample.vertices};
     return sample;
 }
 
-// Return an estimate of the radiance along the camera's ray, without these weights. `firstHit` is
-// null, or gets all of a FirstHit except the data of the sample itself.
+// Return an estimate of the radiance along the camera's ray, without these weights, as those of
+// the groups are, which are added to. A FirstHit gets all except the data of the sample itself.
 PathSample Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-              FirstHit* firstHit);
+              const SampleDetail&);
 PathSample Li(const BdptIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-              FirstHit* firstHit);
+              const SampleDetail&);
 
 }  // namespace lull

@@ -3,6 +3,7 @@
 
 #include "renderer/base/sampling.h"
 #include "renderer/transport/integrator.h"
+#include "renderer/transport/no_recorder.h"
 #include "renderer/transport/path_vertex.h"
 
 namespace lull {
@@ -42,17 +43,20 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
 }
 
 // Returns the emission at the end of the path's ray; `hit` is null where the ray has left the
-// scene, else `found` is the same hit as the accelerator told of it.
+// scene, else `found` is the same hit as the accelerator told of it. Tells the recorder of it.
+template <typename Recorder>
 [[gnu::always_inline]] inline Rgb Emission(const Scene& scene, Estimator estimator,
                                            const Path& path, const SurfaceInteraction* hit,
-                                           const Hit& found) {
+                                           const Hit& found, Recorder&& recorder) {
     if (!path.seesLights && estimator == Estimator::PbrtV3) return Rgb::Zero();
     Rgb sum = Rgb::Zero();
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
             const Light& light = scene.lights[i];
             const auto [L, pdf] = LeAndPdf(light, path.ray.d);
-            sum += L * EmissionWeight(estimator, path, i, pdf);
+            const Rgb weighted = L * EmissionWeight(estimator, path, i, pdf);
+            recorder.FindLight(path, i, weighted);
+            sum += weighted;
         }
     } else if (hit->areaLight >= 0) {
         const Light& light = scene.lights[hit->areaLight];
@@ -60,6 +64,7 @@ inline float EmissionWeight(Estimator estimator, const Path& path, int index, fl
         if (IsBlack(L)) return sum;
         const float pdf = path.seesLights ? 0 : Pdf(light, path.origin, hit->p, hit->n);
         sum = L * EmissionWeight(estimator, path, hit->areaLight, pdf);
+        recorder.FindLight(path, hit->areaLight, sum);
     }
     return sum;
 }

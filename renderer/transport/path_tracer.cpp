@@ -1,6 +1,6 @@
 #include "renderer/scene/footprint.h"
 #include "renderer/transport/direct_light.h"
-#include "renderer/transport/first_hit_internal.h"
+#include "renderer/transport/group_recorder_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_recorder_internal.h"
 #include "renderer/transport/subsurface.h"
@@ -30,7 +30,7 @@ template <typename Media, typename Guiding, typename Recorder>
     if (isLast) return Fate::Ends;
     guiding.Enter(v);
     if (scene.lights.Count() > 0)
-        path->L += path->beta * SampleDirectLight(context, v, guiding, path);
+        path->L += path->beta * SampleDirectLight(context, v, guiding, recorder, path);
     bool isTransmission;
     if (!guiding.Scatter(v, context.sampler, path, &isTransmission)) return Fate::Ends;
     recorder.Scatter(*path, true);
@@ -39,9 +39,9 @@ template <typename Media, typename Guiding, typename Recorder>
 
 // Continues the path, which the surface has let in, from where it leaves the solid; adds the light
 // that arrives there directly. Returns false where it ends.
-template <typename Media, typename Guiding>
+template <typename Media, typename Guiding, typename Recorder>
 [[gnu::noinline]] bool ScatterBelow(PathContext<Media>* context, const SurfaceVertex& v,
-                                    Guiding& guiding, Path* path) {
+                                    Guiding& guiding, Recorder& recorder, Path* path) {
     const Scene& scene = context->scene;
     const auto profile = scene.materials.Profile(scene.textures, v.hit);
     if (!profile) {
@@ -56,7 +56,7 @@ template <typename Media, typename Guiding>
     const SurfaceVertex last{exit->hit, out, exit->shape};
     guiding.Enter(last, true);
     if (scene.lights.Count() > 0)
-        path->L += path->beta * SampleDirectLight(*context, last, guiding, path);
+        path->L += path->beta * SampleDirectLight(*context, last, guiding, recorder, path);
     bool isTransmission;
     if (!guiding.Scatter(last, context->sampler, path, &isTransmission)) return false;
     context->media.Leave(last, path->ray.d);
@@ -65,9 +65,10 @@ template <typename Media, typename Guiding>
 
 // Takes the path off the surface that has scattered it; where it `goesBelow`, off that where it
 // comes out again. Returns false where it ends.
-template <typename Media, typename Guiding>
+template <typename Media, typename Guiding, typename Recorder>
 [[gnu::always_inline]] inline bool LeaveSurface(PathContext<Media>& context, const SurfaceVertex& v,
-                                                bool goesBelow, Guiding& guiding, Path* path) {
+                                                bool goesBelow, Guiding& guiding,
+                                                Recorder& recorder, Path* path) {
     if (!goesBelow) [[likely]] {
         context.media.Leave(v, path->ray.d);
         return true;
@@ -76,7 +77,7 @@ template <typename Media, typename Guiding>
     // would lie in memory all along.
     PathContext<Media> contextBelow = context;
     Path below = *path;
-    const bool goesOn = ScatterBelow(&contextBelow, v, guiding, &below);
+    const bool goesOn = ScatterBelow(&contextBelow, v, guiding, recorder, &below);
     context.media = contextBelow.media;
     *path = below;
     return goesOn;
@@ -118,7 +119,7 @@ template <typename Media, typename Guiding, typename Recorder>
 
         // Add the light of the sky where there is no surface.
         if (!isHit) {
-            path.L += path.beta * Emission(scene, estimator, path, nullptr, found);
+            path.L += path.beta * Emission(scene, estimator, path, nullptr, found, recorder);
             recorder.LeaveScene(path);
             break;
         }
@@ -135,7 +136,8 @@ template <typename Media, typename Guiding, typename Recorder>
             ComputeFootprint(scene.camera, context.camera, &hit);
 
         // Add the emission of the surface.
-        if (hit.areaLight >= 0) path.L += path.beta * Emission(scene, estimator, path, &hit, found);
+        if (hit.areaLight >= 0)
+            path.L += path.beta * Emission(scene, estimator, path, &hit, found, recorder);
         recorder.ReachSurface(path, found, hit);
         if (endsHere) break;
 
@@ -157,13 +159,13 @@ template <typename Media, typename Guiding, typename Recorder>
 
         // Sample the light that arrives directly from lights.
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
-            path.L += path.beta * SampleDirectLight(context, v, guiding, &path);
+            path.L += path.beta * SampleDirectLight(context, v, guiding, recorder, &path);
 
         // Sample the direction in which the path goes on, and leave the surface.
         bool isTransmission;
         if (!guiding.Scatter(v, sampler, &path, &isTransmission)) break;
         const bool goesBelow = (needs & kScattersBelow) && isTransmission;
-        if (!LeaveSurface(context, v, goesBelow, guiding, &path)) break;
+        if (!LeaveSurface(context, v, goesBelow, guiding, recorder, &path)) break;
         recorder.Scatter(path, isTransmission);
 
         // End dim paths by Russian roulette.
@@ -177,14 +179,18 @@ template <typename Media, typename Guiding, typename Recorder>
 // Chooses the loop that the options and the recorder need.
 template <typename Media>
 PathSample TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
-                     FirstHit* firstHit) {
+                     const SampleDetail& detail) {
     const auto trace = [&](auto& guiding) {
-        if (!firstHit) {
+        if (!detail.firstHit && !detail.groups) {
             NoRecorder nobodyAsks;
             return Trace(context, ray, guiding, nobodyAsks);
         }
-        FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time, firstHit);
-        return Trace(context, ray, guiding, recorder);
+        FirstHit unseen;
+        FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time,
+                                  detail.firstHit ? detail.firstHit : &unseen);
+        if (!detail.groups) return Trace(context, ray, guiding, recorder);
+        GroupRecorder groups(recorder, detail.groups);
+        return Trace(context, ray, guiding, groups);
     };
     if (!options.guide) {
         Unguided unguided;
@@ -198,11 +204,11 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
 }  // namespace
 
 PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
-              Sampler& sampler, const SampleStart& start, FirstHit* firstHit) {
+              Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
         return TracePath<Media>(
             {scene, integrator, options.estimator, sampler, start.camera, media}, options,
-            start.ray, firstHit);
+            start.ray, detail);
     };
     return scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
 }

@@ -12,7 +12,7 @@ namespace lull {
 namespace {
 
 // Returns noise around a smooth image.
-PathSample Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
+PathSample Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
     sampler.StartSample(pixel, index);
     const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
     return {Rgb::Constant(smooth * 2 * sampler.Get1D()), false};

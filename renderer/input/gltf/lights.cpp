@@ -10,8 +10,9 @@ namespace lull {
 namespace {
 
 // Adds a point light that `extras` give a radius: a sphere that emits evenly, and reflects nothing.
-void AddSphere(const Rgb& intensity, double radius, const Mat4d& worldFromLight, const FileLoc& loc,
+void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
                Description* description) {
+    const FileLoc& loc = light.loc;
     MaterialEntity black;
     black.name = "matte";
     black.loc = loc;
@@ -19,7 +20,8 @@ void AddSphere(const Rgb& intensity, double radius, const Mat4d& worldFromLight,
     ShapeEntity sphere;
     sphere.name = "sphere";
     sphere.loc = loc;
-    sphere.worldFromObject = worldFromLight;
+    sphere.worldFromObject = light.worldFromLight;
+    sphere.label = light.label;
     sphere.material = int(description->materials.size());
     ParameterWriter(&sphere.parameters, loc).Float("radius", radius);
     sphere.areaLight = Entity{"diffuse", {}, loc};
@@ -77,13 +79,15 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     LightEntity entity;
     entity.loc = loc;
     entity.worldFromLight = rigid;
+    const std::string& nodeName = document.model.nodes[size_t(node.index)].name;
+    entity.label = nodeName.empty() ? light.name : nodeName;
     const ParameterWriter write(&entity.parameters, loc);
     Rgb color = Rgb::Ones();
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
     const Rgb strength = color.max(0.f) * float(light.intensity / kLumensPerWatt);
     if (const double radius = RadiusOf(light, loc); radius > 0 && light.type == "point")
-        return AddSphere(strength, radius, rigid, loc, description);
+        return AddSphere(strength, radius, entity, description);
     if (light.type == "directional") {
         entity.name = "distant";
         write.Spectrum("L", strength);

@@ -45,7 +45,7 @@ AovFilm Expected(const Film& film, const AovSet& wanted) {
         for (int x = kRegion.min.x(); x < kRegion.max.x(); ++x)
             for (uint32_t k = 0; k < film.At({x, y}).count; ++k) {
                 FirstHit hit;
-                const PathSample sample = SyntheticSample(sampler, {x, y}, k, &hit);
+                const PathSample sample = SyntheticSample(sampler, {x, y}, k, {&hit});
                 aovs.At({x, y}).Add(hit, sample.radiance);
             }
     return aovs;
@@ -72,9 +72,9 @@ TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
         render.options.schedule.cap = 6;
         int64_t asked = 0;
         render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
-                                    FirstHit* hit) {
-            asked += hit != nullptr;
-            return SyntheticSample(sampler, pixel, k, hit);
+                                    const SampleDetail& detail) {
+            asked += detail.firstHit != nullptr;
+            return SyntheticSample(sampler, pixel, k, detail);
         };
         render.Run();
         EXPECT_EQ(asked, withDepth ? render.film.SampleCount() : 0);
@@ -89,9 +89,10 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     render.options.threads = 2;
     render.options.makeCriterion = nullptr;
     render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
-    render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+    render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
+                                const SampleDetail& detail) {
         ++taken;
-        return SyntheticSample(sampler, pixel, k, hit);
+        return SyntheticSample(sampler, pixel, k, detail);
     };
     render.Run();
     EXPECT_TRUE(render.result.timeUp);
@@ -109,9 +110,10 @@ TEST(Aovs, GoOnFromCheckpoints) {
     {
         Rendered first;
         std::atomic<int> taken = 0;
-        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, FirstHit* hit) {
+        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k,
+                                   const SampleDetail& detail) {
             ++taken;
-            return SyntheticSample(s, pixel, k, hit);
+            return SyntheticSample(s, pixel, k, detail);
         };
         first.options.isCancelled = [&] { return taken > 50001; };
         first.options.checkpoints.write = [&](const RenderState& s) {

@@ -89,9 +89,9 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
             RenderOptions options = SmallRender(1 + run % 3);
             std::atomic<int> samples = 0;
             const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                    FirstHit* hit) {
+                                    const SampleDetail& detail) {
                 ++samples;
-                return SyntheticSample(sampler, pixel, index, hit);
+                return SyntheticSample(sampler, pixel, index, detail);
             };
             options.isCancelled = [&] { return samples >= samplesARun; };
             const auto write = [&](const RenderState& s) {

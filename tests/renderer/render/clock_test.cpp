@@ -15,7 +15,7 @@ namespace lull {
 namespace {
 
 // Blocks of 20x20 pixels in a row, of which block i has noise of 1, 2, 4, ...
-PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit*) {
+PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
     sampler.StartSample(pixel, index);
     const float u = sampler.Get1D() - 0.5f;
     const float deviation = 0.02f * float(1 << (pixel.x() / 20));
@@ -42,9 +42,10 @@ struct Clocked {
             return MakeCriterion(LightnessNoiseRule(0.07));
         };
         if (change) change(&setup);
-        setup.source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+        setup.source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                              const SampleDetail& detail) {
             ++taken;
-            return UnevenSample(sampler, pixel, index, hit);
+            return UnevenSample(sampler, pixel, index, detail);
         };
         result = Render(setup, setup);
     }
@@ -181,9 +182,10 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
-    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                         const SampleDetail& detail) {
         --left;
-        return UnevenSample(sampler, pixel, index, hit);
+        return UnevenSample(sampler, pixel, index, detail);
     };
     RenderState ended;
     options.checkpoints.write = [&](const RenderState& s) { ended = s; };

@@ -11,7 +11,7 @@ namespace {
 
 const PixelRect kLookRegion = {{3, 5}, {24, 15}};  // of no whole number of squares
 
-PathSample PositionSample(Sampler&, const Vec2i& pixel, uint32_t index, FirstHit*) {
+PathSample PositionSample(Sampler&, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
     EXPECT_EQ(index, 0u);
     return {.radiance = Rgb(float(pixel.x()), float(pixel.y()), 1), .rejected = false};
 }
@@ -48,7 +48,7 @@ TEST(FirstLook, IsLeftOutWhereItWouldNotBeSeen) {
         for (int x = kLookRegion.min.x(); x < kLookRegion.max.x(); ++x)
             AddTo(&film, {x, y}, Rgb(1, 1, 1));
     TakeFirstLook(
-        [](Sampler&, const Vec2i&, uint32_t, FirstHit*) -> PathSample {
+        [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
             ADD_FAILURE();
             return {};
         },

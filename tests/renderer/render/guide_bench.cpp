@@ -42,7 +42,7 @@ struct Images {
         for (size_t i = 0; i < sums.size(); ++i) {
             Rgb sum = Rgb::Zero();
             for (uint32_t k = 0; k < kSpp; ++k)
-                sum += source(sampler, {int(i) % side, int(i) / side}, k, nullptr).radiance;
+                sum += source(sampler, {int(i) % side, int(i) / side}, k, {}).radiance;
             const double lightness = Lightness(double(Luminance(sum)) / kSpp);
             sums[i] += lightness;
             squares[i] += Sqr(lightness);

@@ -121,7 +121,7 @@ Estimate Measure(const Scene& scene, const SampleSource& source, int spp, uint64
         for (int x = 0; x < region.Width(); ++x) {
             double sum = 0, squares = 0;
             for (int k = 0; k < spp; ++k) {
-                const PathSample sample = source(sampler, {x, y}, uint32_t(k), nullptr);
+                const PathSample sample = source(sampler, {x, y}, uint32_t(k), {});
                 e.rejected += sample.rejected;
                 const double value = double(sample.radiance.y());
                 sum += value;
@@ -250,11 +250,11 @@ TEST(Learning, LayersAreThoseWithout) {
         for (uint32_t k = 0; k < 1000; ++k) {
             const Vec2i pixel(int(k % 16), int(k / 16 % 16));
             FirstHit hit, usual;
-            const Rgb with = SamplesOf(*scene, guided)(a, pixel, k, &hit).radiance,
-                      without = SamplesOf(*scene, guide)(b, pixel, k, nullptr).radiance;
+            const Rgb with = SamplesOf(*scene, guided)(a, pixel, k, {&hit}).radiance,
+                      without = SamplesOf(*scene, guide)(b, pixel, k, {}).radiance;
             for (int channel = 0; channel < 3; ++channel)
                 ASSERT_EQ(with[channel], without[channel]);
-            SamplesOf(*scene, plain)(c, pixel, k, &usual);
+            SamplesOf(*scene, plain)(c, pixel, k, {&usual});
             ASSERT_EQ(hit.found, usual.found);
             ASSERT_EQ(hit.object, usual.object);
             ASSERT_EQ(hit.material, usual.material);

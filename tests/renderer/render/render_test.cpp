@@ -126,13 +126,14 @@ TEST(Render, SpreadsASingleBlockOverAllThreads) {
     std::mutex mutex;
     std::condition_variable changed;
     std::set<std::thread::id> inside;
-    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                    const SampleDetail& detail) {
         std::unique_lock lock(mutex);
         inside.insert(std::this_thread::get_id());
         changed.notify_all();
         changed.wait_for(lock, std::chrono::seconds(20), [&] { return inside.size() >= 4; });
         lock.unlock();
-        return SyntheticSample(sampler, pixel, index, hit);
+        return SyntheticSample(sampler, pixel, index, detail);
     };
     RenderOptions options = SmallRender();
     options.threads = 4;
@@ -149,9 +150,10 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.schedule = {.blockSize = 50, .passLength = 20, .cap = 10000};
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
-    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                            const SampleDetail& detail) {
         ++taken;
-        return SyntheticSample(sampler, pixel, index, hit);
+        return SyntheticSample(sampler, pixel, index, detail);
     };
     const RenderResult result = Render({.source = source, .film = &film}, options);
     EXPECT_TRUE(result.cancelled);
@@ -172,7 +174,7 @@ TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
     options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
     Film film(kRegion);
     EXPECT_THROW(Render({.source = SyntheticSample, .film = &film}, options), std::runtime_error);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t, FirstHit*) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, SmallRender()), std::bad_alloc);

@@ -34,7 +34,7 @@ FirstHit Find(const Scene& scene, Estimator estimator, bool throughSpecular = fa
     FirstHit hit;
     PathOptions options = estimator;
     options.throughSpecular = throughSpecular;
-    RenderSample(scene, options, sampler, {0, 0}, index, &hit);
+    RenderSample(scene, options, sampler, {0, 0}, index, {&hit});
     return hit;
 }
 
@@ -177,7 +177,7 @@ TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
     for (int i = 0; i < 16; ++i) {
         Sampler sampler(SamplerKind::Random, 7);
         FirstHit hit;
-        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, &hit);
+        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, {&hit});
         EXPECT_NEAR(hit.depth, 7, 1e-3f);
     }
 }
@@ -198,7 +198,7 @@ TEST(FirstHit, LeavesTheImageAsItIs) {
                 FirstHit hit;
                 PathOptions options = estimator;
                 options.throughSpecular = true;
-                const PathSample with = RenderSample(*scene, options, a, {0, 0}, k, &hit);
+                const PathSample with = RenderSample(*scene, options, a, {0, 0}, k, {&hit});
                 const PathSample without = RenderSample(*scene, estimator, b, {0, 0}, k);
                 for (int c = 0; c < 3; ++c) ASSERT_EQ(with.radiance[c], without.radiance[c]);
             }

@@ -236,10 +236,10 @@ TEST(Ranks, PauseForCheckpoints) {
     };
     // Takes many times the interval, however fast the machine is.
     const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                 FirstHit* hit) {
+                                 const SampleDetail& detail) {
         if (pixel.x() == kImage.min.x() && index % 5 == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        return SyntheticSample(sampler, pixel, index, hit);
+        return SyntheticSample(sampler, pixel, index, detail);
     };
     const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
     EXPECT_GT(checkpoints, 2);
@@ -260,9 +260,9 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
     for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                FirstHit* hit) {
+                                const SampleDetail& detail) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index, hit);
+            return SyntheticSample(sampler, pixel, index, detail);
         };
         const Shared shared = RenderShared(
             3,
@@ -289,7 +289,7 @@ TEST(Ranks, PassOnWhatTasksThrow) {
     RenderOptions options = SharedOptions();
     options.peers = &peers;
     Film film(kImage);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t, FirstHit*) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
@@ -320,11 +320,12 @@ TEST(Ranks, DealOutEveryTileOnce) {
 // `isSlow(rank, index)` is true for.
 SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSlow) {
     return [isSlow](int rank) -> SampleSource {
-        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
-            if (index % 20 == 0 && isSlow(rank, index))
-                std::this_thread::sleep_for(std::chrono::microseconds(100));
-            return SyntheticSample(sampler, pixel, index, hit);
-        };
+        return
+            [=](Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
+                if (index % 20 == 0 && isSlow(rank, index))
+                    std::this_thread::sleep_for(std::chrono::microseconds(100));
+                return SyntheticSample(sampler, pixel, index, detail);
+            };
     };
 }
 
@@ -436,9 +437,9 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     for (const int messages : {0, 8, 20}) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                FirstHit* hit) {
+                                const SampleDetail& detail) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index, hit);
+            return SyntheticSample(sampler, pixel, index, detail);
         };
         GivenUp givenUp;
         const Shared shared = RenderShared(3, givenUp.Soon([&](RenderSetup* o, int rank) {
@@ -466,10 +467,11 @@ TEST(Ranks, UndoLayers) {
     for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](int) -> SampleSource {
-            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, FirstHit* hit) {
+            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                       const SampleDetail& detail) {
                 if (++taken > time && index % 20 == 0)
                     std::this_thread::sleep_for(std::chrono::microseconds(100));
-                return SyntheticSample(sampler, pixel, index, hit);
+                return SyntheticSample(sampler, pixel, index, detail);
             };
         };
         const Shared timed = RenderLayers(

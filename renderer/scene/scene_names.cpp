@@ -1,4 +1,4 @@
-#include "renderer/results/scene_names.h"
+#include "renderer/scene/scene_names.h"
 
 #include <filesystem>
 
@@ -16,18 +16,20 @@ std::string Joined(const std::string& what, const std::string& place) {
     return place.empty() ? what : what + ", " + place;
 }
 
-std::string NameOfShape(const ShapeEntity& shape) {
-    if (!shape.label.empty()) return shape.label;
-    const std::string file = shape.parameters.GetString("filename", "");
-    return file.empty() ? Joined(shape.name, Place(shape.loc))
-                        : std::filesystem::path(file).stem().string();
-}
-
 }  // namespace
+
+std::string GivenName(const ShapeEntity& shape) {
+    if (!shape.label.empty()) return shape.label;
+    return std::filesystem::path(shape.parameters.GetString("filename", "")).stem().string();
+}
 
 std::string NameOfObject(uint32_t number, const Description& description, const Scene& scene) {
     const size_t i = number - 1, shapes = description.shapes.size();
-    if (i < shapes) return NameOfShape(description.shapes[i]);
+    if (i < shapes) {
+        const ShapeEntity& shape = description.shapes[i];
+        const std::string given = GivenName(shape);
+        return given.empty() ? Joined(shape.name, Place(shape.loc)) : given;
+    }
     if (i - shapes >= scene.shapes.instances.size()) return "";
     const InstanceEntity& instance =
         description.instances[size_t(scene.shapes.instances[i - shapes].entity)];

@@ -13,4 +13,7 @@ namespace lull {
 std::string NameOfObject(uint32_t number, const Description&, const Scene&);
 std::string NameOfMaterial(uint32_t number, const Description&);
 
+// Returns the name that the scene gives a shape: its own, else that of its file; can be empty.
+std::string GivenName(const ShapeEntity&);
+
 }  // namespace lull

@@ -1,0 +1,19 @@
+// Options of light groups.
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "renderer/film/light_group_film.h"
+#include "renderer/scene/scene.h"
+
+namespace lull {
+
+// Adds --light-groups.
+void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
+
+// Returns the groups of these names, none without any, as MakeLightGroups() does. Throws Error also
+// where paths start from lights, and where the memory cannot hold the layers of the region.
+LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description&,
+                              const Scene&, const LightGroupOptions&, const PixelRect& region);
+
+}  // namespace lull
