@@ -20,6 +20,19 @@ constexpr const char* kAll = "--aov albedo,normal,depth,position,object,material
 constexpr const char* kAllAndMattes =
     "--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ";
 
+// A sky, a point light, and a lamp over a ball.
+constexpr const char* kLamps = R"(
+LightSource "point" "point from" [2 1 -2] "rgb I" [2 1 1] "string lightgroup" "key"
+AttributeBegin
+MakeNamedMaterial "bulb" "string type" "matte"
+NamedMaterial "bulb"
+AreaLightSource "diffuse" "rgb L" [6 7 9]
+Translate -1.2 1 0
+Shape "sphere" "float radius" .3
+AttributeEnd
+Shape "sphere" "float radius" .8
+)";
+
 // A file as OpenEXR reads it.
 struct OpenExr {
     Imf::InputFile file;
@@ -64,6 +77,24 @@ struct LayersTest : testing::Test {
     }
     void Render(const std::string& options) {
         ExpectSuccess(directory, "render scene.pbrt --quiet " + options);
+    }
+    // Expects that the light of groups adds up to R, G, B, within rounding and `tolerance` times
+    // the brightest value.
+    void ExpectSum(const std::string& file, const std::vector<std::string>& groups,
+                   float tolerance = 1e-6f) {
+        const ExrImage image = ReadExr(directory.File(file));
+        for (const std::string channel : {"R", "G", "B"}) {
+            const std::vector<float>& whole = image.Find(channel)->values;
+            std::vector<float> sum(whole.size());
+            for (const std::string& group : groups) {
+                const ExrChannel* part = image.Find("light." + group + "." + channel);
+                ASSERT_TRUE(part) << group;
+                EXPECT_GT(std::ranges::max(part->values), 0.01f) << group;
+                std::ranges::transform(sum, part->values, sum.begin(), std::plus());
+            }
+            const float most = tolerance * std::ranges::max(whole);
+            for (size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(sum[i], whole[i], most) << file;
+        }
     }
     bool SameChannels(const std::string& a, const std::string& b) {
         const ExrImage x = ReadExr(directory.File(a)), y = ReadExr(directory.File(b));
@@ -134,6 +165,70 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     EXPECT_TRUE(Contains(other.err, "another aov")) << other.err;
     ExpectSuccess(RunShell(directory, render + "--resume"));
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
+}
+
+TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
+    directory.Write("scene.pbrt", SceneText(kLamps));
+    const std::string groups = "--light-groups bulb,key ";
+    Render("--spp 40 -o plain.exr");
+    Render("--spp 40 -o a.exr " + groups);
+    EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("lightGroups"), "bulb,key,rest");
+    ExpectSum("a.exr", {"bulb", "key", "rest"});
+    EXPECT_EQ(ReadExr(directory.File("a.exr")).Find("G")->values,
+              ReadExr(directory.File("plain.exr")).Find("G")->values);
+    EXPECT_EQ(ReadBytes(directory.File("a.png")), ReadBytes(directory.File("plain.png")));
+    Render("--spp 40 --denoise --aov albedo -o denoised.exr " + groups);
+    ExpectSum("denoised.exr", {"bulb", "key", "rest"});
+    EXPECT_EQ(ReadExr(directory.File("denoised.exr")).Find("noisy.G")->values,
+              ReadExr(directory.File("plain.exr")).Find("G")->values);
+    Render("--spp 40 --estimator pbrt-v3 -o b.exr --light-groups each");
+    ExpectSum("b.exr", {"environment", "key", "bulb"});
+    Render("--spp 40 --guide on --integrator path -o c.exr " + groups);
+    ExpectSum("c.exr", {"bulb", "key", "rest"});
+    Render("--spp 40 --exr-half -o d.exr " + groups);
+    ExpectSum("d.exr", {"bulb", "key", "rest"}, 2e-3f);
+    EXPECT_TRUE(Contains(OpenExr(directory.File("d.exr")).Channels(), "light.key.G:half"));
+}
+
+TEST_F(LayersTest, OfLightGroupsLackTheBackgroundAsTheImageDoes) {
+    directory.Write("scene.pbrt", SceneText(kLamps));
+    for (const char* denoise : {"", "--denoise "}) {
+        Render(std::string(denoise) + "--spp 40 --transparent --light-groups bulb,key -o a.exr");
+        ExpectSum("a.exr", {"bulb", "key", "rest"});
+        OpenExr exr(directory.File("a.exr"));
+        EXPECT_EQ(exr.At("light.rest.G", 0, 0), 0);
+        EXPECT_EQ(exr.At("G", 0, 0), 0);
+    }
+}
+
+TEST_F(LayersTest, OfLightGroupsAreTheSameAfterAnInterruption) {
+    directory.Write("scene.pbrt", SceneText(kLamps));
+    const std::string options =
+        "--resolution 60x50 --block 20 --pass 20 --denoise --stop denoised:0.2 --cap 400 ";
+    const std::string groups = options + "--light-groups bulb,key ";
+    Render(groups + "--threads 1 -o whole.exr");
+    const std::string render =
+        "LULL render scene.pbrt --quiet " + groups + "--threads 2 -o parts.exr --checkpoint c.h5 ";
+    const Outcome interrupted =
+        RunAndSignal(directory, render + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
+    const std::string other = "render scene.pbrt --quiet -o parts.exr --checkpoint c.h5 --resume " +
+                              options + "--light-groups key";
+    ExpectFailure(directory, other, {"another light groups (bulb,key,rest of", "key,rest of"});
+    ExpectSuccess(RunShell(directory, render + "--resume"));
+    EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
+}
+
+TEST_F(LayersTest, OfLightGroupsAreRefusedWhereTheyCannotBe) {
+    directory.Write("scene.pbrt", SceneText(kLamps));
+    const std::string render = "render scene.pbrt -o out.exr --light-groups ";
+    ExpectFailure(directory, render + "key,lamp",
+                  {"--light-groups", "\"lamp\"", "there are: environment, key, delta, bulb, area"});
+    ExpectFailure(directory, render + "rest", {"--light-groups", "\"rest\"", "leave it out"});
+    ExpectFailure(directory, render + "key --integrator bdpt",
+                  {"--light-groups", "bdpt", "--integrator path"});
+    ExpectFailure(directory, render + "key --resolution 1000000x100000 --crop 0,1,0,.00001",
+                  {"memory"});
 }
 
 TEST_F(LayersTest, LetTheBackgroundOut) {

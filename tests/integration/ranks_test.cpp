@@ -121,6 +121,23 @@ TEST_F(RanksTest, ShareLayers) {
     ExpectSameLayers("one", "parts");
 }
 
+TEST_F(RanksTest, ShareLightGroups) {
+    const std::string render =
+        std::string(kRender) +
+        "--light-groups environment --denoise --stop denoised:0.1 --cap 200 ";
+    directory.Write(
+        "scene.pbrt",
+        SceneText(std::string("LightSource \"point\" \"point from\" [2 1 -2]\n") + kSphere));
+    ExpectSuccess(Run(render + "-o one.exr"));
+    ExpectSuccess(Run(Ranks(3) + render + "-o some.exr"));
+    ExpectSame("one", "some");
+    const ExrImage one = ReadExr(directory.File("one.exr")),
+                   some = ReadExr(directory.File("some.exr"));
+    ASSERT_TRUE(one.Find("light.rest.G"));
+    for (const ExrChannel& channel : one.channels)
+        EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
+}
+
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, DenoiseTheSame) {
     const std::string render =

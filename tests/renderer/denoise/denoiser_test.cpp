@@ -40,5 +40,53 @@ TEST(RunDenoiser, IsQuickWhereAskedTo) {
               Interleaved(Denoise(NoisyExample(), 2).picture));
 }
 
+// Two lamps of which each sample finds one: their noise cancels out in the sum.
+GroupedPicture OppositeLamps(const Planes& features) {
+    return {2, features, Planes(40, 30, 1, 1e-10f), [](int group) {
+                NoisyPicture light =
+                    AddNoise(Planes(40, 30, 3, 0.5f), FlatFeatures(40, 30), 0.1, 1);
+                light.features = {};
+                for (Planes* half : {&light.colour.a, &light.colour.b})
+                    for (float& v : half->values) v = group == 0 ? v : 1 - v;
+                return light;
+            }};
+}
+
+TEST(RunDenoiser, AddsUpGroupsAndTakesTheLargestError) {
+    const PixelRect block{{0, 0}, {40, 30}};
+    const Planes features = NoisyExample().features;
+    const GroupedResult result = RunDenoiser(OppositeLamps(features), {&block, 1});
+    ASSERT_EQ(result.groups.size(), 2u);
+    double largest = 0;
+    for (int group = 0; group < 2; ++group) {
+        NoisyPicture light = OppositeLamps(features).light(group);
+        light.features = features;
+        const DenoiserResult alone = RunDenoiser(std::move(light), {&block, 1});
+        EXPECT_EQ(result.groups[size_t(group)], alone.rgb);
+        largest = std::max(largest, alone.blocks.at(0)->upper);
+    }
+    for (size_t i = 0; i < result.sum.rgb.size(); ++i)
+        ASSERT_EQ(result.sum.rgb[i], result.groups[0][i] + result.groups[1][i]);
+    EXPECT_EQ(result.sum.blocks.at(0)->upper, largest);
+    // That of the sum alone is much smaller.
+    NoisyPicture clean{{Planes(40, 30, 3, 1), Planes(40, 30, 3, 1)}, features, {}};
+    EXPECT_LT(RunDenoiser(std::move(clean), {&block, 1}).blocks.at(0)->upper, 0.1 * largest);
+}
+
+// The picture can be noisy where no group is.
+TEST(RunDenoiser, HeedsTheErrorOfTheSumOfGroups) {
+    const PixelRect block{{0, 0}, {40, 30}};
+    const GroupedPicture lamps{8, NoisyExample().features, {}, [](int) {
+                                   NoisyPicture light = AddNoise(Planes(40, 30, 3, 0.1f),
+                                                                 FlatFeatures(40, 30), 0.02, 1);
+                                   light.features = {};
+                                   return light;
+                               }};
+    NoisyPicture one = lamps.light(0);
+    one.features = lamps.features;
+    const double ofOne = RunDenoiser(std::move(one), {&block, 1}).blocks.at(0)->upper;
+    EXPECT_GT(RunDenoiser(lamps, {&block, 1}).sum.blocks.at(0)->upper, ofOne);
+}
+
 }  // namespace
 }  // namespace lull

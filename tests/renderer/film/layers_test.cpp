@@ -15,10 +15,13 @@ struct Planes {
     AovFilm aovs{kRegion, {.depth = true}};
     FeatureFilm features{kRegion};
     MatteFilm mattes{kRegion, true};
+    LightGroupFilm lights{kRegion, {{"a", "rest"}, {0, 1}}, {true, true}};
 
     explicit Planes(bool withHalf = true)
         : film(kRegion, {.grid = {.blockSize = 20, .tileSize = 8}, .withHalf = withHalf}) {}
-    Layers TheLayers() { return {.aovs = &aovs, .features = &features, .mattes = &mattes}; }
+    Layers TheLayers() {
+        return {.aovs = &aovs, .features = &features, .mattes = &mattes, .lights = &lights};
+    }
     // Adds a sample to each pixel of a tile, different in all of them.
     void AddTo(const PixelRect& pixels) {
         FilmTile tile = film.Tile(pixels);
@@ -32,7 +35,12 @@ struct Planes {
                                       .material = uint32_t(y),
                                       .found = true,
                                       .weight = 1};
-                TheLayers().Add({x, y}, pixel.count, hit, radiance);
+                GroupRadiance groups(lights.Groups());
+                groups.Clear();
+                groups.Add(0, radiance / 4);
+                groups.Add(1, radiance / 2);
+                groups.Add(1, radiance / 4);
+                TheLayers().Add({x, y}, pixel.count, hit, radiance, &groups);
                 pixel.Add(radiance, x % 3 == 0);
                 tile.Set({x, y}, pixel);
             }
@@ -51,8 +59,8 @@ TEST(Planes, AreSetToWhatWasPut) {
     for (int i = 0; i < 4; ++i) from.AddTo(kBlock);
     from.AddTo(kTile);
     const std::vector<std::byte> bytes = from.Bytes(kBlock);
-    // Sums of all samples and of the half, layers, and nine tiles.
-    EXPECT_EQ(bytes.size(), 400u * (24 + 24 + 104 + 60 + 40 + 128) + 9 * 8);
+    // Sums of all samples and of the half, layers, two groups of lights, and nine tiles.
+    EXPECT_EQ(bytes.size(), 400u * (24 + 24 + 104 + 60 + 40 + 128 + 2 * 80) + 9 * 8);
     StateReader reader(bytes);
     GetPlanes(&reader, kBlock, &to.film, to.TheLayers());
     EXPECT_NO_THROW(reader.Finish());
@@ -60,6 +68,8 @@ TEST(Planes, AreSetToWhatWasPut) {
     EXPECT_EQ(to.film.SampleCount(), 4 * 400 + 16);
     EXPECT_EQ(to.film.RejectedCount(), from.film.RejectedCount());
     EXPECT_EQ(to.film.At({41, 23}).sum, (std::array<double, 3>{205, 115, 5}));
+    EXPECT_EQ(to.lights.At(1, {41, 23}, 5).sum, (std::array<double, 3>{153.75, 86.25, 3.75}));
+    EXPECT_EQ(to.lights.At(1, {41, 23}, 5).halfSum, (std::array<double, 3>{61.5, 34.5, 1.5}));
 }
 
 TEST(Planes, ReplaceWhatWasThere) {
@@ -85,6 +95,13 @@ TEST(Planes, AreThoseThatThereAre) {
         planes.film, {.mattes = &planes.mattes}, kTile,
         [&](const std::string& name, const auto&, const PixelRect&) { names += name + " "; });
     EXPECT_EQ(names, "tiles sums alpha crypto ");
+    names = "";
+    ForEachPlane(
+        planes.film, {.lights = &planes.lights}, kTile,
+        [&](const std::string& name, const auto&, const PixelRect&) { names += name + " "; });
+    EXPECT_EQ(names,
+              "tiles sums light_00 light_00_noise light_00_background light_01 light_01_noise "
+              "light_01_background ");
 }
 
 TEST(Planes, AreNotReadFromTooFewBytes) {

@@ -233,6 +233,25 @@ TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
                     .isApprox(Rgb::Constant(4 / kPi)));
 }
 
+TEST(GltfLights, AreNamedByTheNodeOrTheLight) {
+    GltfFile file;
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"name", "bulb"}},
+            {{"type", "point"}, {"name", "ball"}, {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.Node({{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.lights.size(), 2u);
+    EXPECT_EQ(d.lights[0].label, "bulb");
+    EXPECT_EQ(d.lights[1].label, "lamp");
+    ASSERT_EQ(d.shapes.size(), 1u);
+    EXPECT_EQ(d.shapes[0].label, "ball");
+}
+
 TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     GltfFile file;
     file.root["images"] = {{{"uri", "a%20b.png"}}};

@@ -1,0 +1,67 @@
+// Blocks stop by the error of the denoised picture and, where their light is told apart, of that of
+// each group.
+#include "renderer/render/block_denoiser.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/film/layers.h"
+#include "stopping/rules/denoised.h"
+#include "stopping/rules/rule_table.h"
+#include "tests/renderer/render/synthetic_samples.h"
+
+namespace lull::block_denoiser_test {
+namespace {
+
+const PixelRect kRegion = {{0, 0}, {40, 40}};
+
+// Each sample finds one of two lamps: the light of each is noise, and their sum is grey.
+PathSample OneOfTwoLamps(Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                         const SampleDetail& detail) {
+    sampler.StartSample(pixel, index);
+    const int lamp = sampler.Get2D().x() < 0.5f ? 0 : 1;
+    const Rgb radiance = Rgb::Constant(0.5f);
+    if (detail.groups) {
+        detail.groups->Clear();
+        detail.groups->Add(lamp, radiance);
+    }
+    if (detail.firstHit) *detail.firstHit = {.albedo = radiance, .depth = 1, .found = true};
+    return {radiance, false};
+}
+
+// Renders by the rule `denoised`; returns the samples that the block took.
+int SppOf(bool withGroups) {
+    Film film(kRegion, {.grid = {.blockSize = 40, .tileSize = 8}});
+    FeatureFilm features(kRegion);
+    LightGroupFilm lights(kRegion, {{"a", "b"}, {0, 1}}, {.forDenoiser = true});
+    RenderOptions options;
+    options.sampler = SamplerKind::Random;
+    options.schedule = {.blockSize = 40, .passLength = 20, .cap = 640};
+    options.threads = 2;
+    const auto denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(kRegion, options.schedule));
+    denoiser->Show(&film, &features, withGroups ? &lights : nullptr);
+    options.makeCriterion = CriteriaOf(
+        ParseRule("denoised:1", {.passSpp = 20,
+                                 .blockCount = 1,
+                                 .cap = 640,
+                                 .measures = {{kDenoisedRuleName, MeasureOf(denoiser)}}}));
+    const RenderResult result =
+        Render({.source = OneOfTwoLamps,
+                .film = &film,
+                .layers = {.features = &features, .lights = withGroups ? &lights : nullptr}},
+               options);
+    for (int y = 0; y < 40 && withGroups; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const FilmPixel a = lights.At(0, {x, y}, 1), b = lights.At(1, {x, y}, 1);
+            EXPECT_EQ(a.sum[0] + b.sum[0], film.At({x, y}).sum[0]);
+            EXPECT_EQ(a.halfSum[0] + b.halfSum[0], film.At({x, y}).halfSum[0]);
+        }
+    return result.blocks.at(0).block.spp;
+}
+
+TEST(BlockDenoiser, WaitsForEveryLightGroup) {
+    EXPECT_EQ(SppOf(false), 20);
+    EXPECT_GT(SppOf(true), 60);
+}
+
+}  // namespace
+}  // namespace lull::block_denoiser_test
