@@ -106,6 +106,43 @@ TEST(Session, RefusesCheckpointsOfOtherLayers) {
     EXPECT_THROW(other.Resume(), Error);
 }
 
+TEST(Session, TakesLightGroupsUpAgain) {
+    const auto scene = MakeBox();
+    const TemporaryDirectory directory;
+    SessionOptions options = OptionsFor("");
+    options.lightGroups = {{"lamp", "rest"}, {0}};
+    options.lights.forDenoiser = true;
+    Session whole(*scene, kBoxRegion, options);
+    whole.Run();
+    const auto bytesOf = [](Session& session) {
+        StateWriter writer;
+        PutPlanes(session.TheFilm(), session.Context().layers, kBoxRegion, &writer);
+        return std::move(writer.bytes);
+    };
+    options.checkpoint.file = directory.File("c.h5");
+    int left = 15;
+    options.render.isCancelled = [&] { return left-- <= 0; };
+    EXPECT_TRUE(Session(*scene, kBoxRegion, options).Run().cancelled);
+    options.render.isCancelled = nullptr;
+    SessionOptions others = options;
+    others.lightGroups.ofLight = {1};
+    Session other(*scene, kBoxRegion, others), same(*scene, kBoxRegion, options);
+    EXPECT_THROW(other.Resume(), Error);
+    same.Resume();
+    EXPECT_FALSE(same.Run().cancelled);
+    EXPECT_EQ(bytesOf(same), bytesOf(whole));
+    const FilmPixel pixel = same.TheFilm().At({16, 20});
+    EXPECT_GT(pixel.sum[0], 0);
+    EXPECT_EQ(same.Lights()->At(0, {16, 20}, pixel.count).sum, pixel.sum);
+    EXPECT_EQ(same.Lights()->At(0, {16, 20}, pixel.count).halfSum, pixel.halfSum);
+}
+
+TEST(Session, CountsTheBytesOfLightGroups) {
+    EXPECT_EQ(BytesOfLights(3, {}), 3 * 48);
+    EXPECT_EQ(BytesOfLights(3, {.forDenoiser = true}), 3 * 80);
+    EXPECT_EQ(BytesOfLights(3, {.forDenoiser = true, .withBackground = true}), 3 * 104);
+}
+
 // A disk stays full for more than one attempt.
 TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     const auto scene = MakeBox();
