@@ -88,9 +88,10 @@ TEST(LightGroups, DifferInTextByTheirLights) {
 
 TEST(LightGroups, ThatThereAreNotAreRefused) {
     const Lamps lamps;
-    EXPECT_EQ(lamps.ErrorOf({"area", "lamp\n"}),
-              "light group \"lamp\\x0a\": no light, object or material of a light has this name; there "
-              "are: environment, candle, delta, bulb, area");
+    EXPECT_EQ(
+        lamps.ErrorOf({"area", "lamp\n"}),
+        "light group \"lamp\\x0a\": no light, object or material of a light has this name; there "
+        "are: environment, candle, delta, bulb, area");
     EXPECT_TRUE(
         lamps.ErrorOf({"rest"}).starts_with("light group \"rest\": the layer of all other"));
     EXPECT_TRUE(Lamps("Shape \"sphere\"")
