@@ -15,16 +15,12 @@ class GroupRadiance {
     explicit GroupRadiance(const LightGroups& groups)
         : ofLight(groups.ofLight), count(size_t(groups.Count())) {}
 
-    void Clear() { std::fill_n(radiances.begin(), count, Rgb::Zero()); }
+    // Clear() and Scale() are not inlined: samples without groups would have to pass by them.
+    void Clear();
     // Adds the radiance of light `index` of the scene.
     void Add(int index, const Rgb& radiance) { radiances[ofLight[size_t(index)]] += radiance; }
     // Multiplies all by `factor`. What is not finite then is black.
-    void Scale(float factor) {
-        for (Rgb& radiance : All()) {
-            radiance *= factor;
-            if (!IsFinite(radiance)) radiance = Rgb::Zero();
-        }
-    }
+    void Scale(float factor);
     // Of each group; they add up to the radiance of the sample.
     std::span<Rgb> All() { return {radiances.data(), count}; }
     std::span<const Rgb> All() const { return {radiances.data(), count}; }

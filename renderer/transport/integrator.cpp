@@ -4,6 +4,18 @@
 
 namespace lull {
 
+namespace {
+
+// Gives groups the weights of a sample whose radiance was `found`. Out of the way of all others.
+[[gnu::noinline]] void Weigh(const Scene& scene, const SampleStart& start, const PathSample& found,
+                             bool isRejected, GroupRadiance* groups) {
+    if (isRejected) groups->Clear();
+    groups->Scale(LimitOf(scene, Luminance(found.radiance)));
+    groups->Scale(WeightOf(scene, start));
+}
+
+}  // namespace
+
 PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
                         const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
     const SampleStart start = StartSample(scene, sampler, pixel, index);
@@ -17,11 +29,7 @@ PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler&
     };
     const PathSample found = std::visit(li, scene.integrator);
     const PathSample sample = Weighted(scene, start, found);
-    if (detail.groups && sample.rejected) detail.groups->Clear();
-    if (detail.groups) {
-        detail.groups->Scale(LimitOf(scene, Luminance(found.radiance)));
-        detail.groups->Scale(WeightOf(scene, start));
-    }
+    if (detail.groups) Weigh(scene, start, found, sample.rejected, detail.groups);
     return sample;
 }
 
