@@ -35,7 +35,9 @@ struct Lamps {
     explicit Lamps(const std::string& world = kLamps) {
         description =
             ParsePbrt(TemporaryDirectory().Write("test.pbrt", WorldText(world)), warnings);
-        scene = Compile(description, {.threads = 1}, warnings);
+        CompileOptions options;
+        options.threads = 1;
+        scene = Compile(description, options, warnings);
     }
     LightGroups Group(const std::vector<std::string>& names) const {
         return MakeLightGroups(names, description, *scene);

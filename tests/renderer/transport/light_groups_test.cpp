@@ -86,7 +86,9 @@ struct GroupedScene {
     explicit GroupedScene(const std::string& text) {
         Warnings warnings;
         description = ParsePbrt(TemporaryDirectory().Write("test.pbrt", text), warnings);
-        scene = Compile(description, {.threads = 1}, warnings);
+        CompileOptions options;
+        options.threads = 1;
+        scene = Compile(description, options, warnings);
         groups = MakeLightGroups({"environment", "delta", "area"}, description, *scene);
     }
 };
