@@ -25,8 +25,28 @@ class BlockDistribution {
     // Returns a point of the unit square, and the density there: 0 if all weights are 0.
     Vec2f Sample(const Vec2f& u, float* pdf) const {
         Vec2f place = u;
-        const Vec2i block = blocks.SampleDiscrete(&place, pdf);
-        *pdf *= scale;
+        float pmf;
+        const Vec2i block = blocks.SampleDiscrete(&place, &pmf);
+        const Vec2f st = SampleIn(block, place, pdf);
+        *pdf *= pmf;
+        return st;
+    }
+    // Returns the density at a point of the unit square.
+    float Pdf(const Vec2f& st) const {
+        Vec2i block;
+        const float pdf = PdfIn(st, &block);
+        return pdf * blocks.Pmf(block);
+    }
+
+    // For those who choose blocks by other probabilities: the number of blocks, along each axis,
+    // and their probabilities here.
+    Vec2i BlockCounts() const {
+        return {(columns + kSide - 1) / kSide, (rows + kSide - 1) / kSide};
+    }
+    float BlockPmf(const Vec2i& block) const { return blocks.Pmf(block); }
+    // Returns a point of a block, by a place in the unit square, and the density, given the block.
+    Vec2f SampleIn(const Vec2i& block, Vec2f place, float* pdf) const {
+        *pdf = scale;
         const int32_t table = tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
         Vec2f cell = kSide * (block.cast<float>() + place);
         if (table >= 0) {
@@ -39,17 +59,15 @@ class BlockDistribution {
         return {std::min(cell.x() / float(columns), kOneMinusEpsilon),
                 std::min(cell.y() / float(rows), kOneMinusEpsilon)};
     }
-
-    // Returns the density at a point of the unit square.
-    float Pdf(const Vec2f& st) const {
+    // Returns the density at a point of the unit square, given the block, which is told.
+    float PdfIn(const Vec2f& st, Vec2i* block) const {
         const int column = std::clamp(int(st.x() * float(columns)), 0, columns - 1);
         const int row = std::clamp(int(st.y() * float(rows)), 0, rows - 1);
-        const Vec2i block(column / kSide, row / kSide);
-        const float pdf = scale * blocks.Pmf(block);
-        const int32_t table = tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
-        if (table < 0) return pdf;
+        *block = {column / kSide, row / kSide};
+        const int32_t table = tables[size_t(block->y()) * size_t(blocks.Columns()) + block->x()];
+        if (table < 0) return scale;
         const Cells& in = cells[table];
-        return pdf * (kSide * kSide) * Pmf(in.rows, row % kSide) *
+        return scale * (kSide * kSide) * Pmf(in.rows, row % kSide) *
                Pmf(in.columns[row % kSide], column % kSide);
     }
 

@@ -40,8 +40,6 @@ inline float Turn(float y, float x) {
     return y < 0 ? 1 - turn : turn;
 }
 
-constexpr int kCellBits = Guide::kMaxDepth / 3;  // of a coordinate
-
 }  // namespace
 
 Vec2f SquareFromDirection(const Vec3f& w) {
@@ -54,16 +52,8 @@ Vec3f DirectionFromSquare(const Vec2f& s) {
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-Guide::Guide(const Bounds3f& bounds, int depth, int quadDepth) {
-    if (!bounds.IsEmpty()) {
-        // A little more, so that nothing lies on the border.
-        side = std::max(1.002f * bounds.Diagonal().maxCoeff(), 1e-20f);
-        if (!(side < kInfinity)) side = std::numeric_limits<float>::max();
-        lower = 0.5f * bounds.lower + 0.5f * bounds.upper - Vec3f::Constant(0.5f * side);
-    }
-    // Both trees are complete: level after level.
-    const size_t inner = (size_t(1) << depth) - 1, leafCount = inner + 1;
-    for (size_t i = 0; i < inner; ++i) nodes.push_back(uint32_t(2 * i + 1));
+Guide::Guide(const Bounds3f& bounds, int depth, int quadDepth) : space(bounds, depth) {
+    // The quadtree is complete, too: level after level.
     std::vector<QuadNode> tree(1);
     for (size_t begin = 0, level = 1; level < size_t(quadDepth); ++level) {
         const size_t end = tree.size();
@@ -74,42 +64,10 @@ Guide::Guide(const Bounds3f& bounds, int depth, int quadDepth) {
         }
         begin = end;
     }
-    for (size_t i = 0; i < leafCount; ++i) {
-        nodes.push_back(kIsLeaf | uint32_t(i));
+    for (size_t i = 0; i < size_t(1) << depth; ++i) {
         leaves.push_back({uint32_t(quads.size()), uint32_t(tree.size()), uint32_t(depth), 0});
         quads.insert(quads.end(), tree.begin(), tree.end());
     }
-    Index();
-}
-
-void Guide::Index() {
-    cellsPerUnit = float(1 << kCellBits) / side;
-    constexpr uint32_t kCells = 1u << (3 * kIndexBits);
-    entries.resize(kCells);
-    for (uint32_t cell = 0; cell < kCells; ++cell) {
-        uint32_t node = nodes[0];
-        // x has the highest bits of the cell's number, z the lowest; the tree cuts them in turn.
-        for (int bit = kIndexBits - 1; bit >= 0; --bit)
-            for (int axis = 2; axis >= 0 && !(node & kIsLeaf); --axis)
-                node = nodes[node + ((cell >> (axis * kIndexBits + bit)) & 1)];
-        entries[cell] = node;
-    }
-}
-
-uint32_t Guide::Find(const Vec3f& p) const {
-    constexpr int kRest = kCellBits - kIndexBits;
-    constexpr float kLast = float((1 << kCellBits) - 1);
-    std::array<uint32_t, 3> cell;
-    for (int i = 0; i < 3; ++i) {
-        const float x = (p[i] - lower[i]) * cellsPerUnit;
-        cell[i] = x > 0 ? uint32_t(std::min(x, kLast)) : 0;
-    }
-    uint32_t node = entries[(((cell[0] >> kRest) << kIndexBits | cell[1] >> kRest) << kIndexBits) |
-                            cell[2] >> kRest];
-    for (int bit = kRest - 1; !(node & kIsLeaf); --bit)
-        for (int axis = 0; axis < 3 && !(node & kIsLeaf); ++axis)
-            node = nodes[node + ((cell[axis] >> bit) & 1)];
-    return node & ~kIsLeaf;
 }
 
 Vec3f Guide::Sample(const GuideLeaf& leaf, Vec2f u, float* pdf) const {
@@ -154,13 +112,12 @@ size_t Guide::Quadrant(const GuideLeaf& leaf, const Vec3f& w) const {
 Vec3f Guide::Jitter(const Vec3f& p, const GuideLeaf& leaf, const Vec3f& u) const {
     Vec3f moved = p;
     for (uint32_t i = 0; i < 3; ++i)
-        moved[i] += (u[i] - 0.5f) * (side / float(1u << ((leaf.depth + 2 - i) / 3)));
+        moved[i] += (u[i] - 0.5f) * (space.side / float(1u << ((leaf.depth + 2 - i) / 3)));
     return moved;
 }
 
 size_t Guide::Bytes() const {
-    return (nodes.size() + entries.size()) * sizeof(uint32_t) + leaves.size() * sizeof(GuideLeaf) +
-           quads.size() * sizeof(QuadNode);
+    return space.Bytes() + leaves.size() * sizeof(GuideLeaf) + quads.size() * sizeof(QuadNode);
 }
 
 }  // namespace lull

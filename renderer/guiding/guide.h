@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/base/math.h"
+#include "renderer/guiding/space_tree.h"
 
 namespace lull {
 
@@ -40,18 +40,13 @@ struct GuideLeaf {
 // Constant while paths are traced.
 class Guide {
   public:
-    static constexpr int kMaxDepth = 48;  // of the tree over space
-
     Guide() = default;
     // Cuts the cube around the bounds, `depth` times, and directions into 4^quadDepth squares, all
     // even.
     Guide(const Bounds3f& bounds, int depth, int quadDepth);
 
-    // Has to be called when nodes or cube have been changed, and before Find().
-    void Index();
-
     // Returns the leaf at p; for points outside the bounds, one at the border.
-    uint32_t Find(const Vec3f& p) const;
+    uint32_t Find(const Vec3f& p) const { return space.Find(p); }
     const GuideLeaf& Leaf(uint32_t i) const { return leaves[i]; }
     // Asks for the leaf's quadtree, which is about to be walked down.
     void Prefetch(const GuideLeaf& leaf) const {
@@ -74,22 +69,10 @@ class Guide {
 
     size_t Bytes() const;
 
-    // The trees, for those who build, store and record. A node over space is the index of the first
-    // of its two children, or a leaf's with kIsLeaf set; axes x, y, z follow each other.
-    static constexpr uint32_t kIsLeaf = 0x80000000u;
-    Vec3f lower = Vec3f::Zero();  // of the cube
-    float side = 1;               // of the cube
-    std::vector<uint32_t> nodes;
+    // The trees, for those who build, store and record.
+    SpaceTree space;
     std::vector<GuideLeaf> leaves;
     std::vector<QuadNode> quads;
-
-  private:
-    static constexpr int kIndexBits = 4;  // of each coordinate
-
-    float cellsPerUnit = 1;  // of the 2^16 of a side
-    // The node that a walk reaches after its first 3 * kIndexBits steps, or where it ends
-    // before, cell by cell: most of the way to a leaf.
-    std::vector<uint32_t> entries;
 };
 
 }  // namespace lull

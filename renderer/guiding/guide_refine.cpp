@@ -111,32 +111,25 @@ class Refinement {
         : old(old), options(options), cuts(cuts) {}
 
     GuideState Make() {
-        made.guide.lower = old.guide.lower;
-        made.guide.side = old.guide.side;
-        made.guide.nodes.resize(1);
+        made.guide.space.lower = old.guide.space.lower;
+        made.guide.space.side = old.guide.space.side;
+        made.guide.space.nodes.resize(1);
         Copy(0, 0);
-        made.guide.Index();
+        made.guide.space.Index();
         return std::move(made);
     }
 
   private:
-    uint32_t MakeChildren(uint32_t node) {
-        const auto children = uint32_t(made.guide.nodes.size());
-        made.guide.nodes[node] = children;
-        made.guide.nodes.resize(children + 2);
-        return children;
-    }
-
     void Copy(uint32_t from, uint32_t to) {
         if (cuts && BytesOf(made) > options.maxBytes && options.quadrantShare <= 1) return;
-        const uint32_t node = old.guide.nodes[from];
-        if (!(node & Guide::kIsLeaf)) {
-            const uint32_t children = MakeChildren(to);
+        const uint32_t node = old.guide.space.nodes[from];
+        if (!(node & SpaceTree::kIsLeaf)) {
+            const uint32_t children = made.guide.space.MakeChildren(to);
             Copy(node, children);
             Copy(node + 1, children + 1);
             return;
         }
-        const uint32_t index = node & ~Guide::kIsLeaf;
+        const uint32_t index = node & ~SpaceTree::kIsLeaf;
         GuideLeaf leaf = old.guide.leaves[index];
         const GuideRecord::LeafSums& sums = old.record.leaves[index];
         Quadtree tree = TreeBuilder(old, leaf, options.quadrantShare, cuts).Build();
@@ -148,15 +141,15 @@ class Refinement {
     // Puts a leaf at a node, split by its number of vertices; `part` is its fraction of the old
     // one.
     void Place(uint32_t node, GuideLeaf leaf, double vertices, double part, const Quadtree& tree) {
-        if (cuts && vertices > options.leafVertices && leaf.depth < Guide::kMaxDepth) {
-            const uint32_t children = MakeChildren(node);
+        if (cuts && vertices > options.leafVertices && leaf.depth < SpaceTree::kMaxDepth) {
+            const uint32_t children = made.guide.space.MakeChildren(node);
             ++leaf.depth;
             for (uint32_t i = 0; i < 2; ++i)
                 Place(children + i, leaf, vertices / 2, part / 2, tree);
             return;
         }
         Guide& guide = made.guide;
-        guide.nodes[node] = Guide::kIsLeaf | uint32_t(guide.leaves.size());
+        guide.space.nodes[node] = SpaceTree::kIsLeaf | uint32_t(guide.leaves.size());
         leaf.firstNode = uint32_t(guide.quads.size());
         leaf.nodeCount = uint32_t(tree.nodes.size());
         guide.leaves.push_back(leaf);

@@ -69,6 +69,10 @@ std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator)
 
 std::string TextOf(const GuideFigures& f, GuideMode mode) {
     std::string text = fmt::format("guide: {}: {}", f.isUsed ? "used" : "not used", f.why);
+    if (f.environment)
+        text += fmt::format("; learned environment: {}, variance {:.2f} +- {:.2f} of that by power",
+                            f.usesEnvironment ? "used" : "not used", f.environment->variance,
+                            f.environment->error);
     if (f.rounds == 0) return text;
     text += fmt::format("; learned from {} spp, from {} spp on, {:.1f} MB", f.samples, f.from,
                         double(f.bytes) / (1 << 20));
@@ -84,7 +88,9 @@ GuideLearner::GuideLearner(const Scene& scene, const LearningOptions& options, i
       pace(int(
           std::clamp<int64_t>(kPathsOfRound / std::max<int64_t>(1, pixels), kShortest, kLongest))) {
     learning.figures.why = "no block took enough samples";
-    learning.end = RoundLength(0);
+    learning.end = options.mode == GuideMode::Off ? kNoRoundEnd : RoundLength(0);
+    if (options.environment) learning.environment = BeginEnvironment();
+    SetPaths();
 }
 
 int GuideLearner::RoundLength(int round) const {
@@ -95,14 +101,18 @@ int GuideLearner::RoundLength(int round) const {
 
 bool GuideLearner::IsTrial() const {
     return options.mode == GuideMode::Auto && learning.round > 0 && learning.decided == 0 &&
-           !IsDone();
+           !learning.IsDone();
 }
 
 double GuideLearner::Variance(const Film& film, const PixelRect& part) const {
-    return learning.noise.empty() ? 1 : VarianceOf(learning.noise, film, part);
+    double variance = 1;
+    for (const auto* noise : {&learning.noise, &learning.environment.noise})
+        if (!noise->empty()) variance *= VarianceOf(*noise, film, part);
+    return variance;
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
+    if (auto* spreads = SpreadsOf(&learning.environment)) return &(*spreads)[film.TileAt(tile.min)];
     if (!IsTrial()) return nullptr;
     const int round = learning.round;
     if (round == 1) return &learning.tally.unguided[film.TileAt(tile.min)];
@@ -112,6 +122,17 @@ SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
 
 void GuideLearner::EndRound(const Film& film) {
     const Stopwatch stopwatch(&learning.figures.seconds);
+    const int end = RoundEnd();
+    if (end == learning.environment.end) EndEnvironmentRound(scene, film, &learning.environment);
+    if (end == learning.end) EndGuideRound(film);
+    const EnvironmentLearning& environment = learning.environment;
+    learning.figures.usesEnvironment = environment.isUsed;
+    if (environment.isUsed || (options.environment && environment.IsDone()))
+        learning.figures.environment = environment.comparison;
+    SetPaths();
+}
+
+void GuideLearner::EndGuideRound(const Film& film) {
     const int64_t samples = film.SampleCount();
     const int length = RoundLength(learning.round);
     if (learning.round > 0) {
@@ -123,7 +144,6 @@ void GuideLearner::EndRound(const Film& film) {
     ++learning.round;
     learning.samples = samples;
     if (goesOn) learning.end += RoundLength(learning.round);
-    SetPaths();
 }
 
 // Returns false if learning is done; so does Learn().
@@ -196,13 +216,14 @@ bool GuideLearner::Finish(bool isUsed, const std::string& why) {
 
 void GuideLearner::SetPaths() {
     paths = Estimator::Combined;
-    if (IsDone()) {
+    if (learning.IsDone()) {
         if (learning.figures.isUsed) paths = learning.guide;
     } else if (learning.round > 0) {
         paths = learning.state.guide;
         paths.record = &learning.state.record;
         paths.usual = float(learning.usual);
     }
+    SetEnvironment(&learning.environment, &paths);
 }
 
 std::vector<std::byte> GuideLearner::Save() const { return SaveLearning(learning); }
@@ -216,6 +237,13 @@ void GuideLearner::Take(std::span<const std::byte> bytes, const Film& film) {
     if (taken.tally.unguided.size() != compared || taken.tally.guided.size() != compared ||
         taken.noise.size() != known)
         throw std::runtime_error("its guide is of another image");
+    const EnvironmentLearning& environment = taken.environment;
+    const bool hasBegun = environment.round > 0 || !environment.IsDone();
+    const size_t spreads = !environment.IsDone() && environment.round > 0 ? film.TileCount() : 0;
+    if (hasBegun != options.environment || environment.tally.unguided.size() != spreads ||
+        environment.tally.guided.size() != spreads ||
+        environment.noise.size() != (environment.isUsed ? film.TileCount() : 0))
+        throw std::runtime_error("its learned environment is of another image");
     learning = std::move(taken);
     SetPaths();
 }

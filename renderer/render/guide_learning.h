@@ -11,7 +11,8 @@
 // `auto` begins late, so that blocks that stop early do not pay for it, with short rounds: one
 // without a guide, the others with. It keeps the guide once a round had significantly less
 // variance, times its vertices, than the first, and drops it once that is significantly not so, or
-// undecided after a few rounds.
+// undecided after a few rounds. Before that it learns the environment map
+// (environment_learning.h), where there is one.
 #pragma once
 
 #include <optional>
@@ -19,6 +20,7 @@
 
 #include "renderer/base/enum_names.h"
 #include "renderer/guiding/guide_refine.h"
+#include "renderer/render/environment_learning.h"
 #include "renderer/render/guide_tally.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
@@ -45,6 +47,10 @@ struct GuideFigures {
     int leaves = 0;              // of its tree over space
     double seconds = 0;          // elapsed, between rounds
     GuideComparison comparison;  // of auto
+    // Learned sampling of the environment map, of auto, where there is one and it has decided:
+    // relative to sampling by power.
+    std::optional<GuideComparison> environment;
+    bool usesEnvironment = false;
 };
 
 // Options of path guiding.
@@ -58,6 +64,7 @@ struct LearningOptions {
     int megabytes = 64;  // that trees and sums may take, > 0
     // Learning shall not take long: blocks of a render that has a clock do not wait for each other.
     bool isShort = false;
+    bool environment = false;  // learns the environment, too; needs LearnsEnvironment()
 };
 
 // All that is needed to continue learning, to the same bits.
@@ -73,8 +80,9 @@ struct Learning {
     GuideTally tally;     // of auto, until it has decided
     std::vector<TileNoise> noise;  // of the tally then, where guides pay
     GuideFigures figures;
+    EnvironmentLearning environment;
 
-    bool IsDone() const { return end == kNoRoundEnd; }
+    bool IsDone() const { return end == kNoRoundEnd; }  // of the guide
 };
 
 // Returns whether paths of the scene can be guided; if not, why.
@@ -86,7 +94,7 @@ std::string TextOf(const GuideFigures&, GuideMode);
 // Learns in the course of a render (RenderOptions::learner), and has the options of its paths.
 class GuideLearner {
   public:
-    // The scene, of which WhyNotGuided() says nothing, must outlive it.
+    // The scene, of which WhyNotGuided() says nothing unless the mode is Off, must outlive it.
     GuideLearner(const Scene&, const LearningOptions&, int64_t pixels);
     GuideLearner(const GuideLearner&) = delete;
     GuideLearner& operator=(const GuideLearner&) = delete;
@@ -94,8 +102,8 @@ class GuideLearner {
     // Return the options of this round's paths, and the spp at which it ends: no block goes beyond
     // it before EndRound(). kNoRoundEnd: there are no more rounds.
     const PathOptions& Paths() const { return paths; }
-    int RoundEnd() const { return learning.end; }
-    bool IsDone() const { return learning.IsDone(); }
+    int RoundEnd() const { return std::min(learning.end, learning.environment.end); }
+    bool IsDone() const { return RoundEnd() == kNoRoundEnd; }
 
     // Returns the present variance of a sample in a part of the film over that without a guide, see
     // VarianceOf(); 1 where that is not known, as with `on`.
@@ -114,6 +122,7 @@ class GuideLearner {
     void Take(std::span<const std::byte>, const Film&);
 
   private:
+    void EndGuideRound(const Film&);
     bool Begin(const Film&);
     bool Learn(const Film&);
     bool IsTrial() const;

@@ -2,22 +2,20 @@
 
 #include <stdexcept>
 
-#include "stopping/base/state.h"
+#include "renderer/render/learning_state.h"
 
 namespace lull {
 
 namespace {
 
-constexpr uint32_t kTag = 0x34756c67;
+constexpr uint32_t kTag = 0x36756c67;
 
 constexpr const char* kDamaged = "its guide is damaged";
 
 [[noreturn]] void Refuse() { throw std::runtime_error(kDamaged); }
 
 void PutGuide(const Guide& guide, StateWriter* writer) {
-    writer->Put(
-        std::array<float, 4>{guide.lower.x(), guide.lower.y(), guide.lower.z(), guide.side});
-    writer->PutVector(guide.nodes);
+    PutSpaceTree(guide.space, writer);
     writer->PutVector(guide.leaves);
     writer->PutVector(guide.quads);
 }
@@ -40,39 +38,25 @@ void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
 
 // Finds indices that would take a walk through the trees out of bounds.
 void CheckGuide(const Guide& guide) {
-    if (guide.nodes.empty()) {
+    if (guide.space.nodes.empty()) {
         if (!guide.leaves.empty() || !guide.quads.empty()) Refuse();
         return;
     }
-    if (!(guide.side > 0 && guide.side < kInfinity) || !guide.lower.allFinite()) Refuse();
-    std::vector<int> depth(guide.nodes.size(), -1);
-    depth[0] = 0;
-    for (size_t i = 0; i < guide.nodes.size(); ++i) {
-        const uint32_t node = guide.nodes[i];
-        if (depth[i] < 0 || depth[i] > Guide::kMaxDepth) Refuse();
-        if (node & Guide::kIsLeaf) {
-            if ((node & ~Guide::kIsLeaf) >= guide.leaves.size()) Refuse();
-            continue;
-        }
-        if (node <= i || size_t(node) + 1 >= guide.nodes.size()) Refuse();
-        depth[node] = depth[node + 1] = depth[i] + 1;
-    }
+    if (!guide.space.IsValid(guide.leaves.size())) Refuse();
     for (const GuideLeaf& leaf : guide.leaves) {
-        if (!(leaf.fraction >= 0 && leaf.fraction < 1) || leaf.depth > Guide::kMaxDepth) Refuse();
+        if (!(leaf.fraction >= 0 && leaf.fraction < 1) || leaf.depth > SpaceTree::kMaxDepth)
+            Refuse();
         CheckQuadtree(guide, leaf);
     }
 }
 
 Guide GetGuide(StateReader* reader) {
     Guide guide;
-    const auto cube = reader->Get<std::array<float, 4>>();
-    guide.lower = Vec3f(cube[0], cube[1], cube[2]);
-    guide.side = cube[3];
-    guide.nodes = reader->GetVector<uint32_t>(kDamaged);
+    guide.space = GetSpaceTree(reader, kDamaged);
     guide.leaves = reader->GetVector<GuideLeaf>(kDamaged);
     guide.quads = reader->GetVector<QuadNode>(kDamaged);
     CheckGuide(guide);
-    if (!guide.nodes.empty()) guide.Index();
+    if (!guide.space.nodes.empty()) guide.space.Index();
     return guide;
 }
 
@@ -83,6 +67,8 @@ void PutFigures(const GuideFigures& f, StateWriter* writer) {
     writer->Put(f.bytes);
     writer->Put(f.seconds);
     writer->Put(f.comparison);
+    writer->Put(std::array<uint8_t, 2>{f.environment.has_value(), f.usesEnvironment});
+    writer->Put(f.environment.value_or(GuideComparison()));
 }
 
 GuideFigures GetFigures(StateReader* reader) {
@@ -98,6 +84,10 @@ GuideFigures GetFigures(StateReader* reader) {
     f.bytes = reader->Get<int64_t>();
     f.seconds = reader->Get<double>();
     f.comparison = reader->Get<GuideComparison>();
+    const auto environment = reader->Get<std::array<uint8_t, 2>>();
+    const auto compared = reader->Get<GuideComparison>();
+    if (environment[0]) f.environment = compared;
+    f.usesEnvironment = environment[1];
     return f;
 }
 
@@ -114,9 +104,9 @@ std::vector<std::byte> SaveLearning(const Learning& learning) {
     PutGuide(learning.state.guide, &writer);
     writer.PutVector(learning.state.record.sums);
     writer.PutVector(learning.state.record.leaves);
-    writer.PutVector(learning.tally.unguided);
-    writer.PutVector(learning.tally.guided);
+    PutTally(learning.tally, &writer);
     writer.PutVector(learning.noise);
+    PutEnvironment(learning.environment, &writer);
     return std::move(writer.bytes);
 }
 
@@ -138,19 +128,16 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     state.guide = GetGuide(&reader);
     state.record.sums = reader.GetVector<uint64_t>(kDamaged);
     state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
-    learning.tally.unguided = reader.GetVector<SampleSpread>(kDamaged);
-    learning.tally.guided = reader.GetVector<SampleSpread>(kDamaged);
-    learning.noise = reader.GetVector<TileNoise>(kDamaged);
-    for (const TileNoise& tile : learning.noise)
-        if (!(tile.unguided >= 0 && tile.guided >= 0 && tile.unguided + tile.guided < kInfinity))
-            Refuse();
+    learning.tally = GetTally(&reader, kDamaged);
+    learning.noise = GetNoise(&reader, kDamaged);
+    learning.environment = GetEnvironment(&reader);
     reader.Finish();
     const bool records = !learning.IsDone() && learning.round > 0;
     const bool fits =
         state.record.sums.size() == 4 * state.guide.quads.size() &&
         state.record.leaves.size() == state.guide.leaves.size() &&
-        records == !state.guide.nodes.empty() &&
-        (learning.IsDone() && learning.figures.isUsed) == !learning.guide.nodes.empty();
+        records == !state.guide.space.nodes.empty() &&
+        (learning.IsDone() && learning.figures.isUsed) == !learning.guide.space.nodes.empty();
     if (!fits || learning.round < 0 || learning.round >= 24 || learning.end <= 0 ||
         learning.decided < 0 || learning.decided > learning.round ||
         (records && !(learning.usual > 0)))

@@ -62,12 +62,16 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
             std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
         context.light = light.get();
     }
-    if (options.guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator)) return;
-    learner.emplace(scene,
-                    LearningOptions{.mode = options.guide.mode,
-                                    .megabytes = options.guide.megabytes,
-                                    .isShort = bool(options.clock)},
-                    region.Area());
+    const GuideOptions& guide = options.guide;
+    LearningOptions how{.mode = guide.mode,
+                        .megabytes = guide.megabytes,
+                        .isShort = bool(options.clock),
+                        .environment = guide.mode == GuideMode::Auto && !options.clock &&
+                                       LearnsEnvironment(scene, options.estimator)};
+    if (guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator))
+        how.mode = GuideMode::Off;
+    if (how.mode == GuideMode::Off && !how.environment) return;
+    learner.emplace(scene, how, region.Area());
     context.learner = &*learner;
 }
 
@@ -102,9 +106,10 @@ void Session::Resume() {
 }
 
 GuideFigures Session::Guidance() const {
-    if (learner) return learner->Figures();
     GuideFigures figures;
-    figures.why = WhyNotGuided(scene, options.estimator).value_or("not requested");
+    if (learner) figures = learner->Figures();
+    const auto whyNot = WhyNotGuided(scene, options.estimator);
+    if (!learner || whyNot) figures.why = whyNot.value_or("not requested");
     return figures;
 }
 

@@ -140,6 +140,8 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         entities.push_back(int(&entity - description.lights.data()));
         lights.push_back(std::move(*light));
         if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
+        const auto* sky = std::get_if<InfiniteLight>(&lights.back());
+        if (environment < 0 && sky && sky->Tiles()) environment = Count() - 1;
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {
         const auto& entity = description.shapes[i].areaLight;

@@ -30,6 +30,10 @@ class LightTable {
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
+    // Returns the first light with an environment map that has tiles (InfiniteLight::Tiles()); -1:
+    // there is none.
+    int Environment() const { return environment; }
+
     // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
@@ -71,6 +75,7 @@ class LightTable {
     std::vector<int> entities;
     std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
     std::vector<int> infinite;
+    int environment = -1;
     bool anyVisible = false;
     std::unique_ptr<LightDistribution> distribution;
     std::unique_ptr<LightHierarchy> hierarchy;  // instead of `distribution`

@@ -6,13 +6,53 @@
 
 namespace lull {
 
-// Returns the light that sampling light `index` brings to the vertex, weighted against sampling of
-// directions. `pmf` is the probability of having chosen the light.
+// Holds a sample of a light, and of which tile of the environment map it is.
+struct TiledSample {
+    int index;  // of the light
+    std::optional<LightSample> light;
+    int tile = -1;  // none
+    // The density of the light's own sampling, by power, over that of what is used.
+    float powerRatio = 1;
+};
+
+// Samples light `index`; the environment map by its tiles there, if the path knows them.
+template <typename Media>
+[[gnu::always_inline]] inline TiledSample SampleTiled(const PathContext<Media>& context,
+                                                      const Vec3f& p, int index,
+                                                      const TileShares* tiles) {
+    const LightTable& lights = context.scene.lights;
+    const Vec2f u = context.sampler.Get2D();
+    TiledSample sample{.index = index, .light = {}};
+    if (!tiles || index != lights.Environment()) {
+        sample.light = lights.Sample(index, p, u);
+        return sample;
+    }
+    const auto& environment = std::get<InfiniteLight>(lights[index]);
+    sample.light = environment.Sample(*tiles, u, &sample.tile);
+    if (context.environmentRecord)
+        context.environmentRecord->Prefetch(context.environment->NumberOf(tiles), sample.tile);
+    sample.powerRatio =
+        environment.Tiles()->Shares().Probability(sample.tile) / tiles->Probability(sample.tile);
+    return sample;
+}
+
+// Tells the record what a sample of the environment has brought to the vertex, `pmf` left out.
+template <typename Media>
+void RecordEnvironment(const PathContext<Media>& context, const TileShares* tiles,
+                       const TiledSample& sample, float luminance) {
+    const auto& environment = std::get<InfiniteLight>(context.scene.lights[sample.index]);
+    context.environmentRecord->Add(
+        context.environment->NumberOf(tiles), sample.tile,
+        luminance * kPi / (sample.powerRatio * environment.TotalLuminance()));
+}
+
+// Returns the light that a sample of light `index` brings to the vertex, weighted against sampling
+// of directions. `pmf` is the probability of having chosen the light.
 template <typename Media, typename Vertex, typename Guiding>
 [[gnu::always_inline]] inline Rgb SampleLight(const PathContext<Media>& context, const Vertex& v,
-                                              const Guiding& guiding, int index, float pmf) {
-    const Vec2f u = context.sampler.Get2D();
-    const auto light = context.scene.lights.Sample(index, v.Position(), u);
+                                              const Guiding& guiding, const TiledSample& sample,
+                                              float pmf) {
+    const std::optional<LightSample>& light = sample.light;
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
     // continues the path is sampled from all of them. A light that rays cannot hit keeps
@@ -31,16 +71,17 @@ template <typename Media, typename Vertex, typename Guiding>
     const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
     if constexpr (!Media::kExist) {
         if (IsBlack(L) || !context.media.Sees(context, v, *light)) return Rgb::Zero();
-        return light->isOnMap ? Rgb(L * context.scene.lights.Radiance(index, *light)) : L;
+        return light->isOnMap ? Rgb(L * context.scene.lights.Radiance(sample.index, *light)) : L;
     } else {
         const auto sight = context.media.See(context, v, *light);
         if (IsBlack(sight.share)) return Rgb::Zero();
-        const Rgb share = light->isOnMap
-                              ? Rgb(sight.share * context.scene.lights.Radiance(index, *light))
-                              : sight.share;
+        const Rgb share =
+            light->isOnMap ? Rgb(sight.share * context.scene.lights.Radiance(sample.index, *light))
+                           : sight.share;
         if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * share;
-        // Light that no ray can reach keeps pbrt-v3's weight, too.
-        const float evenly = PowerHeuristic(light->pdf, v.EvaluateEvenly(light->wi).pdf);
+        // Light that no ray can reach keeps pbrt-v3's weight, too, whatever has been learned.
+        const float evenly =
+            PowerHeuristic(light->pdf * sample.powerRatio, v.EvaluateEvenly(light->wi).pdf);
         return sight.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
                share;
@@ -76,8 +117,8 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
-// Samples direct light as the estimator says: chooses one light of those at the vertex, tells the
-// path how likely each was, and the recorder of its light.
+// Samples direct light as the estimator says, after FindTiles(): chooses one light of those at the
+// vertex, tells the path how likely each was, and the recorder of its light.
 template <typename Media, typename Vertex, typename Guiding, typename Recorder>
 [[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
                                                     const Vertex& v, const Guiding& guiding,
@@ -86,7 +127,10 @@ template <typename Media, typename Vertex, typename Guiding, typename Recorder>
     float pmf;
     const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
-    Rgb L = SampleLight(context, v, guiding, index, pmf);
+    const TiledSample sample = SampleTiled(context, v.Position(), index, path->tiles);
+    Rgb L = SampleLight(context, v, guiding, sample, pmf);
+    if (context.environmentRecord && sample.tile >= 0)
+        RecordEnvironment(context, path->tiles, sample, Luminance(L) * pmf);
     if (context.estimator == Estimator::PbrtV3)
         L += SampleDirectionForLight(context, v, index, pmf);
     recorder.FindLight(*path, index, L);

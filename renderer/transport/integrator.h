@@ -6,6 +6,8 @@
 
 namespace lull {
 
+class EnvironmentGuide;
+class EnvironmentRecord;
 class Guide;
 class GuideRecord;
 class GroupRadiance;
@@ -33,6 +35,10 @@ struct PathOptions {
     const Guide* guide = nullptr;
     GuideRecord* record = nullptr;  // of the guide; receives the vertices of paths; or null
     float usual = 1;                // the luminance that a path usually brings, > 0, for the record
+    // Lets the tiles of the environment map (LightTable::Environment()) be chosen by what they
+    // bring to a place, by Estimator::Combined. The mean is the same. Null: by their power.
+    const EnvironmentGuide* environment = nullptr;
+    EnvironmentRecord* environmentRecord = nullptr;  // of it, as above
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;

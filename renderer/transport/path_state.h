@@ -1,7 +1,9 @@
 // A path between two vertices, and its way from one to the next.
 #pragma once
 
+#include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
+#include "renderer/guiding/environment_guide.h"
 #include "renderer/transport/integrator.h"
 #include "renderer/transport/no_recorder.h"
 #include "renderer/transport/path_vertex.h"
@@ -18,6 +20,8 @@ struct PathContext {
     Sampler& sampler;
     const CameraSample& camera;
     Media media;
+    const EnvironmentGuide* environment = nullptr;
+    EnvironmentRecord* environmentRecord = nullptr;
 };
 
 // Carries the state of a path from one vertex to the next.
@@ -31,8 +35,18 @@ struct Path {
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
     LightChoice choice{};          // of lights there
-    bool wentThrough = false;      // an interface, where the ray continues unscattered
+    // Of the tiles of the environment map there; null: by power.
+    const TileShares* tiles = nullptr;
+    bool wentThrough = false;  // an interface, where the ray continues unscattered
 };
+
+// Tells the path what has been learned of the environment at its next vertex.
+template <typename Media>
+void FindTiles(const PathContext<Media>& context, const Vec3f& p, int side, Path* path) {
+    if (!context.environment) return;
+    path->tiles = &context.environment->Find(p, side);
+    lull::Prefetch(path->tiles);
+}
 
 // Returns the weight of emission that the path's own ray has found on light `index`, where light
 // sampling at the last vertex would have found it with density `lightPdf`.
@@ -53,7 +67,10 @@ template <typename Recorder>
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
             const Light& light = scene.lights[i];
-            const auto [L, pdf] = LeAndPdf(light, path.ray.d);
+            const bool isLearned = path.tiles && i == scene.lights.Environment();
+            const auto [L, pdf] =
+                isLearned ? std::get_if<InfiniteLight>(&light)->LeAndPdf(path.ray.d, path.tiles)
+                          : LeAndPdf(light, path.ray.d);
             const Rgb weighted = L * EmissionWeight(estimator, path, i, pdf);
             recorder.FindLight(path, i, weighted);
             sum += weighted;

@@ -29,6 +29,7 @@ template <typename Media, typename Guiding, typename Recorder>
     recorder.MeetMedium(*path, *inMedium.t, v.p);
     if (isLast) return Fate::Ends;
     guiding.Enter(v);
+    FindTiles(context, v.p, EnvironmentGuide::kInMedium, path);
     if (scene.lights.Count() > 0)
         path->L += path->beta * SampleDirectLight(context, v, guiding, recorder, path);
     bool isTransmission;
@@ -55,6 +56,8 @@ template <typename Media, typename Guiding, typename Recorder>
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     const SurfaceVertex last{exit->hit, out, exit->shape};
     guiding.Enter(last, true);
+    FindTiles(*context, last.hit.p, EnvironmentGuide::SideOf(FaceForward(last.hit.n, last.hit.wo)),
+              path);
     if (scene.lights.Count() > 0)
         path->L += path->beta * SampleDirectLight(*context, last, guiding, recorder, path);
     bool isTransmission;
@@ -149,7 +152,8 @@ template <typename Media, typename Guiding, typename Recorder>
             continue;
         }
 
-        // Make the BSDF.
+        // Make the BSDF, while what has been learned of the environment is loaded.
+        FindTiles(context, hit.p, EnvironmentGuide::SideOf(FaceForward(hit.n, hit.wo)), &path);
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
         if (isLast) break;
@@ -206,9 +210,9 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
 PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
               Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
-        return TracePath<Media>(
-            {scene, integrator, options.estimator, sampler, start.camera, media}, options,
-            start.ray, detail);
+        return TracePath<Media>({scene, integrator, options.estimator, sampler, start.camera, media,
+                                 options.environment, options.environmentRecord},
+                                options, start.ray, detail);
     };
     return scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
 }

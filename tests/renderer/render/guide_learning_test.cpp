@@ -400,7 +400,7 @@ TEST(Learning, SavedStateIsChecked) {
         }
         try {
             const Guide guide = RestoreLearning(damaged).state.guide;
-            for (int k = 0; k < 50 && !guide.nodes.empty(); ++k) {
+            for (int k = 0; k < 50 && !guide.space.nodes.empty(); ++k) {
                 const float u = float(k) / 50;
                 const GuideLeaf& leaf = guide.Leaf(guide.Find({u, -u, u}));
                 float pdf;

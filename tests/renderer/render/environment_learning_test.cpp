@@ -1,0 +1,303 @@
+// Checks renders that learn which tiles of the environment each place sees: the same mean, less
+// variance, the same bits.
+#include "renderer/render/environment_learning.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "renderer/base/color.h"
+#include "renderer/image/image_io.h"
+#include "renderer/render/guide_learning_state.h"
+#include "renderer/render/render.h"
+#include "tests/renderer/render/synthetic_samples.h"
+#include "tests/renderer/scene_of.h"
+
+namespace lull::environment_learning_test {
+namespace {
+
+PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
+
+// A box that is open on one side, where the sky of a studio comes in, seen from there.
+std::unique_ptr<const Scene> MakeRoom(int size, const std::string& integrator = "path",
+                                      const std::string& things = "") {
+    return SceneOf(WorldText(
+        R"(
+LightSource "infinite" "bool studio" "true"
+Material "matte" "rgb Kd" [.7 .6 .5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7]
+  "point P" [-1 1 -1  1 1 -1  1 1 1  -1 1 1   -1 -1 1  1 -1 1  1 1 1  -1 1 1]
+Material "plastic" "rgb Kd" [.4 .3 .2] "rgb Ks" [.2 .2 .2] "float roughness" [.1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7 8 9 10 8 10 11]
+  "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1   -1 -1 -1  -1 -1 1  -1 1 1  -1 1 -1
+             1 -1 -1  1 -1 1  1 1 1  1 1 -1]
+)" + things,
+        fmt::format("LookAt 0 0 -.9  0 -.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n"
+                    "Film \"image\" \"integer xresolution\" [{0}] \"integer yresolution\" [{0}]\n"
+                    "Integrator \"{1}\" \"integer maxdepth\" [6]",
+                    size, integrator)));
+}
+
+constexpr const char* kFog = R"(
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [.1 .1 .1] "rgb sigma_s" [2 2 2]
+AttributeBegin
+  MediumInterface "fog" ""
+  Material ""
+  Translate 0 -.3 .3
+  Shape "sphere" "float radius" [.5]
+AttributeEnd
+)";
+
+RenderOptions OptionsFor(int spp, uint64_t seed, int threads = 2, int blockSize = 200) {
+    RenderOptions options;
+    options.schedule = {.blockSize = blockSize, .passLength = 20, .cap = spp};
+    options.sampler = SamplerKind::Random;
+    options.seed = seed;
+    options.threads = threads;
+    return options;
+}
+
+// A render that learns the environment, and no guide unless told to.
+struct EnvironmentRender {
+    EnvironmentRender(const Scene& scene, const RenderOptions& o, GuideMode mode = GuideMode::Off)
+        : scene(scene),
+          options(o),
+          learner(scene, {.mode = mode, .environment = true}, RegionOf(scene).Area()),
+          film(RegionOf(scene), {.grid = GridOf(options.schedule)}),
+          source(SamplesOf(scene, learner)) {}
+    RenderResult Run(const RenderState* interrupted = nullptr) {
+        return Render({.source = source,
+                       .film = &film,
+                       .interrupted = interrupted,
+                       .learner = &learner,
+                       .checkpoints = checkpoints},
+                      options);
+    }
+    double Mean() const { return MeanOf(film); }
+    static double MeanOf(const Film& film) {
+        double sum = 0;
+        const std::vector<float> means = film.MeanImage();
+        for (size_t i = 1; i < means.size(); i += 3) sum += double(means[i]);
+        return sum / double(film.Region().Area());
+    }
+
+    const Scene& scene;
+    RenderOptions options;
+    Checkpointing checkpoints;
+    GuideLearner learner;
+    Film film;
+    SampleSource source;
+};
+
+struct Estimate {
+    double mean = 0, error = 0;
+    double variance = 0;  // of a render
+};
+
+// Returns what many renders, by seed, come to.
+template <typename MeanOfRender>
+Estimate Repeat(int count, const MeanOfRender& meanOf) {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < count; ++i) {
+        const double mean = meanOf(uint64_t(i));
+        sum += mean;
+        squares += mean * mean;
+    }
+    const double mean = sum / count,
+                 variance = (squares / count - mean * mean) * count / (count - 1);
+    return {mean, std::sqrt(variance / count), variance};
+}
+
+double MeanWithout(const Scene& scene, int spp, uint64_t seed) {
+    const RenderOptions options = OptionsFor(spp, seed);
+    Film film(RegionOf(scene), {.grid = GridOf(options.schedule)});
+    Render({.source = SamplesOf(scene, Estimator::Combined), .film = &film}, options);
+    return EnvironmentRender::MeanOf(film);
+}
+
+TEST(EnvironmentLearning, KeepsTheMeanAndLowersTheVariance) {
+    for (const auto& [integrator, things] :
+         {std::pair("path", std::string()), std::pair("volpath", std::string(kFog))}) {
+        const auto scene = MakeRoom(12, integrator, things);
+        ASSERT_EQ(scene->isVolumetric, !things.empty());
+        const Estimate with = Repeat(60, [&](uint64_t seed) {
+            EnvironmentRender render(*scene, OptionsFor(80, seed));
+            render.Run();
+            EXPECT_TRUE(render.learner.IsDone());
+            return render.Mean();
+        });
+        const Estimate without =
+            Repeat(60, [&](uint64_t seed) { return MeanWithout(*scene, 80, seed + 1000); });
+        EXPECT_NEAR(with.mean, without.mean, 4 * std::hypot(with.error, without.error))
+            << integrator;
+        EXPECT_LT(with.variance, 1.2 * without.variance) << integrator;
+    }
+}
+
+// A sun that shines through a small hole in a roof, and one behind the roof: what comes through the
+// hole is known, and a sample is never much brighter than without anything learned.
+TEST(EnvironmentLearning, ASunThatIsFoundLateIsNoFirefly) {
+    const TemporaryDirectory directory;
+    ExrImage sky;
+    sky.width = 64;
+    sky.height = 32;
+    for (const char* channel : {"R", "G", "B"}) {
+        sky.channels.push_back({channel, {}, false});
+        sky.channels.back().values.resize(64 * 32);
+        sky.channels.back().values[3 * 64 + 10] = 100;
+        sky.channels.back().values[12 * 64 + 40] = 100;
+    }
+    WriteExr(directory.File("sun.exr"), sky);
+    // A roof with a square hole of 0.1.
+    const auto scene = SceneOf(
+        WorldText(fmt::format(R"(
+LightSource "infinite" "string mapname" "{}"
+Material "matte" "rgb Kd" [.5 .5 .5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point P" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]
+Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]
+  "point P" [-40 -40 1.5  40 -40 1.5  40 40 1.5  -40 40 1.5
+             -.05 -.05 1.5  .05 -.05 1.5  .05 .05 1.5  -.05 .05 1.5])",
+                              directory.File("sun.exr")),
+                  "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"orthographic\"\n"
+                  "Film \"image\" \"integer xresolution\" [32] \"integer yresolution\" [32]\n"
+                  "Integrator \"path\" \"integer maxdepth\" [1]"));
+    ASSERT_GE(scene->lights.Environment(), 0);
+
+    // The light through the hole: its area times the irradiance of the sun that gets to the floor
+    // in view, spread over its four units of area.
+    double irradiance = 0;
+    constexpr int kRows = 1000, kColumns = 2000;
+    const auto& light = std::get<InfiniteLight>(scene->lights[scene->lights.Environment()]);
+    for (int y = 0; y < kRows / 3; ++y)
+        for (int x = 0; x < kColumns; ++x) {
+            const double theta = (y + 0.5) / kRows * double(kPi);
+            const double phi = (x + 0.5) / kColumns * 2 * double(kPi);
+            if (std::tan(theta) * 1.5 > 1) continue;
+            const Vec3f w(float(std::sin(theta) * std::cos(phi)),
+                          float(std::sin(theta) * std::sin(phi)), float(std::cos(theta)));
+            irradiance += double(light.LeAndPdf(w).L.y()) * std::cos(theta) * std::sin(theta) *
+                          (double(kPi) / kRows) * (2 * double(kPi) / kColumns);
+        }
+    const double expected = 0.5 / double(kPi) * irradiance * 0.01 / 4;
+
+    std::atomic<float> brightest = 0;
+    const Estimate found = Repeat(30, [&](uint64_t seed) {
+        EnvironmentRender render(*scene, OptionsFor(200, seed, 1));
+        const SampleSource source = render.source;
+        render.source = [&](Sampler& s, const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
+            const PathSample sample = source(s, pixel, index, detail);
+            brightest = std::max(brightest.load(), sample.radiance.y());
+            return sample;
+        };
+        render.Run();
+        return render.Mean();
+    });
+    EXPECT_NEAR(found.mean, expected, 4 * found.error);
+    EXPECT_LT(found.error, 0.02 * expected);
+
+    float brightestWithout = 0;
+    Sampler sampler(SamplerKind::Random, 1);
+    for (int k = 0; k < 200000; ++k)
+        brightestWithout =
+            std::max(brightestWithout, RenderSample(*scene, Estimator::Combined, sampler,
+                                                    {k % 32, k / 32 % 32}, uint32_t(k / 1024))
+                                           .radiance.y());
+    EXPECT_LT(brightest.load(), 10 * brightestWithout);
+}
+
+TEST(EnvironmentLearning, IsTheSameOnAnyNumberOfThreadsAndForAnyPasses) {
+    const auto scene = MakeRoom(24);
+    for (const GuideMode mode : {GuideMode::Off, GuideMode::On}) {
+        EnvironmentRender one(*scene, OptionsFor(90, 3, 1), mode);
+        one.Run();
+        EXPECT_TRUE(one.learner.Paths().environment);
+        for (const int threads : {2, 4}) {
+            RenderOptions options = OptionsFor(90, 3, threads, 10);
+            options.schedule.passLength = 7 * threads;
+            EnvironmentRender other(*scene, options, mode);
+            other.Run();
+            EXPECT_TRUE(SamePixels(one.film, other.film)) << threads;
+        }
+    }
+}
+
+TEST(EnvironmentLearning, GoesOnToTheSameBits) {
+    const auto scene = MakeRoom(24);
+    EnvironmentRender whole(*scene, OptionsFor(90, 0, 1, 10));
+    whole.Run();
+    RenderState state;
+    std::optional<Film> film;
+    std::vector<std::byte> kept;
+    int interruptions = 0;
+    for (bool isDone = false; !isDone; ++interruptions) {
+        EnvironmentRender part(*scene, OptionsFor(90, 0, 2, 10));
+        if (film) {
+            part.film = *film;
+            part.learner.Take(kept, part.film);
+        }
+        std::atomic<int> asked = 0;
+        part.options.isCancelled = [&] { return ++asked > 23; };
+        part.checkpoints.write = [&](const RenderState& s) { state = s; };
+        isDone = !part.Run(film ? &state : nullptr).cancelled;
+        film = part.film;
+        kept = part.learner.Save();
+        if (isDone) {
+            EXPECT_TRUE(SamePixels(part.film, whole.film));
+        }
+    }
+    EXPECT_GT(interruptions, 3);
+}
+
+TEST(EnvironmentLearning, SavedStateIsChecked) {
+    const auto scene = MakeRoom(8);
+    EnvironmentRender render(*scene, OptionsFor(20, 0));
+    render.Run();
+    const std::vector<std::byte> bytes = render.learner.Save();
+    EXPECT_NO_THROW(RestoreLearning(bytes));
+    // A learner that learns nothing of the environment does not take it, and the other way round.
+    GuideLearner guide(*scene, {}, 64), both(*scene, {.environment = true}, 64);
+    EXPECT_THROW(guide.Take(bytes, render.film), std::runtime_error);
+    EXPECT_THROW(both.Take(guide.Save(), render.film), std::runtime_error);
+    // Trees and probabilities that lead nowhere are refused.
+    uint64_t random = 1;
+    int refused = 0;
+    for (int i = 0; i < 100; ++i) {
+        std::vector<std::byte> damaged = bytes;
+        for (int k = 0; k < 4; ++k) {
+            random = random * 6364136223846793005ull + 1442695040888963407ull;
+            damaged[(random >> 20) % damaged.size()] = std::byte(random >> 56);
+        }
+        try {
+            const EnvironmentGuide read = RestoreLearning(damaged).environment.state.guide;
+            for (int k = 0; k < 50 && !read.IsEmpty(); ++k) {
+                const float u = float(k) / 50;
+                Vec2f place(u, 1 - u);
+                place = place.cwiseMin(kOneMinusEpsilon);
+                const int tile = read.Find({u, -u, u}, k % 7).Choose(&place);
+                EXPECT_TRUE(tile >= 0 && tile < TileShares::kCount);
+            }
+        } catch (const std::runtime_error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 0);
+}
+
+TEST(EnvironmentLearning, NeedsAMapThatIsNotSampledAsByPbrt) {
+    const auto room = MakeRoom(8);
+    EXPECT_TRUE(LearnsEnvironment(*room, Estimator::Combined));
+    EXPECT_FALSE(LearnsEnvironment(*room, Estimator::PbrtV3));
+    const std::string ball = "Shape \"sphere\"";
+    EXPECT_FALSE(LearnsEnvironment(*SceneOf(WorldText("LightSource \"infinite\"\n" + ball)),
+                                   Estimator::Combined));
+    CompileOptions asPbrt;
+    asPbrt.lightsAsPbrtV3 = true;
+    const std::string studio = "LightSource \"infinite\" \"bool studio\" \"true\"\n";
+    EXPECT_FALSE(
+        LearnsEnvironment(*SceneOf(WorldText(studio + ball), asPbrt), Estimator::Combined));
+}
+
+}  // namespace
+}  // namespace lull::environment_learning_test
