@@ -186,7 +186,8 @@ Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 
     const Estimate found = Repeat(30, [&](uint64_t seed) {
         EnvironmentRender render(*scene, OptionsFor(200, seed, 1));
         const SampleSource source = render.source;
-        render.source = [&](Sampler& s, const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
+        render.source = [&](Sampler& s, const Vec2i& pixel, uint32_t index,
+                            const SampleDetail& detail) {
             const PathSample sample = source(s, pixel, index, detail);
             brightest = std::max(brightest.load(), sample.radiance.y());
             return sample;
