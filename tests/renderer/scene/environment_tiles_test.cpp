@@ -38,7 +38,7 @@ TEST(TileShares, AreProbabilitiesThatFollowTheWeights) {
     EXPECT_NEAR(sum, 1, 1e-6);
 
     TileShares damaged = shares;
-    std::swap(damaged.bands[2], damaged.bands[9]);
+    std::swap(damaged.bands[2], damaged.bands[6]);
     EXPECT_FALSE(IsValid(damaged));
     EXPECT_FALSE(IsValid(TileShares()));
 }
