@@ -38,8 +38,8 @@ class BlockDistribution {
         return pdf * blocks.Pmf(block);
     }
 
-    // For those who choose blocks by other probabilities: the number of blocks, along each axis,
-    // and their probabilities here.
+    // Return the number of blocks along each axis, and a block's probability, for sampling of
+    // blocks by other probabilities.
     Vec2i BlockCounts() const {
         return {(columns + kSide - 1) / kSide, (rows + kSide - 1) / kSide};
     }
@@ -59,7 +59,7 @@ class BlockDistribution {
         return {std::min(cell.x() / float(columns), kOneMinusEpsilon),
                 std::min(cell.y() / float(rows), kOneMinusEpsilon)};
     }
-    // Returns the density at a point of the unit square, given the block, which is told.
+    // Returns the density at a point of the unit square, and its block, given which it is.
     float PdfIn(const Vec2f& st, Vec2i* block) const {
         const int column = std::clamp(int(st.x() * float(columns)), 0, columns - 1);
         const int row = std::clamp(int(st.y() * float(rows)), 0, rows - 1);

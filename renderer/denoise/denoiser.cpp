@@ -42,7 +42,7 @@ void Add(const Halves& halves, Halves* sum) {
     Add(halves.b, &sum->b);
 }
 
-// Raises errors to those of the same blocks, where these are larger.
+// Replaces the errors of blocks by larger ones of the same blocks.
 void Raise(const Blocks& errors, Blocks* blocks) {
     for (size_t i = 0; i < blocks->size(); ++i) {
         if (!errors[i]) continue;

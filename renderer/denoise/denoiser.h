@@ -44,7 +44,7 @@ struct GroupedResult {
     std::vector<std::vector<float>> groups;  // R, G, B of each pixel
 };
 
-// Denoises each group by itself: takes as long as so many pictures.
+// Denoises the groups one by one, each in the time of a picture.
 GroupedResult RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
 }  // namespace lull

@@ -7,12 +7,12 @@ namespace lull {
 namespace {
 
 constexpr size_t kTiles = TileShares::kCount;
-// The part of samples that are taken by power alone: what opens late is at most so much brighter.
+// The fraction of samples by power alone. Its inverse bounds the weight of light found late.
 constexpr float kKept = 0.15f;
-// So many samples' worth of what is known of the space around a leaf counts in it.
+// The weight of the mean of the space around a leaf, in samples.
 constexpr float kPrior = 4;
 
-// Holds the sums of a node of the tree over space.
+// The sums of a node of the tree over space.
 struct Sums {
     std::array<float, kTiles> squares = {}, counts = {};
 };
@@ -174,12 +174,6 @@ EnvironmentGuide::EnvironmentGuide(const Bounds3f& bounds, int depth, const Tile
             if (node & SpaceTree::kIsLeaf) node += uint32_t(side << depth);
         trees[side].Index();
     }
-}
-
-size_t EnvironmentGuide::Bytes() const {
-    size_t bytes = leaves.size() * sizeof(TileShares);
-    for (const SpaceTree& tree : trees) bytes += tree.Bytes();
-    return bytes;
 }
 
 void EnvironmentRecord::Add(size_t leaf, int tile, float brought) {

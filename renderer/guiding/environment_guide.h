@@ -32,9 +32,8 @@ class EnvironmentGuide {
     size_t NumberOf(const TileShares* leaf) const { return size_t(leaf - leaves.data()); }
 
     bool IsEmpty() const { return leaves.empty(); }
-    size_t Bytes() const;
 
-    // For those who build and store. Leaves of all trees are numbered together.
+    // The trees, to build and store them. Leaves of all trees are numbered together.
     std::array<SpaceTree, kSides> trees;
     std::vector<TileShares> leaves;
 };
@@ -47,8 +46,8 @@ class EnvironmentRecord {
     explicit EnvironmentRecord(const EnvironmentGuide& guide)
         : sums(guide.leaves.size() * TileShares::kCount) {}
 
-    // Records a sample of a tile. `brought`: its light, over what the tile would bring to a white
-    // diffuse surface that faces it; any value: what is not positive (or NaN) counts as 0.
+    // Records a sample of a tile. `brought`: its light, relative to that of the tile on a white
+    // diffuse surface that faces it; values that are not positive, and NaN, count as 0.
     void Add(size_t leaf, int tile, float brought);
     // Starts to load what Add() changes.
     void Prefetch(size_t leaf, int tile) const {

@@ -44,7 +44,7 @@ std::vector<SampleSpread>* SpreadsOf(EnvironmentLearning*);
 // Lets paths sample as was learned, and record.
 void SetEnvironment(EnvironmentLearning*, PathOptions*);
 
-// Pack it, and read what was packed. Throws std::runtime_error if the bytes are damaged.
+// Write and read its state. GetEnvironment() throws std::runtime_error for damaged bytes.
 void PutEnvironment(const EnvironmentLearning&, StateWriter*);
 EnvironmentLearning GetEnvironment(StateReader*);
 

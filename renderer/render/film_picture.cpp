@@ -1,7 +1,6 @@
 #include "renderer/render/film_picture.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <optional>
 
@@ -19,37 +18,40 @@ float VarianceOfMean(double squares, double mean, double count) {
     return float(std::min(variance, double(std::numeric_limits<float>::max())));
 }
 
-// Light of the samples: all of it, or that of a group. Calls with a pixel return its sums, the sum
-// of the squares of its samples' luminance, and its colour where it has no samples.
-struct LightSums {
-    std::function<FilmPixel(const Vec2i&)> at;
-    std::function<double(const Vec2i&)> squaresAt;
-    std::function<Rgb(const Vec2i&)> look;
+// The light of all samples. At() returns the sums of a pixel, SquaresAt() the sum of the squares of
+// its samples' luminance, and Look() its colour where it has no samples.
+struct WholeLight {
+    const Film& film;
+    const FeatureFilm* features = nullptr;  // null: without squares
+
+    FilmPixel At(const Vec2i& p) const { return film.At(p); }
+    double SquaresAt(const Vec2i& p) const { return double(features->At(p).squares); }
+    Rgb Look(const Vec2i& p) const { return film.MeanAt(p); }
 };
 
-LightSums LightOf(const Film& film, const FeatureFilm* features = nullptr) {
-    return {[&film](const Vec2i& p) { return film.At(p); },
-            [features](const Vec2i& p) { return double(features->At(p).squares); },
-            [&film](const Vec2i& p) { return film.MeanAt(p); }};
-}
+// The same of a group of lights; the first look belongs to the last one.
+struct GroupLight {
+    const Film& film;
+    const LightGroupFilm& lights;
+    int group;
 
-LightSums LightOf(const Film& film, const LightGroupFilm& lights, int group) {
-    const bool isLast = group + 1 == lights.Count();
-    return {
-        [&film, &lights, group](const Vec2i& p) { return lights.At(group, p, film.At(p).count); },
-        [&lights, group](const Vec2i& p) { return lights.SquaresAt(group, p); },
-        [&film, isLast](const Vec2i& p) { return isLast ? film.MeanAt(p) : Rgb(Rgb::Zero()); }};
-}
+    FilmPixel At(const Vec2i& p) const { return lights.At(group, p, film.At(p).count); }
+    double SquaresAt(const Vec2i& p) const { return lights.SquaresAt(group, p); }
+    Rgb Look(const Vec2i& p) const {
+        return group + 1 == lights.Count() ? film.MeanAt(p) : Rgb(Rgb::Zero());
+    }
+};
 
 // Returns the mean of the four neighbours of a pixel that have samples and are within `rect`;
 // nothing where none are.
-std::optional<Rgb> NeighbourMean(const LightSums& light, const PixelRect& rect, const Vec2i& p) {
+template <typename Light>
+std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, const Vec2i& p) {
     Rgb sum(0, 0, 0);
     int count = 0;
     for (const Vec2i& step : {Vec2i(-1, 0), Vec2i(1, 0), Vec2i(0, -1), Vec2i(0, 1)}) {
         const Vec2i q = p + step;
         if ((q.array() < rect.min.array()).any() || (q.array() >= rect.max.array()).any()) continue;
-        const FilmPixel pixel = light.at(q);
+        const FilmPixel pixel = light.At(q);
         if (pixel.count == 0) continue;
         sum += pixel.Mean();
         ++count;
@@ -72,12 +74,12 @@ struct Split {
 constexpr auto kSkip = [](const Vec2i&) {};
 
 // Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others.
-template <typename Use, typename UseEmpty = decltype(kSkip)>
-void ForEachPixel(const LightSums& light, const PixelRect& rect, const Use& use,
+template <typename Light, typename Use, typename UseEmpty = decltype(kSkip)>
+void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
                   const UseEmpty& useEmpty = kSkip) {
     for (int y = rect.min.y(); y < rect.max.y(); ++y)
         for (int x = rect.min.x(); x < rect.max.x(); ++x) {
-            const FilmPixel pixel = light.at({x, y});
+            const FilmPixel pixel = light.At({x, y});
             if (pixel.count == 0) {
                 useEmpty({x, y});
                 continue;
@@ -88,7 +90,8 @@ void ForEachPixel(const LightSums& light, const PixelRect& rect, const Use& use,
         }
 }
 
-Halves ColoursOf(const LightSums& light, const PixelRect& rect) {
+template <typename Light>
+Halves ColoursOfLight(const Light& light, const PixelRect& rect) {
     Halves colour = MakeHalves(rect.Width(), rect.Height(), kColours);
     const auto put = [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
         for (int c = 0; c < kColours; ++c) {
@@ -104,7 +107,7 @@ Halves ColoursOf(const LightSums& light, const PixelRect& rect) {
             other.Row(c, p.y() - rect.min.y())[p.x() - rect.min.x()] = (*neighbours)[c];
     };
     const auto putFirstLook = [&](const Vec2i& p) {
-        const Rgb look = light.look(p);
+        const Rgb look = light.Look(p);
         for (Planes* half : {&colour.a, &colour.b})
             for (int c = 0; c < kColours; ++c)
                 half->Row(c, p.y() - rect.min.y())[p.x() - rect.min.x()] = look[c];
@@ -113,12 +116,13 @@ Halves ColoursOf(const LightSums& light, const PixelRect& rect) {
     return colour;
 }
 
-Planes VarianceOf(const LightSums& light, const PixelRect& rect) {
+template <typename Light>
+Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
     Planes variance(rect.Width(), rect.Height(), 1);
     ForEachPixel(light, rect, [&](const Split& split, const FilmPixel& pixel, const Vec2i& p) {
         float& v = variance.Row(0, p.y() - rect.min.y())[p.x() - rect.min.x()];
         if (split.isSplit)
-            v = VarianceOfMean(light.squaresAt(p), Luminance(pixel.Mean()), pixel.count);
+            v = VarianceOfMean(light.SquaresAt(p), Luminance(pixel.Mean()), pixel.count);
         else if (const auto neighbours = NeighbourMean(light, rect, p))
             v = Sqr(Luminance(pixel.Mean() - *neighbours)) / 4;  // as of halves that differ so
     });
@@ -146,17 +150,19 @@ GroupedPicture PictureOf(const Film& film, const FeatureFilm& features,
                          const LightGroupFilm& lights, const PixelRect& rect) {
     NoisyPicture all = FeaturesOf(film, features, rect);
     const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
-        const LightSums own = LightOf(film, lights, group);
-        return {ColoursOf(own, rect), {}, VarianceOf(own, rect)};
+        const GroupLight own{film, lights, group};
+        return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
     };
     return {lights.Count(), std::move(all.features), std::move(all.variance), light};
 }
 
-Halves ColoursOf(const Film& film, const PixelRect& rect) { return ColoursOf(LightOf(film), rect); }
+Halves ColoursOf(const Film& film, const PixelRect& rect) {
+    return ColoursOfLight(WholeLight{film}, rect);
+}
 
 Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
     Halves halves = MakeHalves(rect.Width(), rect.Height(), kFeatures);
-    ForEachPixel(LightOf(film), rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
+    ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
         const FeaturePixel& feature = features.At(p);
         for (int f = 0; f < kFeatures; ++f)
             split.Put(feature.sums[0][size_t(f)], feature.sums[1][size_t(f)], f, p - rect.min,
@@ -166,7 +172,7 @@ Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const Pixe
 }
 
 Planes VarianceOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
-    return VarianceOf(LightOf(film, &features), rect);
+    return VarianceOfLight(WholeLight{film, &features}, rect);
 }
 
 }  // namespace lull

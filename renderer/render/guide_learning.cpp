@@ -90,7 +90,6 @@ GuideLearner::GuideLearner(const Scene& scene, const LearningOptions& options, i
     learning.figures.why = "no block took enough samples";
     learning.end = options.mode == GuideMode::Off ? kNoRoundEnd : RoundLength(0);
     if (options.environment) learning.environment = BeginEnvironment();
-    SetPaths();
 }
 
 int GuideLearner::RoundLength(int round) const {
@@ -125,10 +124,10 @@ void GuideLearner::EndRound(const Film& film) {
     const int end = RoundEnd();
     if (end == learning.environment.end) EndEnvironmentRound(scene, film, &learning.environment);
     if (end == learning.end) EndGuideRound(film);
-    const EnvironmentLearning& environment = learning.environment;
-    learning.figures.usesEnvironment = environment.isUsed;
-    if (environment.isUsed || (options.environment && environment.IsDone()))
-        learning.figures.environment = environment.comparison;
+    if (options.environment && learning.environment.IsDone()) {
+        learning.figures.usesEnvironment = learning.environment.isUsed;
+        learning.figures.environment = learning.environment.comparison;
+    }
     SetPaths();
 }
 

@@ -22,7 +22,7 @@ struct CheckpointOptions {
 };
 
 // Returns the bytes a pixel of such layers, and features, in addition to the film, with the
-// channels made of them in the end; and the same of so many light groups.
+// channels made of them in the end, and those of a number of light groups.
 int64_t BytesOfLayers(const AovSet& wanted, bool features);
 int64_t BytesOfLights(int groups, const LightGroupOptions&);
 

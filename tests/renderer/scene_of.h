@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "renderer/base/pixel_rect.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"
@@ -31,5 +32,8 @@ inline std::unique_ptr<const Scene> SceneOf(const std::string& text, CompileOpti
     options.threads = 1;
     return SceneIn(TemporaryDirectory().Write("test.pbrt", text), options, warnings);
 }
+
+// Returns the pixels that a render of the scene has.
+inline PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
 
 }  // namespace lull

@@ -10,14 +10,12 @@
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
 #include "renderer/render/guide_learning_state.h"
-#include "renderer/render/render.h"
+#include "tests/renderer/render/learning_render.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull::environment_learning_test {
 namespace {
-
-PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
 
 // A box that is open on one side, where the sky of a studio comes in, seen from there.
 std::unique_ptr<const Scene> MakeRoom(int size, const std::string& integrator = "path",
@@ -58,36 +56,10 @@ RenderOptions OptionsFor(int spp, uint64_t seed, int threads = 2, int blockSize 
     return options;
 }
 
-// A render that learns the environment, and no guide unless told to.
-struct EnvironmentRender {
+// A render that learns the environment, and guides no directions unless asked to.
+struct EnvironmentRender : LearningRender {
     EnvironmentRender(const Scene& scene, const RenderOptions& o, GuideMode mode = GuideMode::Off)
-        : scene(scene),
-          options(o),
-          learner(scene, {.mode = mode, .environment = true}, RegionOf(scene).Area()),
-          film(RegionOf(scene), {.grid = GridOf(options.schedule)}),
-          source(SamplesOf(scene, learner)) {}
-    RenderResult Run(const RenderState* interrupted = nullptr) {
-        return Render({.source = source,
-                       .film = &film,
-                       .interrupted = interrupted,
-                       .learner = &learner,
-                       .checkpoints = checkpoints},
-                      options);
-    }
-    double Mean() const { return MeanOf(film); }
-    static double MeanOf(const Film& film) {
-        double sum = 0;
-        const std::vector<float> means = film.MeanImage();
-        for (size_t i = 1; i < means.size(); i += 3) sum += double(means[i]);
-        return sum / double(film.Region().Area());
-    }
-
-    const Scene& scene;
-    RenderOptions options;
-    Checkpointing checkpoints;
-    GuideLearner learner;
-    Film film;
-    SampleSource source;
+        : LearningRender(scene, o, {.mode = mode, .environment = true}) {}
 };
 
 struct Estimate {
@@ -113,7 +85,7 @@ double MeanWithout(const Scene& scene, int spp, uint64_t seed) {
     const RenderOptions options = OptionsFor(spp, seed);
     Film film(RegionOf(scene), {.grid = GridOf(options.schedule)});
     Render({.source = SamplesOf(scene, Estimator::Combined), .film = &film}, options);
-    return EnvironmentRender::MeanOf(film);
+    return MeanOf(film);
 }
 
 TEST(EnvironmentLearning, KeepsTheMeanAndLowersTheVariance) {

@@ -10,6 +10,7 @@
 #include "renderer/render/guide_learning_state.h"
 #include "renderer/render/render.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/render/learning_render.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 
@@ -58,8 +59,6 @@ AttributeBegin
 AttributeEnd
 )");
 
-PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
-
 RenderOptions RenderFor(int cap, uint64_t seed = 0, int threads = 2) {
     RenderOptions options;
     options.schedule = {.blockSize = 200, .passLength = 20, .cap = cap};
@@ -68,36 +67,6 @@ RenderOptions RenderFor(int cap, uint64_t seed = 0, int threads = 2) {
     options.threads = threads;
     return options;
 }
-
-// A render that learns, and what it has learned.
-struct LearningRender {
-    LearningRender(const Scene& scene, RenderOptions given, LearningOptions how = {})
-        : scene(scene),
-          options(std::move(given)),
-          learner(scene, how, RegionOf(scene).Area()),
-          film(RegionOf(scene), {.grid = GridOf(options.schedule)}) {}
-    RenderResult Run(const RenderState* interrupted = nullptr) {
-        return Render({.source = SamplesOf(scene, learner),
-                       .film = &film,
-                       .interrupted = interrupted,
-                       .learner = &learner,
-                       .checkpoints = checkpoints},
-                      options);
-    }
-    const Guide& TheGuide() const { return *learner.Paths().guide; }
-    double Mean() const {
-        double sum = 0;
-        const std::vector<float> means = film.MeanImage();
-        for (size_t i = 1; i < means.size(); i += 3) sum += double(means[i]);
-        return sum / double(film.Region().Area());
-    }
-
-    const Scene& scene;
-    RenderOptions options;
-    Checkpointing checkpoints;
-    GuideLearner learner;
-    Film film;
-};
 
 // Returns all but the time it took.
 std::vector<std::byte> BytesOf(const GuideLearner& learner) {

@@ -57,8 +57,6 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
 WorldEnd
 )";
 
-PixelRect RegionOf(const Scene& scene) { return {scene.film.cropMin, scene.film.cropMax}; }
-
 struct Settings {
     Estimator estimator = Estimator::Combined;
     SamplerKind sampler = SamplerKind::Random;
