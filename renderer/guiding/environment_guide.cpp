@@ -1,7 +1,5 @@
 #include "renderer/guiding/environment_guide.h"
 
-#include <atomic>
-
 namespace lull {
 
 namespace {
@@ -48,7 +46,7 @@ class Estimation {
         if (value & SpaceTree::kIsLeaf) {
             const size_t first = size_t(value & ~SpaceTree::kIsLeaf) * kTiles;
             for (size_t t = 0; t < kTiles; ++t) {
-                s.squares[t] = float(record.sums[first + t].squares) / EnvironmentRecord::kScale;
+                s.squares[t] = record.sums[first + t].Squares();
                 s.counts[t] = float(record.sums[first + t].count);
             }
             return;
@@ -102,7 +100,7 @@ class Division {
         : old(old), leafSamples(leafSamples) {}
 
     EnvironmentState Make() {
-        for (int side = 0; side < EnvironmentGuide::kSides; ++side) {
+        for (int side = 0; side < kSides; ++side) {
             const SpaceTree& from = old.guide.trees[size_t(side)];
             SpaceTree& to = made.guide.trees[size_t(side)];
             to.lower = from.lower;
@@ -141,7 +139,7 @@ class Division {
         }
         to->nodes[target] = SpaceTree::kIsLeaf | uint32_t(count++);
         for (size_t t = first; t < first + kTiles; ++t) {
-            const EnvironmentRecord::Sum& sum = old.record.sums[t];
+            const SquareSum& sum = old.record.sums[t];
             made.record.sums.push_back({sum.squares / parts, sum.count / parts});
         }
     }
@@ -176,18 +174,9 @@ EnvironmentGuide::EnvironmentGuide(const Bounds3f& bounds, int depth, const Tile
     }
 }
 
-void EnvironmentRecord::Add(size_t leaf, int tile, float brought) {
-    Sum& sum = sums[leaf * kTiles + size_t(tile)];
-    std::atomic_ref(sum.count).fetch_add(1, std::memory_order_relaxed);
-    if (!(brought > 0)) return;
-    const float square = std::min(Sqr(brought), kLargest);
-    std::atomic_ref(sum.squares)
-        .fetch_add(uint64_t(square * kScale + 0.5f), std::memory_order_relaxed);
-}
-
 uint64_t EnvironmentRecord::CountOf(size_t leaf) const {
     uint64_t count = 0;
-    for (const Sum& sum : std::span(sums).subspan(leaf * kTiles, kTiles)) count += sum.count;
+    for (const SquareSum& sum : std::span(sums).subspan(leaf * kTiles, kTiles)) count += sum.count;
     return count;
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "renderer/base/memory.h"
+#include "renderer/guiding/sides.h"
 #include "renderer/guiding/space_tree.h"
+#include "renderer/guiding/square_sum.h"
 #include "renderer/scene/tile_shares.h"
 
 namespace lull {
@@ -11,18 +13,9 @@ namespace lull {
 // Constant while paths are traced.
 class EnvironmentGuide {
   public:
-    // Sides: the axis that a normal is closest to, -x, +x, -y, ...; and points in media.
-    static constexpr int kSides = 7, kInMedium = 6;
-
     EnvironmentGuide() = default;
     // Divides the cube around the bounds into 2^depth leaves a side, all of the same probabilities.
     EnvironmentGuide(const Bounds3f& bounds, int depth, const TileShares& shares);
-
-    static int SideOf(const Vec3f& n) {
-        int axis;
-        n.cwiseAbs().maxCoeff(&axis);
-        return 2 * axis + (n[axis] > 0);
-    }
 
     // Returns the probabilities at p, on a side; they stay where they are as long as the guide.
     const TileShares& Find(const Vec3f& p, int side) const {
@@ -38,8 +31,7 @@ class EnvironmentGuide {
     std::vector<TileShares> leaves;
 };
 
-// Sums up what samples of the map have brought, for the next guide. The sums are integers, which
-// come to the same in any order, so that any number of threads may add at the same time.
+// Sums up what samples of the map have brought, for the next guide.
 class EnvironmentRecord {
   public:
     EnvironmentRecord() = default;
@@ -47,8 +39,10 @@ class EnvironmentRecord {
         : sums(guide.leaves.size() * TileShares::kCount) {}
 
     // Records a sample of a tile. `brought`: its light, relative to that of the tile on a white
-    // diffuse surface that faces it; values that are not positive, and NaN, count as 0.
-    void Add(size_t leaf, int tile, float brought);
+    // diffuse surface that faces it.
+    void Add(size_t leaf, int tile, float brought) {
+        sums[leaf * TileShares::kCount + size_t(tile)].Add(brought, kLargest);
+    }
     // Starts to load what Add() changes.
     void Prefetch(size_t leaf, int tile) const {
         lull::Prefetch(&sums[leaf * TileShares::kCount + size_t(tile)]);
@@ -57,14 +51,8 @@ class EnvironmentRecord {
     // Returns how many samples a leaf has.
     uint64_t CountOf(size_t leaf) const;
 
-    static constexpr float kScale = 0x1p20f, kLargest = 0x1p8f;  // of squares
-
-    struct Sum {
-        uint64_t squares = 0;  // in units of 1 / kScale
-        uint64_t count = 0;
-        bool operator==(const Sum&) const = default;
-    };
-    std::vector<Sum> sums;  // by leaf, then tile
+    static constexpr float kLargest = 0x1p8f;  // of squares
+    std::vector<SquareSum> sums;               // by leaf, then tile
 };
 
 struct EnvironmentState {

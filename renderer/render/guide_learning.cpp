@@ -5,7 +5,6 @@
 #include <chrono>
 #include <utility>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/render/guide_learning_state.h"
@@ -37,14 +36,6 @@ constexpr double kVertexCost = 1.2;
 // Cells that the first round has to record in.
 constexpr int kFirstDepth = 9, kFirstQuadDepth = 3;
 
-double MeanLuminance(const Film& film) {
-    double sum = 0;
-    const std::vector<float> means = film.MeanImage();
-    for (size_t i = 0; i < means.size(); i += 3)
-        sum += double(Luminance({means[i], means[i + 1], means[i + 2]}));
-    return sum / double(std::max<int64_t>(1, film.Region().Area()));
-}
-
 // Adds the time until the end of its scope.
 class Stopwatch {
   public:
@@ -69,10 +60,10 @@ std::optional<std::string> WhyNotGuided(const Scene& scene, Estimator estimator)
 
 std::string TextOf(const GuideFigures& f, GuideMode mode) {
     std::string text = fmt::format("guide: {}: {}", f.isUsed ? "used" : "not used", f.why);
-    if (f.environment)
-        text += fmt::format("; learned environment: {}, variance {:.2f} +- {:.2f} of that by power",
-                            f.usesEnvironment ? "used" : "not used", f.environment->variance,
-                            f.environment->error);
+    if (f.directLight)
+        text += fmt::format("; learned direct light: {}, variance {:.2f} +- {:.2f} of that without",
+                            f.usesDirectLight ? "used" : "not used", f.directLight->variance,
+                            f.directLight->error);
     if (f.rounds == 0) return text;
     text += fmt::format("; learned from {} spp, from {} spp on, {:.1f} MB", f.samples, f.from,
                         double(f.bytes) / (1 << 20));
@@ -89,7 +80,7 @@ GuideLearner::GuideLearner(const Scene& scene, const LearningOptions& options, i
           std::clamp<int64_t>(kPathsOfRound / std::max<int64_t>(1, pixels), kShortest, kLongest))) {
     learning.figures.why = "no block took enough samples";
     learning.end = options.mode == GuideMode::Off ? kNoRoundEnd : RoundLength(0);
-    if (options.environment) learning.environment = BeginEnvironment();
+    if (options.directLight) learning.directLight = BeginDirectLight();
 }
 
 int GuideLearner::RoundLength(int round) const {
@@ -105,13 +96,13 @@ bool GuideLearner::IsTrial() const {
 
 double GuideLearner::Variance(const Film& film, const PixelRect& part) const {
     double variance = 1;
-    for (const auto* noise : {&learning.noise, &learning.environment.noise})
+    for (const auto* noise : {&learning.noise, &learning.directLight.noise})
         if (!noise->empty()) variance *= VarianceOf(*noise, film, part);
     return variance;
 }
 
 SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
-    if (auto* spreads = SpreadsOf(&learning.environment)) return &(*spreads)[film.TileAt(tile.min)];
+    if (auto* spreads = SpreadsOf(&learning.directLight)) return &(*spreads)[film.TileAt(tile.min)];
     if (!IsTrial()) return nullptr;
     const int round = learning.round;
     if (round == 1) return &learning.tally.unguided[film.TileAt(tile.min)];
@@ -122,11 +113,11 @@ SampleSpread* GuideLearner::SpreadOf(const Film& film, const PixelRect& tile) {
 void GuideLearner::EndRound(const Film& film) {
     const Stopwatch stopwatch(&learning.figures.seconds);
     const int end = RoundEnd();
-    if (end == learning.environment.end) EndEnvironmentRound(scene, film, &learning.environment);
+    if (end == learning.directLight.end) EndDirectLightRound(scene, film, &learning.directLight);
     if (end == learning.end) EndGuideRound(film);
-    if (options.environment && learning.environment.IsDone()) {
-        learning.figures.usesEnvironment = learning.environment.isUsed;
-        learning.figures.environment = learning.environment.comparison;
+    if (options.directLight && learning.directLight.IsDone()) {
+        learning.figures.usesDirectLight = learning.directLight.isUsed;
+        learning.figures.directLight = learning.directLight.comparison;
     }
     SetPaths();
 }
@@ -222,7 +213,7 @@ void GuideLearner::SetPaths() {
         paths.record = &learning.state.record;
         paths.usual = float(learning.usual);
     }
-    SetEnvironment(&learning.environment, &paths);
+    SetDirectLight(&learning.directLight, &paths.learned);
 }
 
 std::vector<std::byte> GuideLearner::Save() const { return SaveLearning(learning); }
@@ -236,13 +227,8 @@ void GuideLearner::Take(std::span<const std::byte> bytes, const Film& film) {
     if (taken.tally.unguided.size() != compared || taken.tally.guided.size() != compared ||
         taken.noise.size() != known)
         throw std::runtime_error("its guide is of another image");
-    const EnvironmentLearning& environment = taken.environment;
-    const bool hasBegun = environment.round > 0 || !environment.IsDone();
-    const size_t spreads = !environment.IsDone() && environment.round > 0 ? film.TileCount() : 0;
-    if (hasBegun != options.environment || environment.tally.unguided.size() != spreads ||
-        environment.tally.guided.size() != spreads ||
-        environment.noise.size() != (environment.isUsed ? film.TileCount() : 0))
-        throw std::runtime_error("its learned environment is of another image");
+    if (!Complete(scene, options.directLight, film.TileCount(), &taken.directLight))
+        throw std::runtime_error("its learned direct light is of another image");
     learning = std::move(taken);
     SetPaths();
 }

@@ -11,8 +11,8 @@
 // `auto` begins late, so that blocks that stop early do not pay for it, with short rounds: one
 // without a guide, the others with. It keeps the guide once a round had significantly less
 // variance, times its vertices, than the first, and drops it once that is significantly not so, or
-// undecided after a few rounds. Before that it learns the environment map
-// (environment_learning.h), where there is one.
+// undecided after a few rounds. Before that it learns the light that arrives directly from lights
+// (direct_light_learning.h).
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@
 
 #include "renderer/base/enum_names.h"
 #include "renderer/guiding/guide_refine.h"
-#include "renderer/render/environment_learning.h"
+#include "renderer/render/direct_light_learning.h"
 #include "renderer/render/guide_tally.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
@@ -47,10 +47,9 @@ struct GuideFigures {
     int leaves = 0;              // of its tree over space
     double seconds = 0;          // elapsed, between rounds
     GuideComparison comparison;  // of auto
-    // Learned sampling of the environment map, of auto, where there is one and it has decided:
-    // relative to sampling by power.
-    std::optional<GuideComparison> environment;
-    bool usesEnvironment = false;
+    // Learned sampling of lights, of auto, where it has decided: relative to that without.
+    std::optional<GuideComparison> directLight;
+    bool usesDirectLight = false;
 };
 
 // Options of path guiding.
@@ -64,7 +63,7 @@ struct LearningOptions {
     int megabytes = 64;  // that trees and sums may take, > 0
     // Learning shall not take long: blocks of a render that has a clock do not wait for each other.
     bool isShort = false;
-    bool environment = false;  // learns the environment, too; needs LearnsEnvironment()
+    bool directLight = false;  // learns sampling of lights, too; needs LearnsDirectLight()
 };
 
 // All that is needed to continue learning, to the same bits.
@@ -80,7 +79,7 @@ struct Learning {
     GuideTally tally;     // of auto, until it has decided
     std::vector<TileNoise> noise;  // of the tally then, where guides pay
     GuideFigures figures;
-    EnvironmentLearning environment;
+    DirectLightLearning directLight;
 
     bool IsDone() const { return end == kNoRoundEnd; }  // of the guide
 };
@@ -102,7 +101,7 @@ class GuideLearner {
     // Return the options of this round's paths, and the spp at which it ends: no block goes beyond
     // it before EndRound(). kNoRoundEnd: there are no more rounds.
     const PathOptions& Paths() const { return paths; }
-    int RoundEnd() const { return std::min(learning.end, learning.environment.end); }
+    int RoundEnd() const { return std::min(learning.end, learning.directLight.end); }
     bool IsDone() const { return RoundEnd() == kNoRoundEnd; }
 
     // Returns the present variance of a sample in a part of the film over that without a guide, see

@@ -67,8 +67,8 @@ void PutFigures(const GuideFigures& f, StateWriter* writer) {
     writer->Put(f.bytes);
     writer->Put(f.seconds);
     writer->Put(f.comparison);
-    writer->Put(std::array<uint8_t, 2>{f.environment.has_value(), f.usesEnvironment});
-    writer->Put(f.environment.value_or(GuideComparison()));
+    writer->Put(std::array<uint8_t, 2>{f.directLight.has_value(), f.usesDirectLight});
+    writer->Put(f.directLight.value_or(GuideComparison()));
 }
 
 GuideFigures GetFigures(StateReader* reader) {
@@ -84,10 +84,10 @@ GuideFigures GetFigures(StateReader* reader) {
     f.bytes = reader->Get<int64_t>();
     f.seconds = reader->Get<double>();
     f.comparison = reader->Get<GuideComparison>();
-    const auto environment = reader->Get<std::array<uint8_t, 2>>();
+    const auto directLight = reader->Get<std::array<uint8_t, 2>>();
     const auto compared = reader->Get<GuideComparison>();
-    if (environment[0]) f.environment = compared;
-    f.usesEnvironment = environment[1];
+    if (directLight[0]) f.directLight = compared;
+    f.usesDirectLight = directLight[1];
     return f;
 }
 
@@ -106,7 +106,7 @@ std::vector<std::byte> SaveLearning(const Learning& learning) {
     writer.PutVector(learning.state.record.leaves);
     PutTally(learning.tally, &writer);
     writer.PutVector(learning.noise);
-    PutEnvironment(learning.environment, &writer);
+    PutDirectLight(learning.directLight, &writer);
     return std::move(writer.bytes);
 }
 
@@ -130,7 +130,7 @@ Learning RestoreLearning(std::span<const std::byte> bytes) {
     state.record.leaves = reader.GetVector<GuideRecord::LeafSums>(kDamaged);
     learning.tally = GetTally(&reader, kDamaged);
     learning.noise = GetNoise(&reader, kDamaged);
-    learning.environment = GetEnvironment(&reader);
+    learning.directLight = GetDirectLight(&reader);
     reader.Finish();
     const bool records = !learning.IsDone() && learning.round > 0;
     const bool fits =

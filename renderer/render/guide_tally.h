@@ -8,6 +8,9 @@
 
 namespace lull {
 
+// Returns the mean luminance of the image so far.
+double MeanLuminance(const Film&);
+
 // Sums up samples of a tile.
 struct SampleSpread {
     double squares = 0;    // of luminance, about the means of its pixels

@@ -1,4 +1,4 @@
-// Packs the parts of learning that guides of directions and of the environment share. Get...()
+// Packs the parts of learning that guides of directions and of lights share. Get...()
 // throw std::runtime_error(damaged).
 #pragma once
 

@@ -66,11 +66,11 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
     LearningOptions how{.mode = guide.mode,
                         .megabytes = guide.megabytes,
                         .isShort = bool(options.clock),
-                        .environment = guide.mode == GuideMode::Auto && !options.clock &&
-                                       LearnsEnvironment(scene, options.estimator)};
+                        .directLight = guide.mode == GuideMode::Auto && !options.clock &&
+                                       LearnsDirectLight(scene, options.estimator)};
     if (guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator))
         how.mode = GuideMode::Off;
-    if (how.mode == GuideMode::Off && !how.environment) return;
+    if (how.mode == GuideMode::Off && !how.directLight) return;
     learner.emplace(scene, how, region.Area());
     context.learner = &*learner;
 }

@@ -73,10 +73,10 @@ Json GuideJson(const Provenance& p) {
         json["varianceError"] = f.comparison.error;
         json["vertices"] = f.comparison.vertices;
     }
-    if (f.environment)
-        json["environment"] = {{"used", f.usesEnvironment},
-                               {"variance", f.environment->variance},
-                               {"varianceError", f.environment->error}};
+    if (f.directLight)
+        json["directLight"] = {{"used", f.usesDirectLight},
+                               {"variance", f.directLight->variance},
+                               {"varianceError", f.directLight->error}};
     return json;
 }
 

@@ -33,19 +33,12 @@ LightDistribution::LightDistribution(std::span<const float> weights)
     std::copy(sums.begin(), sums.end(), tables);
 }
 
-LightDistribution::LightDistribution(int count, const Bounds3f& bounds)
-    : lightCount(count), bounds(bounds) {
-    // Make the voxels roughly cubes, and fewer where there are so many lights that the tables
-    // could not even be addressed.
+LightDistribution::LightDistribution(int count, const Bounds3f& bounds) : lightCount(count) {
+    // Take fewer voxels where there are so many lights that the tables could not even be addressed.
     constexpr double kMaxEntries = double(1ull << 31);
-    const Vec3f diagonal = bounds.Diagonal();
-    const float longest = std::max(diagonal.maxCoeff(), std::numeric_limits<float>::min());
     for (int most = kMaxVoxels; most >= 1; most /= 2) {
-        for (int i = 0; i < 3; ++i) {
-            resolution[i] = std::max(1, int(std::round(diagonal[i] / longest * float(most))));
-            voxelsPerUnit[i] = diagonal[i] > 0 ? resolution[i] / diagonal[i] : 0;
-        }
-        if (resolution.cast<double>().prod() * count <= kMaxEntries) break;
+        grid = VoxelGrid(bounds, most);
+        if (double(grid.Count()) * count <= kMaxEntries) break;
     }
     for (int i = 0; i < kSamples; ++i)
         points.push_back({{RadicalInverse(2, i), RadicalInverse(3, i), RadicalInverse(5, i)},
@@ -54,17 +47,8 @@ LightDistribution::LightDistribution(int count, const Bounds3f& bounds)
 }
 
 void LightDistribution::AllocateTables() {
-    const size_t voxels = size_t(resolution.x()) * resolution.y() * resolution.z();
-    memory = LazyZeros(voxels * lightCount * sizeof(float));
+    memory = LazyZeros(grid.Count() * lightCount * sizeof(float));
     tables = static_cast<float*>(memory.Data());
-}
-
-Bounds3f LightDistribution::VoxelBounds(size_t voxel) const {
-    const Vec3i v(int(voxel % resolution.x()), int(voxel / resolution.x() % resolution.y()),
-                  int(voxel / resolution.x() / resolution.y()));
-    const Vec3f size = bounds.Diagonal().cwiseQuotient(resolution.cast<float>());
-    const Vec3f lower = bounds.lower + size.cwiseProduct(v.cast<float>());
-    return {lower, lower + size};
 }
 
 std::vector<float> LightDistribution::RunningSums(std::vector<float> contributions) const {

@@ -9,6 +9,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
 #include "renderer/scene/light_hierarchy.h"
+#include "renderer/scene/voxel_grid.h"
 
 namespace lull {
 
@@ -64,7 +65,7 @@ class LightDistribution {
     // over density of its sample u, without visibility.
     template <typename Contribution>
     LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
-        const size_t voxel = VoxelOf(p);
+        const size_t voxel = grid.VoxelOf(p);
         const std::span<float> sums(tables + voxel * lightCount, lightCount);
         // A table that has not been made is all zeros; its last sum is written last, and shows it.
         std::atomic_ref<float> last(sums.back());
@@ -76,10 +77,13 @@ class LightDistribution {
     // Starts to load the table of p, which is usually far away in memory: its first sums and the
     // last one, which Lookup() looks at.
     void Prefetch(const Vec3f& p) const {
-        const float* table = tables + VoxelOf(p) * lightCount;
+        const float* table = tables + grid.VoxelOf(p) * lightCount;
         lull::Prefetch(table);
         lull::Prefetch(table + lightCount - 1);
     }
+
+    // Returns the voxels that the tables are for; of fixed weights it is one.
+    const VoxelGrid& Grid() const { return grid; }
 
   private:
     static constexpr int kMaxVoxels = 64;  // along the longest axis
@@ -90,15 +94,6 @@ class LightDistribution {
         Vec3f p;
         Vec2f u;
     };
-
-    size_t VoxelOf(const Vec3f& p) const {
-        Vec3i v;
-        for (int i = 0; i < 3; ++i)
-            v[i] =
-                std::clamp(int((p[i] - bounds.lower[i]) * voxelsPerUnit[i]), 0, resolution[i] - 1);
-        return (size_t(v.z()) * resolution.y() + v.y()) * resolution.x() + v.x();
-    }
-    Bounds3f VoxelBounds(size_t voxel) const;
 
     // Makes the table of the voxel, unless another thread has by now. Separate, as Lookup() would
     // be too long to be inlined with it.
@@ -116,7 +111,7 @@ class LightDistribution {
     // Averages over a Halton set of points in the voxel and on the lights.
     template <typename Contribution>
     std::vector<float> Compute(size_t voxel, const Contribution& contribution) const {
-        const Bounds3f box = VoxelBounds(voxel);
+        const Bounds3f box = grid.BoundsOf(voxel);
         const Vec3f size = box.Diagonal();
         std::vector<float> sums(lightCount, 0.f);
         for (const HaltonPoint& h : points)
@@ -128,9 +123,7 @@ class LightDistribution {
     void AllocateTables();
 
     int lightCount = 0;
-    Bounds3f bounds;
-    Vec3i resolution = Vec3i::Ones();
-    Vec3f voxelsPerUnit = Vec3f::Zero();
+    VoxelGrid grid;
     std::vector<HaltonPoint> points;
     // One table after another, voxels in x, y, z order. Only pages of voxels that paths visit take
     // memory.

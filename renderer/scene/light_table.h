@@ -37,6 +37,10 @@ class LightTable {
     // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
+    // Returns whether lights are chosen by tables of places: by neither a hierarchy nor fixed
+    // weights.
+    bool IsChosenByPlace() const { return distribution && distribution->Grid().Count() > 1; }
+
     // Returns whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
 

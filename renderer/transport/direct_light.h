@@ -15,6 +15,32 @@ struct TiledSample {
     float powerRatio = 1;
 };
 
+// Returns how lights are chosen at the vertex.
+template <typename Media, typename Vertex>
+LightChoice ChoiceAt(const PathContext<Media>& context, const Vertex& v, LearnedPlace place) {
+    if (context.learned && context.learned->lights) [[unlikely]] {
+        const std::span<const float> sums = context.learned->lights->At(place.lightCell);
+        if (sums.back() > 0) return LightChoice(sums);
+    }
+    return v.Choice(context.scene.lights);
+}
+
+// Tells the records what a sample of light `index` has brought: luminance, had the light been
+// chosen for sure, at the vertex and in the image. Of the environment map it is one of `tile`, see
+// TiledSample. Takes values, which so can stay in registers.
+[[gnu::noinline]] inline void Record(const LightTable& lights, LearnedLight learned,
+                                     LearnedPlace place, int index, int tile, float powerRatio,
+                                     float atVertex, float inImage) {
+    if (learned.environmentRecord && tile >= 0) {
+        const auto& environment = std::get<InfiniteLight>(lights[index]);
+        learned.environmentRecord->Add(
+            learned.environment->NumberOf(place.tiles), tile,
+            atVertex * kPi / (powerRatio * environment.TotalLuminance()));
+    }
+    if (learned.lightRecord)
+        learned.lightRecord->Add(place.lightCell + size_t(index), inImage / learned.usual);
+}
+
 // Samples light `index`; the environment map by its tiles there, if the path knows them.
 template <typename Media>
 [[gnu::always_inline]] inline TiledSample SampleTiled(const PathContext<Media>& context,
@@ -29,21 +55,12 @@ template <typename Media>
     }
     const auto& environment = std::get<InfiniteLight>(lights[index]);
     sample.light = environment.Sample(*tiles, u, &sample.tile);
-    if (context.environmentRecord)
-        context.environmentRecord->Prefetch(context.environment->NumberOf(tiles), sample.tile);
+    if (context.learned->environmentRecord)
+        context.learned->environmentRecord->Prefetch(context.learned->environment->NumberOf(tiles),
+                                                     sample.tile);
     sample.powerRatio =
         environment.Tiles()->Shares().Probability(sample.tile) / tiles->Probability(sample.tile);
     return sample;
-}
-
-// Tells the record what a sample of the environment has brought to the vertex, `pmf` left out.
-template <typename Media>
-void RecordEnvironment(const PathContext<Media>& context, const TileShares* tiles,
-                       const TiledSample& sample, float luminance) {
-    const auto& environment = std::get<InfiniteLight>(context.scene.lights[sample.index]);
-    context.environmentRecord->Add(
-        context.environment->NumberOf(tiles), sample.tile,
-        luminance * kPi / (sample.powerRatio * environment.TotalLuminance()));
 }
 
 // Returns the light that a sample of light `index` brings to the vertex, weighted against sampling
@@ -117,20 +134,21 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
-// Samples direct light as the estimator says, after FindTiles(): chooses one light of those at the
-// vertex, tells the path how likely each was, and the recorder of its light.
+// Samples direct light as the estimator says, after FindLearned(): chooses one light of those at
+// the vertex, tells the path how likely each was, and the recorder of its light.
 template <typename Media, typename Vertex, typename Guiding, typename Recorder>
 [[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
                                                     const Vertex& v, const Guiding& guiding,
                                                     Recorder& recorder, Path* path) {
-    path->choice = v.Choice(context.scene.lights);
+    path->choice = ChoiceAt(context, v, path->learned);
     float pmf;
     const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
-    const TiledSample sample = SampleTiled(context, v.Position(), index, path->tiles);
+    const TiledSample sample = SampleTiled(context, v.Position(), index, path->learned.tiles);
     Rgb L = SampleLight(context, v, guiding, sample, pmf);
-    if (context.environmentRecord && sample.tile >= 0)
-        RecordEnvironment(context, path->tiles, sample, Luminance(L) * pmf);
+    if (context.learned) [[unlikely]]
+        Record(context.scene.lights, *context.learned, path->learned, index, sample.tile,
+               sample.powerRatio, Luminance(L) * pmf, Luminance(path->beta * L) * pmf);
     if (context.estimator == Estimator::PbrtV3)
         L += SampleDirectionForLight(context, v, index, pmf);
     recorder.FindLight(*path, index, L);

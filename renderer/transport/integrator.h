@@ -11,6 +11,8 @@ class EnvironmentRecord;
 class Guide;
 class GuideRecord;
 class GroupRadiance;
+class LightChoiceGuide;
+class LightChoiceRecord;
 
 // PbrtV3 takes pbrt-v3's strategies as they are: at each vertex one light is chosen and sampled
 // both by the light and by a BSDF ray of its own. Combined has the same mean from fewer rays: the
@@ -24,6 +26,20 @@ struct BdptShares {
     float connections = 1;  // subpaths from lights to connect to, in (0, 1]
 };
 
+// What has been learned of the light that arrives directly, for Estimator::Combined. The mean is
+// the same. The pointees of each may be null.
+struct LearnedLight {
+    // Lets lights be chosen by what they bring to a place; null: as the scene has it.
+    const LightChoiceGuide* lights = nullptr;
+    LightChoiceRecord* lightRecord = nullptr;
+    float usual = 1;  // the luminance that a path usually brings, > 0, for this record
+    // Likewise the tiles of the environment map (LightTable::Environment()); null: by their power.
+    const EnvironmentGuide* environment = nullptr;
+    EnvironmentRecord* environmentRecord = nullptr;
+
+    bool IsEmpty() const { return !lights && !environment; }
+};
+
 // How paths are traced. Its pointees must outlive it.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
@@ -35,10 +51,7 @@ struct PathOptions {
     const Guide* guide = nullptr;
     GuideRecord* record = nullptr;  // of the guide; receives the vertices of paths; or null
     float usual = 1;                // the luminance that a path usually brings, > 0, for the record
-    // Lets the tiles of the environment map (LightTable::Environment()) be chosen by what they
-    // bring to a place, by Estimator::Combined. The mean is the same. Null: by their power.
-    const EnvironmentGuide* environment = nullptr;
-    EnvironmentRecord* environmentRecord = nullptr;  // of it, as above
+    LearnedLight learned = {};
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;

@@ -4,6 +4,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
 #include "renderer/guiding/environment_guide.h"
+#include "renderer/guiding/light_choice_guide.h"
 #include "renderer/transport/integrator.h"
 #include "renderer/transport/no_recorder.h"
 #include "renderer/transport/path_vertex.h"
@@ -20,9 +21,27 @@ struct PathContext {
     Sampler& sampler;
     const CameraSample& camera;
     Media media;
-    const EnvironmentGuide* environment = nullptr;
-    EnvironmentRecord* environmentRecord = nullptr;
+    const LearnedLight* learned = nullptr;
 };
+
+// What has been learned of direct light at a vertex.
+struct LearnedPlace {
+    size_t lightCell = 0;               // of LightChoiceGuide, if that is used
+    const TileShares* tiles = nullptr;  // of the environment map; null: by power
+};
+
+inline LearnedPlace FindLearned(const LearnedLight& learned, const Vec3f& p, int side) {
+    LearnedPlace place;
+    if (learned.lights) {
+        place.lightCell = learned.lights->CellOf(p, side);
+        learned.lights->Prefetch(place.lightCell);
+    }
+    if (learned.environment) {
+        place.tiles = &learned.environment->Find(p, side);
+        lull::Prefetch(place.tiles);
+    }
+    return place;
+}
 
 // Carries the state of a path from one vertex to the next.
 struct Path {
@@ -35,18 +54,9 @@ struct Path {
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
     LightChoice choice{};          // of lights there
-    // Of the tiles of the environment map there; null: by power.
-    const TileShares* tiles = nullptr;
+    LearnedPlace learned{};
     bool wentThrough = false;  // an interface, where the ray continues unscattered
 };
-
-// Tells the path what has been learned of the environment at its next vertex.
-template <typename Media>
-void FindTiles(const PathContext<Media>& context, const Vec3f& p, int side, Path* path) {
-    if (!context.environment) return;
-    path->tiles = &context.environment->Find(p, side);
-    lull::Prefetch(path->tiles);
-}
 
 // Returns the weight of emission that the path's own ray has found on light `index`, where light
 // sampling at the last vertex would have found it with density `lightPdf`.
@@ -67,10 +77,10 @@ template <typename Recorder>
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
             const Light& light = scene.lights[i];
-            const bool isLearned = path.tiles && i == scene.lights.Environment();
-            const auto [L, pdf] =
-                isLearned ? std::get_if<InfiniteLight>(&light)->LeAndPdf(path.ray.d, path.tiles)
-                          : LeAndPdf(light, path.ray.d);
+            const bool isLearned = path.learned.tiles && i == scene.lights.Environment();
+            const auto [L, pdf] = isLearned ? std::get_if<InfiniteLight>(&light)->LeAndPdf(
+                                                  path.ray.d, path.learned.tiles)
+                                            : LeAndPdf(light, path.ray.d);
             const Rgb weighted = L * EmissionWeight(estimator, path, i, pdf);
             recorder.FindLight(path, i, weighted);
             sum += weighted;

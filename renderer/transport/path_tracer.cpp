@@ -29,7 +29,8 @@ template <typename Media, typename Guiding, typename Recorder>
     recorder.MeetMedium(*path, *inMedium.t, v.p);
     if (isLast) return Fate::Ends;
     guiding.Enter(v);
-    FindTiles(context, v.p, EnvironmentGuide::kInMedium, path);
+    if (context.learned) [[unlikely]]
+        path->learned = FindLearned(*context.learned, v.p, kInMedium);
     if (scene.lights.Count() > 0)
         path->L += path->beta * SampleDirectLight(context, v, guiding, recorder, path);
     bool isTransmission;
@@ -56,8 +57,9 @@ template <typename Media, typename Guiding, typename Recorder>
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     const SurfaceVertex last{exit->hit, out, exit->shape};
     guiding.Enter(last, true);
-    FindTiles(*context, last.hit.p, EnvironmentGuide::SideOf(FaceForward(last.hit.n, last.hit.wo)),
-              path);
+    if (context->learned) [[unlikely]]
+        path->learned = FindLearned(*context->learned, last.hit.p,
+                                    SideOf(FaceForward(last.hit.n, last.hit.wo)));
     if (scene.lights.Count() > 0)
         path->L += path->beta * SampleDirectLight(*context, last, guiding, recorder, path);
     bool isTransmission;
@@ -153,7 +155,8 @@ template <typename Media, typename Guiding, typename Recorder>
         }
 
         // Make the BSDF, while what has been learned of the environment is loaded.
-        FindTiles(context, hit.p, EnvironmentGuide::SideOf(FaceForward(hit.n, hit.wo)), &path);
+        if (context.learned) [[unlikely]]
+            path.learned = FindLearned(*context.learned, hit.p, SideOf(FaceForward(hit.n, hit.wo)));
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
         if (isLast) break;
@@ -211,7 +214,7 @@ PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOp
               Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
         return TracePath<Media>({scene, integrator, options.estimator, sampler, start.camera, media,
-                                 options.environment, options.environmentRecord},
+                                 options.learned.IsEmpty() ? nullptr : &options.learned},
                                 options, start.ray, detail);
     };
     return scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));

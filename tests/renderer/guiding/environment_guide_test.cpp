@@ -38,16 +38,16 @@ void Record(int count, uint32_t seed, EnvironmentState* state) {
 }
 
 TEST(EnvironmentGuide, KnowsSidesByTheAxisTheyFace) {
-    EXPECT_EQ(EnvironmentGuide::SideOf({-1, 0.1f, 0}), 0);
-    EXPECT_EQ(EnvironmentGuide::SideOf({0.9f, -0.1f, 0}), 1);
-    EXPECT_EQ(EnvironmentGuide::SideOf({0.1f, 0.2f, -0.3f}), 4);
-    EXPECT_EQ(EnvironmentGuide::SideOf({0.1f, 0.2f, 0.3f}), 5);
+    EXPECT_EQ(SideOf({-1, 0.1f, 0}), 0);
+    EXPECT_EQ(SideOf({0.9f, -0.1f, 0}), 1);
+    EXPECT_EQ(SideOf({0.1f, 0.2f, -0.3f}), 4);
+    EXPECT_EQ(SideOf({0.1f, 0.2f, 0.3f}), 5);
 }
 
 TEST(EnvironmentGuide, BeginsWithSamplingByPower) {
     const EnvironmentState state = Begin(Even(), 3);
     for (const float x : {-5.f, -0.4f, 0.f, 0.7f, 9.f})
-        for (int side = 0; side < EnvironmentGuide::kSides; ++side)
+        for (int side = 0; side < kSides; ++side)
             EXPECT_EQ(state.guide.Find({x, 0.1f, -x}, side).bands, Even().bands);
 }
 
@@ -105,8 +105,7 @@ TEST(EnvironmentRecord, CountsWhatIsNoLightAsNone) {
     for (const float brought : {std::nanf(""), -1.f, 0.f, 2.f, kInfinity})
         state.record.Add(1, 5, brought);
     EXPECT_EQ(state.record.sums[kTiles + 5].count, 5u);
-    EXPECT_EQ(state.record.sums[kTiles + 5].squares,
-              uint64_t((4 + EnvironmentRecord::kLargest) * EnvironmentRecord::kScale));
+    EXPECT_EQ(state.record.sums[kTiles + 5].Squares(), 4 + EnvironmentRecord::kLargest);
 }
 
 }  // namespace

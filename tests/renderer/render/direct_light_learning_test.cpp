@@ -1,6 +1,6 @@
-// Checks renders that learn which tiles of the environment each place sees: the same mean, less
-// variance, the same bits.
-#include "renderer/render/environment_learning.h"
+// Checks renders that learn which lights and tiles of the environment each place sees: the same
+// mean, less variance, the same bits.
+#include "renderer/render/direct_light_learning.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 
-namespace lull::environment_learning_test {
+namespace lull::direct_light_learning_test {
 namespace {
 
 // A box that is open on one side, where the sky of a studio comes in, seen from there.
@@ -47,6 +47,27 @@ AttributeBegin
 AttributeEnd
 )";
 
+// Lamps in the room and behind two of its walls.
+constexpr const char* kLamps = R"(
+LightSource "point" "point from" [.5 .7 .5] "rgb I" [.3 .3 .3]
+LightSource "point" "point from" [0 -1.2 .3] "rgb I" [3 3 3]
+LightSource "point" "point from" [-1.5 0 .3] "rgb I" [3 3 3]
+)";
+
+// A room with lamps and no sky, or with both.
+std::unique_ptr<const Scene> MakeLampRoom(int size, bool hasSky) {
+    if (hasSky) return MakeRoom(size, "path", kLamps);
+    return SceneOf(WorldText(std::string(kLamps) + R"(
+Material "matte" "rgb Kd" [.7 .6 .5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 4 5 6 4 6 7]
+  "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1   -1 -1 -1  -1 -1 1  -1 1 1  -1 1 -1])",
+                             fmt::format("LookAt 0 0 -.9  0 -.2 0  0 1 0\n"
+                                         "Camera \"perspective\" \"float fov\" [80]\n"
+                                         "Film \"image\" \"integer xresolution\" [{0}] "
+                                         "\"integer yresolution\" [{0}]",
+                                         size)));
+}
+
 RenderOptions OptionsFor(int spp, uint64_t seed, int threads = 2, int blockSize = 200) {
     RenderOptions options;
     options.schedule = {.blockSize = blockSize, .passLength = 20, .cap = spp};
@@ -56,10 +77,10 @@ RenderOptions OptionsFor(int spp, uint64_t seed, int threads = 2, int blockSize 
     return options;
 }
 
-// A render that learns the environment, and guides no directions unless asked to.
-struct EnvironmentRender : LearningRender {
-    EnvironmentRender(const Scene& scene, const RenderOptions& o, GuideMode mode = GuideMode::Off)
-        : LearningRender(scene, o, {.mode = mode, .environment = true}) {}
+// A render that learns direct light, and guides no directions unless asked to.
+struct DirectLightRender : LearningRender {
+    DirectLightRender(const Scene& scene, const RenderOptions& o, GuideMode mode = GuideMode::Off)
+        : LearningRender(scene, o, {.mode = mode, .directLight = true}) {}
 };
 
 struct Estimate {
@@ -88,28 +109,34 @@ double MeanWithout(const Scene& scene, int spp, uint64_t seed) {
     return MeanOf(film);
 }
 
-TEST(EnvironmentLearning, KeepsTheMeanAndLowersTheVariance) {
+// Compares renders that learn with such that do not; the variance is to be below `most` of theirs.
+void CompareWithout(const Scene& scene, double most, const std::string& name) {
+    const Estimate with = Repeat(60, [&](uint64_t seed) {
+        DirectLightRender render(scene, OptionsFor(80, seed));
+        render.Run();
+        EXPECT_TRUE(render.learner.IsDone());
+        return render.Mean();
+    });
+    const Estimate without =
+        Repeat(60, [&](uint64_t seed) { return MeanWithout(scene, 80, seed + 1000); });
+    EXPECT_NEAR(with.mean, without.mean, 4 * std::hypot(with.error, without.error)) << name;
+    EXPECT_LT(with.variance, most * without.variance) << name;
+}
+
+TEST(DirectLightLearning, KeepsTheMeanAndLowersTheVariance) {
     for (const auto& [integrator, things] :
          {std::pair("path", std::string()), std::pair("volpath", std::string(kFog))}) {
         const auto scene = MakeRoom(12, integrator, things);
         ASSERT_EQ(scene->isVolumetric, !things.empty());
-        const Estimate with = Repeat(60, [&](uint64_t seed) {
-            EnvironmentRender render(*scene, OptionsFor(80, seed));
-            render.Run();
-            EXPECT_TRUE(render.learner.IsDone());
-            return render.Mean();
-        });
-        const Estimate without =
-            Repeat(60, [&](uint64_t seed) { return MeanWithout(*scene, 80, seed + 1000); });
-        EXPECT_NEAR(with.mean, without.mean, 4 * std::hypot(with.error, without.error))
-            << integrator;
-        EXPECT_LT(with.variance, 1.2 * without.variance) << integrator;
+        CompareWithout(*scene, 1.2, integrator);
     }
+    CompareWithout(*MakeLampRoom(12, false), 0.8, "lamps");
+    CompareWithout(*MakeLampRoom(12, true), 1, "lamps and a sky");
 }
 
 // A sun that shines through a small hole in a roof, and one behind the roof: what comes through the
 // hole is known, and a sample is never much brighter than without anything learned.
-TEST(EnvironmentLearning, ASunThatIsFoundLateIsNoFirefly) {
+TEST(DirectLightLearning, ASunThatIsFoundLateIsNoFirefly) {
     const TemporaryDirectory directory;
     ExrImage sky;
     sky.width = 64;
@@ -156,7 +183,7 @@ Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 
 
     std::atomic<float> brightest = 0;
     const Estimate found = Repeat(30, [&](uint64_t seed) {
-        EnvironmentRender render(*scene, OptionsFor(200, seed, 1));
+        DirectLightRender render(*scene, OptionsFor(200, seed, 1));
         const SampleSource source = render.source;
         render.source = [&](Sampler& s, const Vec2i& pixel, uint32_t index,
                             const SampleDetail& detail) {
@@ -180,57 +207,62 @@ Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 
     EXPECT_LT(brightest.load(), 10 * brightestWithout);
 }
 
-TEST(EnvironmentLearning, IsTheSameOnAnyNumberOfThreadsAndForAnyPasses) {
-    const auto scene = MakeRoom(24);
-    for (const GuideMode mode : {GuideMode::Off, GuideMode::On}) {
-        EnvironmentRender one(*scene, OptionsFor(90, 3, 1), mode);
-        one.Run();
-        EXPECT_TRUE(one.learner.Paths().environment);
-        for (const int threads : {2, 4}) {
-            RenderOptions options = OptionsFor(90, 3, threads, 10);
-            options.schedule.passLength = 7 * threads;
-            EnvironmentRender other(*scene, options, mode);
-            other.Run();
-            EXPECT_TRUE(SamePixels(one.film, other.film)) << threads;
+TEST(DirectLightLearning, IsTheSameOnAnyNumberOfThreadsAndForAnyPasses) {
+    for (const bool hasSky : {false, true}) {
+        const auto scene = MakeLampRoom(24, hasSky);
+        for (const GuideMode mode : {GuideMode::Off, GuideMode::On}) {
+            DirectLightRender one(*scene, OptionsFor(90, 3, 1), mode);
+            one.Run();
+            EXPECT_TRUE(one.learner.Paths().learned.lights);
+            EXPECT_EQ(one.learner.Paths().learned.environment != nullptr, hasSky);
+            for (const int threads : {2, 4}) {
+                RenderOptions options = OptionsFor(90, 3, threads, 10);
+                options.schedule.passLength = 7 * threads;
+                DirectLightRender other(*scene, options, mode);
+                other.Run();
+                EXPECT_TRUE(SamePixels(one.film, other.film)) << threads;
+            }
         }
     }
 }
 
-TEST(EnvironmentLearning, GoesOnToTheSameBits) {
-    const auto scene = MakeRoom(24);
-    EnvironmentRender whole(*scene, OptionsFor(90, 0, 1, 10));
-    whole.Run();
-    RenderState state;
-    std::optional<Film> film;
-    std::vector<std::byte> kept;
-    int interruptions = 0;
-    for (bool isDone = false; !isDone; ++interruptions) {
-        EnvironmentRender part(*scene, OptionsFor(90, 0, 2, 10));
-        if (film) {
-            part.film = *film;
-            part.learner.Take(kept, part.film);
+TEST(DirectLightLearning, GoesOnToTheSameBits) {
+    for (const bool hasSky : {false, true}) {
+        const auto scene = MakeLampRoom(24, hasSky);
+        DirectLightRender whole(*scene, OptionsFor(90, 0, 1, 10));
+        whole.Run();
+        RenderState state;
+        std::optional<Film> film;
+        std::vector<std::byte> kept;
+        int interruptions = 0;
+        for (bool isDone = false; !isDone; ++interruptions) {
+            DirectLightRender part(*scene, OptionsFor(90, 0, 2, 10));
+            if (film) {
+                part.film = *film;
+                part.learner.Take(kept, part.film);
+            }
+            std::atomic<int> asked = 0;
+            part.options.isCancelled = [&] { return ++asked > 23; };
+            part.checkpoints.write = [&](const RenderState& s) { state = s; };
+            isDone = !part.Run(film ? &state : nullptr).cancelled;
+            film = part.film;
+            kept = part.learner.Save();
+            if (isDone) {
+                EXPECT_TRUE(SamePixels(part.film, whole.film));
+            }
         }
-        std::atomic<int> asked = 0;
-        part.options.isCancelled = [&] { return ++asked > 23; };
-        part.checkpoints.write = [&](const RenderState& s) { state = s; };
-        isDone = !part.Run(film ? &state : nullptr).cancelled;
-        film = part.film;
-        kept = part.learner.Save();
-        if (isDone) {
-            EXPECT_TRUE(SamePixels(part.film, whole.film));
-        }
+        EXPECT_GT(interruptions, 3);
     }
-    EXPECT_GT(interruptions, 3);
 }
 
-TEST(EnvironmentLearning, SavedStateIsChecked) {
-    const auto scene = MakeRoom(8);
-    EnvironmentRender render(*scene, OptionsFor(20, 0));
+TEST(DirectLightLearning, SavedStateIsChecked) {
+    const auto scene = MakeLampRoom(8, true);
+    DirectLightRender render(*scene, OptionsFor(20, 0));
     render.Run();
     const std::vector<std::byte> bytes = render.learner.Save();
     EXPECT_NO_THROW(RestoreLearning(bytes));
-    // A learner that learns nothing of the environment does not take it, and the other way round.
-    GuideLearner guide(*scene, {}, 64), both(*scene, {.environment = true}, 64);
+    // A learner that learns no direct light does not take it, and the other way round.
+    GuideLearner guide(*scene, {}, 64), both(*scene, {.directLight = true}, 64);
     EXPECT_THROW(guide.Take(bytes, render.film), std::runtime_error);
     EXPECT_THROW(both.Take(guide.Save(), render.film), std::runtime_error);
     // Trees and probabilities that lead nowhere are refused.
@@ -243,7 +275,7 @@ TEST(EnvironmentLearning, SavedStateIsChecked) {
             damaged[(random >> 20) % damaged.size()] = std::byte(random >> 56);
         }
         try {
-            const EnvironmentGuide read = RestoreLearning(damaged).environment.state.guide;
+            const EnvironmentGuide read = RestoreLearning(damaged).directLight.environment.guide;
             for (int k = 0; k < 50 && !read.IsEmpty(); ++k) {
                 const float u = float(k) / 50;
                 Vec2f place(u, 1 - u);
@@ -256,21 +288,32 @@ TEST(EnvironmentLearning, SavedStateIsChecked) {
         }
     }
     EXPECT_GT(refused, 0);
+    // So are those of a scene with other lights.
+    const auto other = MakeRoom(8);
+    GuideLearner without(*other, {.mode = GuideMode::Off, .directLight = true}, 64);
+    EXPECT_THROW(without.Take(bytes, render.film), std::runtime_error);
 }
 
-TEST(EnvironmentLearning, NeedsAMapThatIsNotSampledAsByPbrt) {
+TEST(DirectLightLearning, NeedsAMapOrLightsByPlaceThatAreNotSampledAsByPbrt) {
     const auto room = MakeRoom(8);
-    EXPECT_TRUE(LearnsEnvironment(*room, Estimator::Combined));
-    EXPECT_FALSE(LearnsEnvironment(*room, Estimator::PbrtV3));
-    const std::string ball = "Shape \"sphere\"";
-    EXPECT_FALSE(LearnsEnvironment(*SceneOf(WorldText("LightSource \"infinite\"\n" + ball)),
-                                   Estimator::Combined));
+    EXPECT_TRUE(LearnsDirectLight(*room, Estimator::Combined));
+    EXPECT_FALSE(LearnsDirectLight(*room, Estimator::PbrtV3));
+    const auto learns = [](const std::string& lights, CompileOptions options = {},
+                           const std::string& integrator = "") {
+        const auto scene = SceneOf(WorldText(lights + "Shape \"sphere\"", integrator), options);
+        return LearnsDirectLight(*scene, Estimator::Combined);
+    };
+    EXPECT_FALSE(learns("LightSource \"infinite\"\n"));
     CompileOptions asPbrt;
     asPbrt.lightsAsPbrtV3 = true;
-    const std::string studio = "LightSource \"infinite\" \"bool studio\" \"true\"\n";
+    EXPECT_FALSE(learns("LightSource \"infinite\" \"bool studio\" \"true\"\n", asPbrt));
+    const std::string lamp = "LightSource \"point\" \"point from\" [0 0 5]\n";
+    EXPECT_FALSE(learns(lamp));
+    EXPECT_TRUE(learns(lamp + lamp));
     EXPECT_FALSE(
-        LearnsEnvironment(*SceneOf(WorldText(studio + ball), asPbrt), Estimator::Combined));
+        learns(lamp + lamp, {}, "Integrator \"path\" \"string lightsamplestrategy\" \"power\"\n"));
+    EXPECT_FALSE(learns(lamp + lamp, {}, "Integrator \"path\" \"integer maxdepth\" [0]\n"));
 }
 
 }  // namespace
-}  // namespace lull::environment_learning_test
+}  // namespace lull::direct_light_learning_test
