@@ -290,7 +290,7 @@ TEST(Learning, IsTheSameOnAnyNumberOfThreads) {
             if (!film) {
                 film = render.film;
                 learned = BytesOf(render.learner);
-                EXPECT_EQ(render.learner.Figures().rounds, mode == GuideMode::On ? 6 : 7);
+                EXPECT_GE(render.learner.Figures().rounds, 3);  // of auto as many as it decides
             }
             EXPECT_TRUE(SamePixels(render.film, *film)) << threads;
             EXPECT_TRUE(BytesOf(render.learner) == learned) << threads;
@@ -343,7 +343,7 @@ TEST(Learning, GoesOnToTheSameBits) {
             }
         }
         EXPECT_GT(interruptions, 5);
-        EXPECT_EQ(rounds, mode == GuideMode::On ? 6 : 7);
+        EXPECT_GE(rounds, 3);  // of auto as many as it decides
     }
 }
 
