@@ -13,7 +13,7 @@ void AddGuideOptions(CLI::App& app, GuideOptions* options) {
     auto* guide = AddChoiceOption(
         app, "--guide", &options->mode,
         "Guide paths by learned incident light; auto: where it saves time, and sample\n"
-        "the environment map as each place sees it");
+        "lights as each place sees them");
     app.add_option("--guide-memory", options->megabytes,
                    "Limit the memory of the guiding distribution, in MB")
         ->check(CLI::Range(2, 1 << 16))
