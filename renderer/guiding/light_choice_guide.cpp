@@ -81,7 +81,7 @@ class LightChoiceLearner {
     const LightChoiceRecord& record;
     const LightTable& lights;
     LightChoiceGuide made;
-    std::vector<double> ratios;  // by light: mean square of what it brings, over that of its share
+    std::vector<double> ratios;  // by light: mean square of its contribution over its share
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Tells apart the sides of surfaces that what is learned of a place is kept for.
+// Sides of surfaces, each of which is learned by itself.
 #pragma once
 
 #include "renderer/base/math.h"

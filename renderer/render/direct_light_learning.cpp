@@ -64,7 +64,7 @@ void Decide(const Scene& scene, const Film& film, DirectLightLearning* learning)
     if (learning->isUsed) learning->noise = std::move(noise);
 }
 
-// Drops what is not needed when learning is done.
+// Frees records, and guides that are not used.
 void Finish(DirectLightLearning* learning) {
     learning->end = kNoRoundEnd;
     learning->tally = {};

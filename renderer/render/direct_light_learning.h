@@ -1,8 +1,8 @@
 // Learns how much light each light, and each tile of the environment map, brings to a place, from
 // the image's own samples, in rounds as guide_learning.h has them.
 //
-// After 16 spp, a round of 8 spp records samples that are taken without what is learned. Rounds of
-// 8, 16 and 16 spp are sampled as was learned, and record, too. Sampling stays as learned if the
+// After 16 spp, a round of 8 spp records samples of the scene's own distributions. Rounds of 8,
+// 16 and 16 spp are sampled as was learned, and record, too. Sampling stays as learned if the
 // last one had significantly less variance than the first, for the cost of a sample.
 #pragma once
 
@@ -52,8 +52,8 @@ void SetDirectLight(DirectLightLearning*, LearnedLight*);
 // Write and read its state. GetDirectLight() throws std::runtime_error for damaged bytes.
 void PutDirectLight(const DirectLightLearning&, StateWriter*);
 DirectLightLearning GetDirectLight(StateReader*);
-// Completes a state that was read by what the scene has. Returns false if it is not one of this
-// scene, a render that `learns` direct light, and a film of as many tiles.
+// Adds the scene's voxels to a state that was read. Returns false if it is not one of this scene,
+// a render that `learns` direct light, and a film of as many tiles.
 bool Complete(const Scene&, bool learns, size_t tiles, DirectLightLearning*);
 
 }  // namespace lull

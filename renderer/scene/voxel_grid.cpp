@@ -14,14 +14,11 @@ VoxelGrid::VoxelGrid(const Bounds3f& bounds, int most) : bounds(bounds) {
     }
 }
 
-Vec3i VoxelGrid::CoordinatesOf(size_t voxel) const {
-    return {int(voxel % resolution.x()), int(voxel / resolution.x() % resolution.y()),
-            int(voxel / resolution.x() / resolution.y())};
-}
-
 Bounds3f VoxelGrid::BoundsOf(size_t voxel) const {
+    const Vec3i v(int(voxel % resolution.x()), int(voxel / resolution.x() % resolution.y()),
+                  int(voxel / resolution.x() / resolution.y()));
     const Vec3f size = bounds.Diagonal().cwiseQuotient(resolution.cast<float>());
-    const Vec3f lower = bounds.lower + size.cwiseProduct(CoordinatesOf(voxel).cast<float>());
+    const Vec3f lower = bounds.lower + size.cwiseProduct(v.cast<float>());
     return {lower, lower + size};
 }
 

@@ -23,8 +23,6 @@ struct VoxelGrid {
                 std::clamp(int((p[i] - bounds.lower[i]) * voxelsPerUnit[i]), 0, resolution[i] - 1);
         return (size_t(v.z()) * resolution.y() + v.y()) * resolution.x() + v.x();
     }
-    // Returns the coordinates of a voxel, and its box.
-    Vec3i CoordinatesOf(size_t voxel) const;
     Bounds3f BoundsOf(size_t voxel) const;
 
     Bounds3f bounds;

@@ -105,7 +105,8 @@ TEST(EnvironmentRecord, CountsWhatIsNoLightAsNone) {
     for (const float brought : {std::nanf(""), -1.f, 0.f, 2.f, kInfinity})
         state.record.Add(1, 5, brought);
     EXPECT_EQ(state.record.sums[kTiles + 5].count, 5u);
-    EXPECT_EQ(state.record.sums[kTiles + 5].Squares(), 4 + EnvironmentRecord::kLargest);
+    EXPECT_EQ(state.record.sums[kTiles + 5].squares,
+              uint64_t((4 + EnvironmentRecord::kLargest) * SquareSum::kScale));
 }
 
 }  // namespace

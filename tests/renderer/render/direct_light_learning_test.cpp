@@ -231,27 +231,12 @@ TEST(DirectLightLearning, GoesOnToTheSameBits) {
         const auto scene = MakeLampRoom(24, hasSky);
         DirectLightRender whole(*scene, OptionsFor(90, 0, 1, 10));
         whole.Run();
-        RenderState state;
-        std::optional<Film> film;
-        std::vector<std::byte> kept;
-        int interruptions = 0;
-        for (bool isDone = false; !isDone; ++interruptions) {
-            DirectLightRender part(*scene, OptionsFor(90, 0, 2, 10));
-            if (film) {
-                part.film = *film;
-                part.learner.Take(kept, part.film);
-            }
-            std::atomic<int> asked = 0;
-            part.options.isCancelled = [&] { return ++asked > 23; };
-            part.checkpoints.write = [&](const RenderState& s) { state = s; };
-            isDone = !part.Run(film ? &state : nullptr).cancelled;
-            film = part.film;
-            kept = part.learner.Save();
-            if (isDone) {
-                EXPECT_TRUE(SamePixels(part.film, whole.film));
-            }
-        }
-        EXPECT_GT(interruptions, 3);
+        const int parts =
+            RenderInParts([&] { return DirectLightRender(*scene, OptionsFor(90, 0, 2, 10)); },
+                          [&](const DirectLightRender& part, bool isDone) {
+                              if (isDone) EXPECT_TRUE(SamePixels(part.film, whole.film));
+                          });
+        EXPECT_GT(parts, 3);
     }
 }
 

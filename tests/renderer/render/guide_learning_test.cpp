@@ -290,7 +290,7 @@ TEST(Learning, IsTheSameOnAnyNumberOfThreads) {
             if (!film) {
                 film = render.film;
                 learned = BytesOf(render.learner);
-                EXPECT_GE(render.learner.Figures().rounds, 3);  // of auto as many as it decides
+                EXPECT_EQ(render.learner.Figures().rounds, mode == GuideMode::On ? 6 : 7);
             }
             EXPECT_TRUE(SamePixels(render.film, *film)) << threads;
             EXPECT_TRUE(BytesOf(render.learner) == learned) << threads;
@@ -318,32 +318,17 @@ TEST(Learning, GoesOnToTheSameBits) {
     for (const GuideMode mode : {GuideMode::On, GuideMode::Auto}) {
         LearningRender whole(*scene, BlocksThatStop(1), {.mode = mode});
         whole.Run();
-        // Interrupted over and over, after some tiles.
-        RenderState state;
-        std::optional<Film> film;
-        std::vector<std::byte> kept;
-        int interruptions = 0, rounds = 0;
-        for (bool isDone = false; !isDone;) {
-            LearningRender part(*scene, BlocksThatStop(2), {.mode = mode});
-            if (film) {
-                part.film = *film;
-                part.learner.Take(kept, part.film);
-            }
-            std::atomic<int> asked = 0;
-            part.options.isCancelled = [&] { return ++asked > 23; };
-            part.checkpoints.write = [&](const RenderState& s) { state = s; };
-            isDone = !part.Run(film ? &state : nullptr).cancelled;
-            film = part.film;
-            kept = part.learner.Save();
-            rounds = std::max(rounds, part.learner.Figures().rounds);
-            ++interruptions;
-            if (isDone) {
-                EXPECT_TRUE(SamePixels(part.film, whole.film));
-                EXPECT_TRUE(BytesOf(part.learner) == BytesOf(whole.learner));
-            }
-        }
-        EXPECT_GT(interruptions, 5);
-        EXPECT_GE(rounds, 3);  // of auto as many as it decides
+        int rounds = 0;
+        const int parts =
+            RenderInParts([&] { return LearningRender(*scene, BlocksThatStop(2), {.mode = mode}); },
+                          [&](const LearningRender& part, bool isDone) {
+                              rounds = std::max(rounds, part.learner.Figures().rounds);
+                              if (!isDone) return;
+                              EXPECT_TRUE(SamePixels(part.film, whole.film));
+                              EXPECT_TRUE(BytesOf(part.learner) == BytesOf(whole.learner));
+                          });
+        EXPECT_GT(parts, 5);
+        EXPECT_EQ(rounds, mode == GuideMode::On ? 6 : 7);
     }
 }
 

@@ -1,6 +1,10 @@
 // Renders scenes with a learner for tests.
 #pragma once
 
+#include <atomic>
+#include <optional>
+#include <vector>
+
 #include "renderer/render/guide_learning.h"
 #include "renderer/render/render.h"
 #include "tests/renderer/scene_of.h"
@@ -41,5 +45,30 @@ struct LearningRender {
     Film film;
     SampleSource source;
 };
+
+// Renders with interruptions, each after some tiles; every part, which make() returns, continues
+// the one before. Calls use(part, isDone) after each and returns the number of parts.
+template <typename Make, typename Use>
+int RenderInParts(const Make& make, const Use& use) {
+    RenderState state;
+    std::optional<Film> film;
+    std::vector<std::byte> kept;
+    int parts = 0;
+    for (bool isDone = false; !isDone; ++parts) {
+        auto part = make();
+        if (film) {
+            part.film = *film;
+            part.learner.Take(kept, part.film);
+        }
+        std::atomic<int> asked = 0;
+        part.options.isCancelled = [&] { return ++asked > 23; };
+        part.checkpoints.write = [&](const RenderState& s) { state = s; };
+        isDone = !part.Run(film ? &state : nullptr).cancelled;
+        film = part.film;
+        kept = part.learner.Save();
+        use(part, isDone);
+    }
+    return parts;
+}
 
 }  // namespace lull
