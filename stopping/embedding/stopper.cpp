@@ -63,7 +63,8 @@ Rule MakeRule(const lull_settings& s, int blockCount) {
                             .blockCount = blockCount,
                             .cap = s.cap,
                             .models = s.models ? s.models : InstalledModels(),
-                            .caution = s.caution > 0 ? s.caution : 1});
+                            .caution = s.caution > 0 ? s.caution : 1,
+                            .hasHalves = false});
 }
 
 // Returns the first spp from `spp` on at which a criterion checks a block; 0 if it never does.

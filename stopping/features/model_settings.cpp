@@ -131,6 +131,7 @@ void CheckSettings(const ModelSettings& s) {
     checkReal("mask", s.visibility.mask, 1e-3, 1e9);
     checkReal("flare", s.visibility.flare, 0, 1);
     checkReal("nearness", s.visibility.nearness, 0, 10);
+    checkReal("peak_limit", s.peakLimit, 0, 100);
     check("reference", s.visibility.reference, 1, 1 << 30);
     checkReal("caution", s.caution, 1e-3, 1e3);
     if (Needs(s, Feature::VisibleDrop) && s.m != 100)

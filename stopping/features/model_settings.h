@@ -86,6 +86,10 @@ struct ModelSettings {
     Spacing spacing = Spacing::Fixed;
     double ratio = 2;                 // of geometric spacing, > 1
     NoiseVisibility visibility = {};  // of visible_drop
+    // Peak noise of the block (PeakNoise() in signals/lightness_noise.h), in L*, times
+    // NearnessFactor(), from which on a check is no vote to stop, whatever the network's answer; 0:
+    // none.
+    double peakLimit = 0;
     // Multiplies noise; not part of a model, but of how it is used.
     double caution = 1;
 };

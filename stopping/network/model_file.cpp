@@ -116,6 +116,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
                         .flare = readReal("flare", s.visibility.flare),
                         .reference = read("reference", s.visibility.reference),
                         .nearness = readReal("nearness", s.visibility.nearness)};
+        s.peakLimit = readReal("peak_limit", s.peakLimit);
         if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
         if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
     }
@@ -167,6 +168,7 @@ void WriteSettings(Hdf5Group group, const ModelSettings& s) {
         group.SetString("spacing", SpacingName(s.spacing));
         group.SetReal("ratio", s.ratio);
     }
+    if (s.peakLimit > 0) group.SetReal("peak_limit", s.peakLimit);
     if (Needs(s, Feature::VisibleDrop)) {
         group.SetReal("mask", s.visibility.mask);
         group.SetReal("flare", s.visibility.flare);

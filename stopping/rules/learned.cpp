@@ -102,6 +102,8 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
             .checks = ChecksOf(model->settings, passSpp),
             .threshold = 0.5,
             .votes = model->settings.votes,
+            .peak = {.most = model->settings.peakLimit / model->settings.caution,
+                     .visibility = model->settings.visibility},
             .need = NeedOf(model->settings),
             .measure = [model](const BlockView& view,
                                const BlockInfo&) { return MeasureBlock(view, model->settings); },
@@ -161,6 +163,7 @@ Rule ReadLearned(const std::string& argument, const RuleContext& context) {
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(path + ": " + error.what());
     }
+    LimitPeak(model->settings.peakLimit, model->settings.visibility, context, &rule);
     // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
     rule.logRatios = model->logRatios;
     for (double& ratio : rule.logRatios) ratio -= 2 * std::log(context.caution);

@@ -37,7 +37,9 @@ Rule LightnessNoiseRule(double threshold) {
 }
 
 Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context) {
-    return LightnessNoiseRule(ParseThreshold(argument) / context.caution);
+    Rule rule = LightnessNoiseRule(ParseThreshold(argument) / context.caution);
+    LimitPeak(kPeakLimit, {.nearness = 0}, context, &rule);
+    return rule;
 }
 
 }  // namespace lull

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "stopping/signals/lightness_noise.h"
+
 namespace lull {
 
 namespace {
@@ -32,13 +34,35 @@ Rule CountingRule(std::function<int(const BlockInfo&)> stopAt) {
     return {.smallestSide = 0, .stopAt = std::move(stopAt)};
 }
 
+double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double variance) {
+    if (rule.peak.most <= 0) return 0;
+    return peakNoise * NearnessFactor(spp, VisibilityWith(variance, rule.peak.visibility)) /
+           rule.peak.most;
+}
+
+double WithPeak(const Rule& rule, double number, double peakOverLimit) {
+    if (peakOverLimit < 1) return number;
+    // A probability p as its odds, of which 1 is the threshold 1/2.
+    const double least = rule.trend.kind == RuleTrend::Probability
+                             ? peakOverLimit / (1 + peakOverLimit)
+                             : rule.threshold * peakOverLimit;
+    return std::max(number, least);
+}
+
+void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,
+               Rule* rule) {
+    if (most <= 0) return;
+    rule->peak = {.most = most / context.caution, .visibility = visibility};
+    if (context.hasHalves) rule->need = std::max(rule->need, ViewNeed::MeanAndHalf);
+}
+
 RuleCriterion::RuleCriterion(std::shared_ptr<const Rule> given, const BlockInfo& block)
     : rule(std::move(given)),
       block(block),
       statistic(rule->makeStatistic ? rule->makeStatistic() : nullptr),
       value(rule->valueBefore) {}
 
-Decision RuleCriterion::Decide(int spp, Signals signals) {
+Decision RuleCriterion::Decide(int spp, Signals signals, double peakOverLimit) {
     if (spp < last) throw std::invalid_argument("a block must be shown with increasing spp");
     std::optional<double> number;
     if (IsDue(spp)) {
@@ -46,7 +70,8 @@ Decision RuleCriterion::Decide(int spp, Signals signals) {
         number = statistic ? statistic->Add(spp, std::move(signals)) : std::get<double>(signals);
     }
     if (number) {
-        value = *number;
+        peak = peakOverLimit;
+        value = WithPeak(*rule, *number, peak);
         votes = value < rule->threshold ? votes + 1 : 0;
     }
     return {.stop = number && votes >= std::max(1, rule->votes),
@@ -60,17 +85,25 @@ ViewNeed RuleCriterion::Need(int spp) const { return IsDue(spp) ? rule->need : V
 
 Decision RuleCriterion::Observe(const BlockView& view) {
     CheckView(view, Need(view.spp));
-    return Decide(view.spp, IsDue(view.spp) ? rule->measure(view, block) : Signals());
+    if (!IsDue(view.spp)) return Decide(view.spp, {});
+    const bool showsPeak = rule->peak.most > 0 && !view.halfMean.empty();
+    const double noise = showsPeak ? PeakNoise(ComputeLightnessNoise(view)) : 0;
+    return Decide(view.spp, rule->measure(view, block),
+                  PeakOverLimit(*rule, noise, view.spp, view.variance));
 }
 
 std::optional<double> RuleCriterion::NoiseTold() const {
-    return statistic ? statistic->Noise() : std::nullopt;
+    std::optional<double> noise = statistic ? statistic->Noise() : std::nullopt;
+    // At the limit of peak noise the network counts as undecided.
+    if (noise) noise = std::max(*noise, rule->trend.undecided * peak);
+    return noise;
 }
 
 std::vector<std::byte> RuleCriterion::Save() const {
     StateWriter writer;
     writer.Put(rule->tag);
     writer.Put(value);
+    writer.Put(peak);
     writer.Put(int32_t(last));
     writer.Put(int32_t(votes));
     if (statistic) statistic->Save(&writer);
@@ -81,9 +114,10 @@ void RuleCriterion::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
     reader.Expect(rule->tag);
     value = reader.Get<double>();
+    peak = reader.Get<double>();
     last = reader.Get<int32_t>();
     votes = reader.Get<int32_t>();
-    if (!(value >= 0) || last < 0 || votes < 0)
+    if (!(value >= 0) || !(peak >= 0) || last < 0 || votes < 0)
         throw std::runtime_error("the saved state of a stopping rule is damaged");
     if (statistic) statistic->Restore(&reader);
     reader.Finish();

@@ -23,6 +23,8 @@
 
 namespace lull {
 
+struct RuleContext;
+
 // Computes the number of one block from its signals, and stores the state this needs.
 class Statistic {
   public:
@@ -44,6 +46,15 @@ class Statistic {
 // Measures the signals of a rule in a block.
 using SignalMeasure = std::function<Signals(const BlockView& view, const BlockInfo& block)>;
 
+// Limit of the peak noise of a block (PeakNoise() in signals/lightness_noise.h), from which on a
+// check is no vote to stop, whatever the number: few pixels with much noise, as of thin lights and
+// fireflies, hardly move a mean over the block.
+struct PeakLimit {
+    double most = 0;  // in L*; 0: no limit
+    // Of the peak noise NearnessFactor() counts.
+    NoiseVisibility visibility = {.nearness = 0};
+};
+
 struct Rule {
     std::string text = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that it reads; empty if it reads none
@@ -57,6 +68,7 @@ struct Rule {
     Checks checks = {};
     double threshold = 0;
     int votes = 0;  // checks in a row below it that stop a block; 0: one does, and none is counted
+    PeakLimit peak = {};
     ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
     SignalMeasure measure = {};
     // Returns the result of `measure` from a recording; empty: that is not recorded.
@@ -72,6 +84,22 @@ struct Rule {
     std::function<int(const BlockInfo&)> stopAt = {};
 };
 
+// Returns the peak noise of a block at `spp` over the rule's limit; 0 without a limit. `variance`
+// is that of BlockView.
+double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double variance = 1);
+
+// Returns the number of a check: unchanged where the peak noise is below the limit; else at least
+// the threshold times `peakOverLimit` (odds of a probability), so that reports and forecasts
+// follow it.
+double WithPeak(const Rule& rule, double number, double peakOverLimit);
+
+// The limit of rules that are not trained, in L*: people's mean over viewpoints (docs/rules.md).
+inline constexpr double kPeakLimit = 1.3;
+
+// Limits the peak noise of a rule, and lets it ask for half means where views have them.
+void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,
+               Rule* rule);
+
 // Returns the rule that stops blocks at `stopAt`.
 Rule CountingRule(std::function<int(const BlockInfo&)> stopAt);
 
@@ -81,9 +109,9 @@ class RuleCriterion final : public Criterion {
     RuleCriterion(std::shared_ptr<const Rule> rule, const BlockInfo& block);
 
     bool IsDue(int spp) const { return rule->checks.AreDue(spp, last); }
-    // Decides after a pass. Signals are read only where a check is due. Throws
-    // std::invalid_argument as the statistic does.
-    Decision Decide(int spp, Signals signals);
+    // Decides after a pass. Signals and PeakOverLimit() (0: not known) are read only where a check
+    // is due. Throws std::invalid_argument as the statistic does.
+    Decision Decide(int spp, Signals signals, double peakOverLimit = 0);
 
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView& view) override;
@@ -96,6 +124,7 @@ class RuleCriterion final : public Criterion {
     BlockInfo block;
     std::unique_ptr<Statistic> statistic;  // null: the number is the measurement
     double value;                          // the last number
+    double peak = 0;                       // PeakOverLimit() at the last check
     int last = 0;                          // spp of the last check; 0: there was none
     int votes = 0;                         // checks in a row below the threshold
 };
@@ -117,6 +146,9 @@ struct RuleContext {
     // Divides the threshold of visible noise: 2 lets half as much of it be. Above 0; others than 1
     // only for rules that have such a threshold.
     double caution = 1;
+    // Whether views come with half means. Otherwise rules whose number needs none ask for none, and
+    // limit peak noise only where a view has one.
+    bool hasHalves = true;
     NoiseVisibility visibility = {};  // to the rule `entropy`
     // Measurements of the program that a BlockView does not contain, by the name of the rule. A
     // rule that needs one is refused where it is missing.

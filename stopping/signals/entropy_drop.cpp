@@ -99,10 +99,14 @@ double FlareFactor(double lightness, double flare) {
     return Slope((y + flare) / (1 + flare)) / (1 + flare) / Slope(y);
 }
 
+double NearnessFactor(int spp, const NoiseVisibility& visibility) {
+    const double left = 1 - double(spp) / visibility.reference;
+    return left > 0 ? std::pow(left, visibility.nearness) : 0;
+}
+
 std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,
                                 int spp, const NoiseVisibility& visibility) {
-    const double left = std::max(0.0, 1 - double(spp) / visibility.reference);
-    const double near = left > 0 ? std::pow(left, visibility.nearness) : 0;
+    const double near = NearnessFactor(spp, visibility);
     std::vector<double> visible;
     for (size_t i = 0; i < drop.size(); ++i) {
         const double l = lightness.mean[i];

@@ -70,6 +70,10 @@ SubBlockLightness MeasureLightness(const BlockView& view, int subBlocks);
 // for the 0.05 of sRGB 0.3 in black, 0.6 at L = 25, 0.9 at 65.
 double FlareFactor(double lightness, double flare);
 
+// Returns (1 - spp / reference)^nearness: the part of noise that counts at `spp`; 0 from the
+// reference on.
+double NearnessFactor(int spp, const NoiseVisibility& visibility);
+
 // Returns the visible noise of each sub-block, drop * L * FlareFactor(L) / (1 + d / mask) *
 // (1 - spp / reference)^nearness, in lightness; 0 from the reference on. All have the same length.
 std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,

@@ -19,6 +19,8 @@ float Finite(float x) { return std::isfinite(x) ? x : 0; }
 // Whether a change of a component changes the displayed one.
 bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
+double FourthPower(double x) { return (x * x) * (x * x); }
+
 float Luminance(float r, float g, float b) {
     return float(kLuminanceWeights[0]) * r + float(kLuminanceWeights[1]) * g +
            float(kLuminanceWeights[2]) * b;
@@ -97,7 +99,7 @@ std::vector<float> Texture(const std::vector<float>& lightness, int width, int h
 struct PixelSums {
     int count = 0;
     double lightness = 0, squaredLightness = 0, texture = 0;
-    double squaredNoise = 0, squaredMasked = 0, squaredHalf = 0;
+    double squaredNoise = 0, squaredMasked = 0, squaredHalf = 0, fourth = 0;
 
     void Add(const LightnessNoise& pixels, size_t i) {
         const double noise = pixels.noise[i], l = pixels.lightness[i], half = pixels.halfNoise[i];
@@ -109,6 +111,7 @@ struct PixelSums {
         squaredNoise += noise * noise;
         squaredMasked += masked * masked;
         squaredHalf += half * half;
+        fourth += FourthPower(MaskedNoise(pixels.halfNoise[i], pixels.texture[i]));
     }
 };
 
@@ -152,6 +155,29 @@ LightnessNoise ComputeLightnessNoise(const BlockView& view) {
     return result;
 }
 
+double PeakNoise(const LightnessNoise& pixels) {
+    double sum = 0;
+    for (size_t i = 0; i < pixels.halfNoise.size(); ++i)
+        sum += FourthPower(MaskedNoise(pixels.halfNoise[i], pixels.texture[i]));
+    return std::sqrt(std::sqrt(sum / double(std::max<size_t>(1, pixels.halfNoise.size()))));
+}
+
+double PeakOf(std::span<const float> subBlocks) {
+    double sum = 0;
+    for (const float peak : subBlocks) sum += FourthPower(peak);
+    return std::sqrt(std::sqrt(sum / double(std::max<size_t>(1, subBlocks.size()))));
+}
+
+std::vector<float> BellShapedPeaks(std::span<const float> noise, std::span<const float> maskedNoise,
+                                   std::span<const float> halfNoise) {
+    const float kurtosisRoot = std::pow(3.f, 0.25f);
+    std::vector<float> peaks;
+    for (size_t i = 0; i < noise.size(); ++i)
+        peaks.push_back(kurtosisRoot * halfNoise[i] *
+                        (noise[i] > 0 ? std::min(1.f, maskedNoise[i] / noise[i]) : 1));
+    return peaks;
+}
+
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int width, int height,
                                             int subBlocks) {
     const int side = int(std::lround(std::sqrt(std::max(0, subBlocks))));
@@ -179,6 +205,7 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
             result.noise.push_back(float(std::sqrt(sums.squaredNoise / sums.count)));
             result.maskedNoise.push_back(float(std::sqrt(sums.squaredMasked / sums.count)));
             result.halfNoise.push_back(float(std::sqrt(sums.squaredHalf / sums.count)));
+            result.peak.push_back(float(std::sqrt(std::sqrt(sums.fourth / sums.count))));
         }
     return result;
 }

@@ -36,11 +36,27 @@ LightnessNoise ComputeLightnessNoise(const BlockView& view);
 // Returns noise / (1 + t / 4): the noise that remains visible on texture.
 inline float MaskedNoise(float noise, float texture) { return noise / (1 + texture / 4); }
 
+// Returns the root of the mean fourth power of MaskedNoise(halfNoise, texture) over all pixels:
+// about 1.3 times their root mean square where noise is even, and far more where few pixels have
+// most of it. Visibility adds up over a picture with exponents of 3 to 4 (probability summation;
+// Quick 1974, Watson 1979). 0 for no pixels.
+double PeakNoise(const LightnessNoise& pixels);
+
+// Returns the peak noise of a block from that of sub-blocks of equal size; 0 for none.
+double PeakOf(std::span<const float> subBlocks);
+
+// Returns the peak noise of sub-blocks from root mean squares alone, as if noise were bell-shaped
+// in each: 3^(1/4) of the masked half noise. Below the true one where few pixels have most of it.
+// All have the same length.
+std::vector<float> BellShapedPeaks(std::span<const float> noise, std::span<const float> maskedNoise,
+                                   std::span<const float> halfNoise);
+
 // Statistics of each of `subBlocks` sub-blocks (a square number), row-major. noise,
-// maskedNoise and halfNoise are root mean squares. Throws std::invalid_argument if the estimates
-// have another size or there are too few pixels for the sub-blocks.
+// maskedNoise and halfNoise are root mean squares, peak is PeakNoise(). Throws
+// std::invalid_argument if the estimates have another size or there are too few pixels for the
+// sub-blocks.
 struct LightnessNoiseStatistics {
-    std::vector<float> lightness, deviation, texture, noise, maskedNoise, halfNoise;
+    std::vector<float> lightness, deviation, texture, noise, maskedNoise, halfNoise, peak;
 };
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);

@@ -43,6 +43,7 @@ std::vector<HardCase> AccumulationCases();
 std::vector<HardCase> ImageSizeCases();
 std::vector<HardCase> SignalCases();
 std::vector<HardCase> HeavyTailCases();
+std::vector<HardCase> SparsePointCases();
 std::vector<HardCase> DenoisingCases();
 std::vector<HardCase> StructureCases();
 std::vector<HardCase> RandomCases();

@@ -21,7 +21,8 @@ std::vector<PictureRule> RulesOf(const CompareOptions& options, const PictureFol
                         .blockCount = int(MakeBlocks(folder.Region(), schedule).size()),
                         .cap = folder.files.rbegin()->first,
                         .sceneName = folder.name,
-                        .models = ModelFolder()};
+                        .models = ModelFolder(),
+                        .hasHalves = false};
     const auto read = [&](const char* option, const std::string& text) {
         try {
             return ParseRule(text, context);

@@ -161,6 +161,8 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
               "visible_drop: set the spp of the observers' reference");
     AddReal(app, "--nearness", &v->nearness, 0.0, 10.0,
             "visible_drop: weigh noise by (1 - spp / N)^X, N: --reference");
+    AddReal(app, "--peak-limit", &s->peakLimit, 0.0, 100.0,
+            "Do not stop blocks with this much peak noise in L*; 0: no limit");
     AddNumber(app, "--votes", &s->votes, 1, 1000, "Stop after N consecutive votes");
     app.add_option("--vote-spacing", s->voteSpacing, "Vote every N spp [n]")
         ->check(CLI::Range(1, 1000000))
@@ -241,6 +243,9 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     AddTraining(app, &o->plan.training);
     AddList(app, "--leave-out", &o->plan.leaveOut,
             "Viewpoint to judge by, not to train on; can be given again");
+    AddList(app, "--together", &o->plan.together,
+            "--cross-validate: leave viewpoints whose names begin so out together;\ncan be given "
+            "again");
     AddList(app, "--without", &o->plan.without, "Viewpoint to ignore; can be given again");
     AddSplitOption(app, &o->plan.split,
                    "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others");
@@ -295,6 +300,7 @@ std::string ValuesText(const TrainingPlan& plan) {
         text += fmt::format("--mask {:g}\n--flare {:g}\n--reference {}\n--nearness {:g}\n",
                             s.visibility.mask, s.visibility.flare, s.visibility.reference,
                             s.visibility.nearness);
+    text += fmt::format("--peak-limit {:g}\n", s.peakLimit);
     text += fmt::format("--votes {}\n--vote-spacing {}\n", s.votes,
                         s.voteSpacing > 0 ? s.voteSpacing : s.n);
     text += fmt::format(

@@ -29,7 +29,8 @@ std::vector<RivalRule> RivalRules(std::span<const LabelledBlock> blocks) {
         if (rule.sweep.largest == 0) continue;
         const bool comparesHalves =
             rule.replay == Replay::RanAlong ||
-            ParseRule(std::string(rule.name) + ":1").need >= ViewNeed::MeanAndHalf;
+            ParseRule(std::string(rule.name) + ":1", {.hasHalves = false}).need >=
+                ViewNeed::MeanAndHalf;
         if (comparesHalves && !haveHalves) continue;
         rivals.push_back({&rule});
         if (rule.sweep.choosesMask) rivals.push_back({&rule, true});

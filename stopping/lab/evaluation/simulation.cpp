@@ -10,6 +10,7 @@
 #include "stopping/base/parallel.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
+#include "stopping/signals/lightness_noise.h"
 
 namespace lull {
 
@@ -69,6 +70,18 @@ void CheckLookedAt(std::span<const Decision> decisions, const LabelledBlock& blo
         "multiples of 20 or 40 spp, or at most 1.4 times the spp of the one before");
 }
 
+// Returns PeakOverLimit() of record i. Older recordings have no peak noise, but root mean squares,
+// which give a lower bound.
+double PeakIn(const BlockRecording& recording, int i, const Rule& rule) {
+    if (rule.peak.most <= 0 || !HasHalves(recording)) return 0;
+    const auto values = [&](const char* channel) { return recording.Values(i, channel); };
+    const double noise =
+        recording.absent[ChannelIndex("peak_noise")]
+            ? PeakOf(BellShapedPeaks(values("noise"), values("masked_noise"), values("half_noise")))
+            : PeakOf(values("peak_noise"));
+    return PeakOverLimit(rule, noise, recording.spp[size_t(i)]);
+}
+
 // Lets the rule decide after every recorded pass, whether it has stopped the block or not.
 std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
     CheckSpacing(rule, block);
@@ -77,8 +90,12 @@ std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
     std::vector<Decision> decisions;
     for (int i = 0; i < recording.Count(); ++i) {
         const int spp = recording.spp[size_t(i)];
-        decisions.push_back(criterion.Decide(
-            spp, criterion.IsDue(spp) ? rule.recall(spp, ValuesOf(recording, i)) : Signals()));
+        if (!criterion.IsDue(spp)) {
+            decisions.push_back(criterion.Decide(spp, {}));
+            continue;
+        }
+        decisions.push_back(criterion.Decide(spp, rule.recall(spp, ValuesOf(recording, i)),
+                                             PeakIn(recording, i, rule)));
     }
     CheckLookedAt(decisions, block);
     return decisions;
@@ -116,7 +133,9 @@ Simulator ThresholdsSimulator(const std::string& path) {
 }  // namespace
 
 ErrorSeries MakeErrorSeries(const LabelledBlock& block, const Rule& rule) {
-    return {.errors = NumbersOf(Replayed(block, rule)), .needed = std::max(1, rule.votes)};
+    Rule plain = rule;
+    plain.peak = {};  // numbers are compared with other thresholds than the rule's
+    return {.errors = NumbersOf(Replayed(block, plain)), .needed = std::max(1, rule.votes)};
 }
 
 int FirstBelow(const ErrorSeries& series, double threshold) {

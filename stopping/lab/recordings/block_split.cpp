@@ -22,11 +22,28 @@ BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::
     return split;
 }
 
-std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks) {
+std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks,
+                                     std::span<const std::string> together) {
+    // Of each part that is left out, the names of its viewpoints; `together` first.
+    std::vector<std::vector<std::string>> parts(together.size());
+    for (const LabelledBlock& block : blocks) {
+        const auto group = std::ranges::find_if(together, [&](const std::string& beginning) {
+            return block.viewpoint.starts_with(beginning);
+        });
+        if (group == together.end() &&
+            (parts.size() == together.size() || parts.back().front() != block.viewpoint))
+            parts.emplace_back();
+        std::vector<std::string>& part =
+            group == together.end() ? parts.back() : parts[size_t(group - together.begin())];
+        if (part.empty() || part.back() != block.viewpoint) part.push_back(block.viewpoint);
+    }
     std::vector<BlockSplit> splits;
-    for (const LabelledBlock& block : blocks)
-        if (std::ranges::find(splits, block.viewpoint, &BlockSplit::name) == splits.end())
-            splits.push_back(LeaveOut(blocks, {&block.viewpoint, 1}));
+    for (size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].empty())
+            throw std::invalid_argument("--together: no viewpoint's name begins with '" +
+                                        Printable(together[i]) + "'");
+        splits.push_back(LeaveOut(blocks, parts[i]));
+    }
     if (splits.size() < 2)
         throw std::invalid_argument(
             "--cross-validate: two viewpoints are needed, to leave each out in turn");

@@ -18,9 +18,11 @@ struct BlockSplit {
 // Leaves out the viewpoints of these names. Throws std::invalid_argument for a name without blocks.
 BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::string> names);
 
-// Returns a split for each viewpoint, which leaves it out. Throws std::invalid_argument if there
-// are fewer than two.
-std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks);
+// Returns a split for each viewpoint, which leaves it out, or for all viewpoints whose names begin
+// with one of `together`: views of one scene. Throws std::invalid_argument if there are fewer than
+// two splits, or if no name begins so.
+std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks,
+                                     std::span<const std::string> together = {});
 
 // Moves those blocks from the training to the test that are not listed for their viewpoint: a row
 // holds the viewpoint's name and the numbers of its blocks to train on (the paper's split has 12 of

@@ -34,7 +34,8 @@ constexpr Law kConstant{};
 Law LawOf(std::string_view channel) {
     for (const char* name : {"h4", "h25", "h100", "h400", "h1", "h2"})
         if (channel == name) return kEntropyLaw;
-    for (const char* name : {"noise", "masked_noise", "half_noise", "dammertz", "luxtile"})
+    for (const char* name :
+         {"noise", "masked_noise", "half_noise", "peak_noise", "dammertz", "luxtile"})
         if (channel == name) return kNoiseLaw;
     if (channel == "deviation" || channel == "texture") return kDeviationLaw;
     return channel == "attributes26" ? kFilteredLaw : kConstant;

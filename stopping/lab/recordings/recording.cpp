@@ -16,8 +16,8 @@ namespace {
 constexpr uint32_t kRecorderTag = 0x31434552;  // "REC1"
 constexpr int kAllPassesUntil = 400;           // spp
 constexpr int kStatisticsSubBlocks = 100;
-constexpr std::array<std::string_view, 5> kHalfChannels = {"noise", "masked_noise", "half_noise",
-                                                           "dammertz", "luxtile"};
+constexpr std::array<std::string_view, 6> kHalfChannels = {
+    "noise", "masked_noise", "half_noise", "peak_noise", "dammertz", "luxtile"};
 
 void Append(std::span<const float> from, std::vector<float>* to) {
     to->insert(to->end(), from.begin(), from.end());
@@ -46,7 +46,7 @@ void AppendRecord(const BlockView& view, std::vector<float>* to) {
     const LightnessNoiseStatistics s =
         SubBlockStatistics(noise, view.width, view.height, kStatisticsSubBlocks);
     for (const std::vector<float>* channel :
-         {&s.lightness, &s.deviation, &s.texture, &s.noise, &s.maskedNoise, &s.halfNoise})
+         {&s.lightness, &s.deviation, &s.texture, &s.noise, &s.maskedNoise, &s.halfNoise, &s.peak})
         Append(*channel, to);
     to->push_back(float(DammertzError(view)));
     to->push_back(float(LuxTileError(view)));

@@ -24,11 +24,11 @@ struct Channel {
 
 // All of them in the order in which a record has them. h4 ... h400 are SVD-entropies of the
 // lightness L of the display image, h1 and h2 their parts at m = 100 (svd_entropy.h); lightness and
-// deviation are mean and standard deviation of L; texture is the mean of t, and noise, masked_noise
-// and half_noise are defined in lightness_noise.h. dammertz and luxtile are the errors of those
-// rules (baselines.h). attributes26 is ComputeAttributes() of L. Those from noise to luxtile
-// compare the mean with a half of the samples.
-inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
+// deviation are mean and standard deviation of L; texture is the mean of t, and noise,
+// masked_noise, half_noise and peak_noise are defined in lightness_noise.h. dammertz and luxtile
+// are the errors of those rules (baselines.h). attributes26 is ComputeAttributes() of L. Those from
+// noise to luxtile compare the mean with a half of the samples.
+inline constexpr std::array<Channel, 16> kChannels = {{{"h4", 4},
                                                        {"h25", 25},
                                                        {"h100", 100},
                                                        {"h400", 400},
@@ -40,6 +40,7 @@ inline constexpr std::array<Channel, 15> kChannels = {{{"h4", 4},
                                                        {"noise", 100, true},
                                                        {"masked_noise", 100, true},
                                                        {"half_noise", 100, true},
+                                                       {"peak_noise", 100, true},
                                                        {"dammertz", 1, true},
                                                        {"luxtile", 1, true},
                                                        {"attributes26", kAttributes, true}}};

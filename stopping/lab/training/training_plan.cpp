@@ -37,7 +37,7 @@ std::string BlocksText(std::span<const LabelledBlock> blocks) {
 std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan,
                                    std::span<const LabelledBlock> blocks) try {
     std::vector<BlockSplit> splits;
-    if (plan.crossValidate) splits = LeaveEachOut(blocks);
+    if (plan.crossValidate) splits = LeaveEachOut(blocks, plan.together);
     for (BlockSplit& split : splits) split.name = "without " + split.name;
     if (!plan.withLast) return splits;
     BlockSplit split = LeaveOut(blocks, plan.leaveOut);

@@ -19,6 +19,7 @@ struct TrainingPlan {
     // Which networks are trained: one without each viewpoint in turn; and, as the last, one on all
     // blocks but those that are left out by name, or that the file `split` does not list.
     bool crossValidate = false, withLast = true;
+    std::vector<std::string> together;  // beginnings of names; see LeaveEachOut()
     std::vector<std::string> leaveOut;  // viewpoints
     std::string split;                  // empty: none
 

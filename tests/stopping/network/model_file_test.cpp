@@ -129,7 +129,8 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
         .pools = {{1}},
         .spacing = Spacing::Geometric,
         .ratio = 1.4,
-        .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25}};
+        .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25},
+        .peakLimit = 1.25};
     WriteModel(file.path, RandomNetwork(1, {4}, 1), settings);
     const ModelSettings read = ReadModel(file.path).settings;
     EXPECT_EQ(read.spacing, Spacing::Geometric);
@@ -138,6 +139,7 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     EXPECT_EQ(read.visibility.flare, 0.02);
     EXPECT_EQ(read.visibility.reference, 5000);
     EXPECT_EQ(read.visibility.nearness, 0.25);
+    EXPECT_EQ(read.peakLimit, 1.25);
 
     // Nothing is said where nothing is meant, so that other models have the bytes they had.
     WriteModel(file.path, RandomNetwork(100, {4}, 1), {});

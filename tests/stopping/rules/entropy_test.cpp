@@ -107,7 +107,8 @@ TEST(EntropyRule, IsARule) {
     EXPECT_EQ(factory.text, "entropy:0.5");
     EXPECT_EQ(factory.smallestSide, kSmallestVotingSide);
     const auto rule = MakeCriterion(factory);
-    EXPECT_EQ(rule->Need(20), ViewNeed::Mean);
+    EXPECT_EQ(rule->Need(20), ViewNeed::MeanAndHalf);
+    EXPECT_EQ(MakeCriterion(ParseRule("entropy", {.hasHalves = false}))->Need(20), ViewNeed::Mean);
     EXPECT_EQ(rule->Need(40), ViewNeed::Nothing);
     EXPECT_TRUE(ParseRule("entropy").text.starts_with("entropy:0."));
     EXPECT_THROW(ParseRule("entropy:0"), std::invalid_argument);
@@ -117,7 +118,8 @@ TEST(EntropyRule, IsARule) {
 
 TEST(EntropyRule, ComparesWithThePictureAtALargerCap) {
     const auto valueAt = [](int cap) {
-        const auto rule = MakeCriterion(ParseRule("entropy:0.01", {.cap = cap}));
+        const auto rule =
+            MakeCriterion(ParseRule("entropy:0.01", {.cap = cap, .hasHalves = false}));
         return Decide(rule.get(), 0, 5020).back().value;
     };
     const double standard = valueAt(0);

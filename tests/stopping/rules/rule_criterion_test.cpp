@@ -74,6 +74,34 @@ TEST(RuleCriterion, StopsBelowTheThresholdSoManyTimesInARow) {
     EXPECT_EQ(nonsense.votes, 0);
 }
 
+TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
+    Rule rule = OwnRule({}, 2);
+    LimitPeak(2, {.reference = 1000, .nearness = 0.5}, {}, &rule);
+    EXPECT_EQ(rule.need, ViewNeed::MeanAndHalf);
+    EXPECT_NEAR(PeakOverLimit(rule, 4, 750), 1, 1e-12);
+    EXPECT_EQ(PeakOverLimit(rule, 4, 1000), 0);
+    EXPECT_EQ(PeakOverLimit(rule, 4, 750, 0.5), 0);  // the reference is nearer by half
+    EXPECT_EQ(WithPeak(rule, 0.1, 0.999), 0.1);
+    EXPECT_EQ(WithPeak(rule, 0.1, 1), rule.threshold);
+    EXPECT_EQ(WithPeak(rule, 0.1, 3), 3 * rule.threshold);
+    EXPECT_EQ(WithPeak(rule, 7, 3), 7);
+    RuleCriterion criterion(std::make_shared<const Rule>(rule), {});
+    EXPECT_EQ(criterion.Decide(20, 0.1, 0.9).votes, 1);
+    EXPECT_EQ(criterion.Decide(40, 0.1, 1).votes, 0);
+    EXPECT_EQ(criterion.Decide(60, 0.1, 0.9).votes, 1);
+    EXPECT_TRUE(criterion.Decide(80, 0.1, 0.9).stop);
+    rule.trend.kind = RuleTrend::Probability;
+    EXPECT_EQ(WithPeak(rule, 0.1, 1), 0.5);
+    EXPECT_EQ(WithPeak(rule, 0.1, 3), 0.75);
+    Rule without = OwnRule({}, 2);
+    LimitPeak(2, {}, {.hasHalves = false}, &without);
+    EXPECT_EQ(without.need, ViewNeed::Nothing);
+    EXPECT_EQ(without.peak.most, 2);
+    LimitPeak(2, {}, {.caution = 2}, &without);
+    EXPECT_EQ(without.peak.most, 1);
+    EXPECT_EQ(PeakOverLimit(OwnRule({}, 2), 4, 20), 0);
+}
+
 TEST(RuleCriterion, StopsAtOnceWhereTheRuleDoesNotVote) {
     RuleCriterion criterion(std::make_shared<const Rule>(OwnRule({}, 0)), {});
     EXPECT_FALSE(criterion.Decide(20, 0.5).stop);

@@ -193,6 +193,36 @@ TEST(LightnessNoise, IsMaskedByDetail) {
     EXPECT_DOUBLE_EQ(masked[3], 0);
 }
 
+TEST(PeakNoise, CountsFewPixelsWithMuchNoise) {
+    // One dark pixel in 400 has all its light in one half: 20 L* there are 20 / 400^(1/4) in all.
+    BlockImage block(20, 20, 0.f);
+    const float light = float((std::pow((40 + 16) / 116.0, 3)));  // L = 40 in the half that has it
+    for (int c = 0; c < 3; ++c) {
+        block.Mean(10, 10)[c] = light / 2;
+        block.HalfMean(10, 10)[c] = light;
+    }
+    LightnessNoise noise = ComputeLightnessNoise(block.At(20));
+    EXPECT_NEAR(noise.halfNoise[10 * 20 + 10], 20, 1e-3);
+    noise.texture.assign(400, 0.f);
+    EXPECT_NEAR(PeakNoise(noise), 20 / std::pow(400, 0.25), 1e-3);
+    noise.texture.assign(400, 4.f);
+    EXPECT_NEAR(PeakNoise(noise), 10 / std::pow(400, 0.25), 1e-3);
+    EXPECT_EQ(PeakNoise({}), 0);
+}
+
+TEST(PeakNoise, IsThatOfTheSubBlocks) {
+    const BlockImage block = NoisyBlock(60, 60, 0.3, 40, 7);
+    const LightnessNoise noise = ComputeLightnessNoise(block.At(40));
+    const std::vector<float> peaks = SubBlockStatistics(noise, 60, 60, 100).peak;
+    EXPECT_NEAR(PeakOf(peaks), PeakNoise(noise), 1e-5 * PeakNoise(noise));
+    EXPECT_EQ(PeakOf({}), 0);
+    // Bell-shaped noise has a kurtosis of three.
+    std::vector<float> masked;
+    for (size_t i = 0; i < noise.halfNoise.size(); ++i)
+        masked.push_back(MaskedNoise(noise.halfNoise[i], noise.texture[i]));
+    EXPECT_NEAR(PeakNoise(noise) / Rms(masked), std::pow(3, 0.25), 0.15);
+}
+
 TEST(LightnessNoise, RefusesOtherSizes) {
     const BlockImage image(20, 20, 1);
     BlockView view = image.At(20);

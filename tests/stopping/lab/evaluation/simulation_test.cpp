@@ -145,6 +145,25 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
     EXPECT_FALSE(never.open);
 }
 
+TEST(Simulation, LimitsPeakNoise) {
+    // 1.3 is the limit of lnoise, whose own number is 0 here.
+    BlockRecording recording = EmptyRecording(400);
+    SetChannel(&recording, "peak_noise", [](int spp) { return 100.0 / spp; });
+    const Rule rule = ParseRule("lnoise");
+    EXPECT_EQ(SimulateRule(MakeBlock(recording), rule).stop, 120);
+    // Without them, as if noise were bell-shaped.
+    recording.absent.set(ChannelIndex("peak_noise"));
+    SetChannel(&recording, "noise", [](int) { return 2; });
+    SetChannel(&recording, "masked_noise", [](int) { return 1e-3; });
+    SetChannel(&recording, "half_noise",
+               [](int spp) { return 2e3 * 100.0 / spp / std::pow(3, 0.25); });
+    EXPECT_EQ(SimulateRule(MakeBlock(recording), LightnessNoiseRule(0.65)).stop, 60);
+    EXPECT_EQ(SimulateRule(MakeBlock(recording), rule).stop, 120);
+    // Sweeps of thresholds have the numbers by themselves.
+    EXPECT_EQ(MakeErrorSeries(MakeBlock(recording), rule).errors[0],
+              MakeErrorSeries(MakeBlock(recording), LightnessNoiseRule(0.65)).errors[0]);
+}
+
 TEST(Simulation, LooksWhenTheRuleDoes) {
     // luxtile does not look at 20 spp, where the error of the made-up block is 0.
     const BlockRecording recording = EmptyRecording(200);

@@ -37,6 +37,21 @@ TEST(BlockSplit, LeavesEachViewpointOutInTurn) {
     EXPECT_THROW(LeaveEachOut(std::vector{Blocks()[0]}), std::invalid_argument);
 }
 
+TEST(BlockSplit, LeavesViewsOfASceneOutTogether) {
+    std::vector<LabelledBlock> blocks = Blocks();
+    for (LabelledBlock& block : blocks)
+        if (block.viewpoint != "b") block.viewpoint = "room-" + block.viewpoint;
+    const std::vector<std::string> rooms = {"room"}, towns = {"town"}, all = {"b", "room"};
+    const std::vector<BlockSplit> splits = LeaveEachOut(blocks, rooms);
+    ASSERT_EQ(splits.size(), 2u);
+    EXPECT_EQ(splits[0].name, "room-a, room-c");
+    EXPECT_EQ(splits[0].test.size(), 8u);
+    EXPECT_EQ(splits[1].name, "b");
+    EXPECT_EQ(splits[1].training.size(), 8u);
+    EXPECT_EQ(LeaveEachOut(blocks, all).size(), 2u);
+    EXPECT_THROW(LeaveEachOut(blocks, towns), std::invalid_argument);
+}
+
 TEST(BlockSplit, KeepsListedBlocks) {
     BlockSplit split = LeaveOut(Blocks(), std::vector<std::string>{"c"});
     const std::vector<ThresholdsRow> rows = {{"a", {3, 0}}, {"b", {1}}};

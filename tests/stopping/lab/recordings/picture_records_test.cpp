@@ -42,7 +42,7 @@ TEST(PictureRecords, AreThoseOfTheMean) {
             std::ranges::equal(picture.Values(0, channel.name), whole.Values(0, channel.name)))
             << channel.name;
     }
-    EXPECT_EQ(picture.absent.count(), 5u);
+    EXPECT_EQ(picture.absent.count(), 6u);
     EXPECT_TRUE(HasHalves(whole));
     EXPECT_THROW(AddPicture(view, &whole), std::invalid_argument);
 }

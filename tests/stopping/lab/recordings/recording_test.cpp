@@ -61,6 +61,7 @@ TEST(Recorder, RecordsWhatTheRulesCompute) {
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "masked_noise"), s.maskedNoise));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "noise"), s.noise));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "half_noise"), s.halfNoise));
+        EXPECT_TRUE(std::ranges::equal(recording.Values(i, "peak_noise"), s.peak));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "texture"), s.texture));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "deviation"), s.deviation));
         EXPECT_TRUE(std::ranges::equal(recording.Values(i, "lightness"), s.lightness));
