@@ -108,8 +108,10 @@ void Executor::BeginLight() {
 
 bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
-    if (context.light && !IsCancelled() && schedule.IsRoundOver()) {
+    if (context.light && schedule.Unlocked().NoPassUnderWay()) {
+        // Also in the end: whoever goes on from the checkpoint has to know what was learned.
         context.light->Learn(*context.film);
+        if (IsCancelled() || !schedule.IsRoundOver()) return false;
         BeginLight();
         return true;
     }

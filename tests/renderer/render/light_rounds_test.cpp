@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "renderer/render/session.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -77,6 +79,71 @@ TEST(LightRounds, HaveTheSameBitsForAnyThreadsAndInterruption) {
     EXPECT_GT(interruptions, 2);
 }
 
+// Counts the blocks that come to a number of samples, and stops none.
+class CountingCriterion : public Criterion {
+  public:
+    CountingCriterion(int at, std::atomic<int>* left) : at(at), left(left) {}
+    ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
+    Decision Observe(const BlockView& view) override {
+        if (view.spp == at) --*left;
+        Decision decision;
+        decision.checked = true;
+        return decision;
+    }
+
+  private:
+    int at;
+    std::atomic<int>* left;
+};
+
+// A first cap, or an interruption, that falls on the end of a round loses nothing of what it
+// learned.
+TEST(LightRounds, HaveTheSameBitsFromTheEndsOfRoundsOn) {
+    const auto scene = MakeScene(true, "bdpt", "gaussian");
+    const auto optionsFor = [](const std::string& file, int cap) {
+        SessionOptions options = OptionsFor(file);
+        options.render.makeCriterion = {};
+        options.render.schedule.cap = cap;
+        options.identity["cap"] = std::to_string(cap);
+        options.checkpoint.mayDiffer = MayDiffer::Stops;
+        options.checkpoint.isKept = true;
+        return options;
+    };
+    Session whole(*scene, kRegion, optionsFor("", 60));
+    whole.Run();
+    for (const int cap : {1, 2, 4, 8, 20, 40}) {
+        const TemporaryDirectory directory;
+        const std::string file = directory.File("c.h5");
+        for (const int end : {cap, 60}) {
+            Session session(*scene, kRegion, optionsFor(file, end));
+            session.Resume();
+            session.Run();
+            if (end == 60) {
+                EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << cap;
+            }
+        }
+    }
+    // Cancelled when the last block's pass has been decided on.
+    for (const int spp : {20, 40}) {
+        const TemporaryDirectory directory;
+        const std::string file = directory.File("c.h5");
+        std::atomic<int> left = int(MakeBlocks(kRegion, OptionsFor("").render.schedule).size());
+        SessionOptions first = optionsFor(file, 60);
+        first.render.isCancelled = [&] { return left <= 0; };
+        first.render.makeCriterion = [&](const BlockInfo&) {
+            return std::make_unique<CountingCriterion>(spp, &left);
+        };
+        Session interrupted(*scene, kRegion, first);
+        EXPECT_TRUE(interrupted.Run().cancelled);
+        SessionOptions second = optionsFor(file, 60);
+        second.identity["stop"] = "another";
+        Session session(*scene, kRegion, second);
+        session.Resume();
+        session.Run();
+        EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << spp;
+    }
+}
+
 // Returns the mean over the image of all samples, or of either half.
 struct Means {
     double all = 0, half = 0, other = 0;
@@ -142,6 +209,29 @@ TEST(LightPlane, SumsInAnyOrder) {
     // Enormous values do not run over.
     for (int i = 0; i < 100; ++i) forth.Add({2, 3}, Rgb(1e30f, 1e30f, 1e30f), true);
     EXPECT_GT(forth.SumsAt({2, 3}).sum[0], 1e7);
+}
+
+// Light of negative luminance counts as black, and as rejected, as the samples of paths do.
+TEST(LightRounds, RejectNegativeLight) {
+    const auto scene = SceneOf(R"(
+LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [45]
+Film "image" "integer xresolution" [32] "integer yresolution" [24]
+Integrator "bdpt"
+WorldBegin
+LightSource "point" "point from" [0 .5 0] "rgb I" [.1 -5 .1]
+Material "matte" "rgb Kd" [.7 .5 .3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1]
+WorldEnd
+)");
+    SessionOptions options = OptionsFor("");
+    options.render.makeCriterion = {};
+    options.render.schedule.cap = 20;
+    Session session(*scene, kRegion, options);
+    session.Run();
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x) EXPECT_EQ(session.TheFilm().At({x, y}).sum[1], 0);
+    EXPECT_GT(session.TheFilm().RejectedCount(), 100);
 }
 
 }  // namespace
