@@ -262,7 +262,7 @@ WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
 
 // Gives the corners of triangles uvs of their own: a vertex becomes as many as it has uvs.
 void SplitVertices(const WedgeUvs& uvs, MeshData* mesh) {
-    if (uvs.empty()) return;
+    if (std::ranges::none_of(uvs, [](const auto& uv) { return uv.has_value(); })) return;
     constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
     const std::vector<Vec3f> positions = std::exchange(mesh->positions, {});
     const std::vector<Vec3f> normals = std::exchange(mesh->normals, {});

@@ -380,7 +380,7 @@ TEST_F(Ply, LinesMayEndInCarriageReturnsAlone) {
     EXPECT_EQ(Load(ascii).positions[1], Vec3f(1, 0, 0));
     EXPECT_EQ(Load("\xef\xbb\xbf" + ascii).positions[1], Vec3f(1, 0, 0));
     ascii.replace(ascii.find("1 0 0"), 1, "x");
-    EXPECT_EQ(ErrorOf(ascii), "a.ply:10: 'x' is not a number that can be used");
+    EXPECT_EQ(ErrorOf(ascii), "a.ply:11: 'x' is not a number that can be used");
 }
 
 }  // namespace
