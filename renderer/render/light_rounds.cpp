@@ -1,6 +1,7 @@
 #include "renderer/render/light_rounds.h"
 
 #include <atomic>
+#include <limits>
 
 #include "stopping/base/parallel.h"
 
@@ -63,6 +64,9 @@ double LightRounds::FindUnit() const {
 void LightRounds::Begin(const Schedule& schedule) {
     first = schedule.LeastSpp();
     end = PassEndAfter(first, schedule.Options());
+    ScheduleOptions uncapped = schedule.Options();
+    uncapped.cap = std::numeric_limits<int>::max();
+    isCutShort = !schedule.Done() && PassEndAfter(first, uncapped) != end;
     int64_t active = 0;
     for (const Block& block : schedule.Blocks())
         if (!block.stopped || block.spp > first) active += block.pixels.Area();

@@ -226,7 +226,7 @@ TEST(GltfLights, HaveConesUpToRounding) {
     EXPECT_EQ(angles(0, double(1.57079637f)), std::pair(90.f, 90.f));
     EXPECT_EQ(angles(0, 1.5708), std::pair(90.f, 90.f));  // with six digits
     EXPECT_EQ(angles(0.5, 0.5).second, 0);
-    EXPECT_EQ(angles(double(0.7f), 0.7).second, 0);
+    EXPECT_EQ(angles(0.7, double(0.7f)).second, 0);
     EXPECT_EQ(angles(-1e-9, 0.5).second, angles(0, 0.5).second);
     for (const auto& [inner, outer] : {std::pair(0., 1.58), {0.6, 0.5}, {-0.1, 0.5}, {0., 0.}})
         EXPECT_NE(kFolder.ErrorOf(cone({{"innerConeAngle", inner}, {"outerConeAngle", outer}}))
