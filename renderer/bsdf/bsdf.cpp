@@ -13,6 +13,13 @@ constexpr bool IsTwoSided() {
     return requires { L::kIsTwoSided; };
 }
 
+// Returns whether light that a lobe scatters below the surface is reflected there once more. Of the
+// others, f behind the shading normal makes up for it, as in pbrt-v3.
+template <typename L>
+constexpr bool ReflectsAgain() {
+    return IsMirrorLike<L>() && !L::kIsSpecular && !std::is_same_v<L, FresnelBlend>;
+}
+
 // Returns whether light goes to the side of the geometric normal that the lobe means.
 template <typename L>
 bool KeepsSide(bool reflects, bool sameHemisphere) {
@@ -101,14 +108,15 @@ BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, const Vec3f* bel
     for (int i = 0; i < lobeCount; ++i) {
         VisitLobe(lobes[i], [&]<typename L>(const L& lobe) {
             if constexpr (!L::kIsSpecular) {
-                const bool scatters = KeepsSide<L>(reflects, sameHemisphere);
+                const bool scatters = KeepsSide<L>(reflects, sameHemisphere) &&
+                                      (sameHemisphere || !mayTurn || !ReflectsAgain<L>());
                 const bool isSampled = IsTwoSided<L>() || sameHemisphere != L::kTransmits;
                 const auto add = [&](const BsdfValue& v, float weight) {
                     if (scatters) sum.f += v.f * weight;
                     sum.pdf += byShare ? shares[i] * v.pdf : v.pdf;
                 };
                 if (scatters || isSampled) add(lobe.Evaluate(wo, wi), 1);
-                if constexpr (IsMirrorLike<L>())
+                if constexpr (ReflectsAgain<L>())
                     if (below && scatters)
                         add(lobe.Evaluate(wo, *below), std::abs(below->z() / wi.z()));
             }
@@ -198,7 +206,7 @@ std::optional<BsdfSample> Bsdf::SampleHere(const Vec3f& wo, const Vec3f& woWorld
                 Vec3f wiWorld = shading.FromLocal(wi);
                 const bool reflects = Reflects(woWorld, wiWorld);
                 BsdfValue value;
-                if (mayTurn && IsMirrorLike<L>()) {
+                if (mayTurn && ReflectsAgain<L>()) {
                     if (!reflects) wiWorld -= 2 * wiWorld.dot(ng) * ng;
                     value = EvaluateHere(wo, woWorld, wiWorld, set);
                 } else if (count > 1) {

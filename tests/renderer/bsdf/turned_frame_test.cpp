@@ -58,6 +58,28 @@ TEST(TurnedFrame, MetalsReflectAllLight) {
                 }
 }
 
+// Neither do bases below a rough interface get more, or less, by light that is sampled.
+TEST(TurnedFrame, BasesReflectAllLight) {
+    Random random(44);
+    for (const float alpha : {0.1f, 1.f})
+        for (const float tilt : {0.f, 30.f, 50.f})
+            for (const float azimuth : {0.f, 90.f, 180.f}) {
+                const Lobe lobe = LayeredReflection(kWhite, Rgb::Constant(0.04f), 1, alpha,
+                                                    InterfaceAbove{0.04f, 1}, 0);
+                const Bsdf bsdf = Tilted(lobe, FromAngles(tilt));
+                const Vec3f wo = FromAngles(50, azimuth);
+                double f = 0;
+                constexpr int kCount = 200000;
+                for (int i = 0; i < kCount; ++i) {
+                    const Vec3f wi = random.Direction();
+                    f += double(bsdf.Evaluate(wo, wi, LobeSet::All).f.y() *
+                                std::abs(wi.dot(bsdf.Shading().n))) *
+                         4 * kPi / kCount;
+                }
+                EXPECT_NEAR(f, 1, 0.06) << alpha << " " << tilt << " " << azimuth;
+            }
+}
+
 // Sampling finds as much as the values say, and the densities are those of the samples.
 TEST(TurnedFrame, SamplesAgreeWithValues) {
     Random random(42);
