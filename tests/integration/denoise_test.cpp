@@ -191,10 +191,10 @@ TEST(DenoiseCommand, KnowsTheChannelsOfOthers) {
     }
     WriteHalves(directory, {"depth.V", "mask"});
     ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr",
-                  {"no channels R, G and B, nor Y", "depth.V, mask"});
+                  {"no channels R, G and B, nor Y", "mask, depth.V"});
     WriteHalves(directory, {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"});
     ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr", {"several layers", "a.R"});
-    ExpectFailure(directory, "denoise a.exr -o out.exr", {"halfA", "--half", "a.R"});
+    ExpectFailure(directory, "denoise a.exr -o out.exr", {"half", "--half", "a.R"});
 }
 
 }  // namespace
