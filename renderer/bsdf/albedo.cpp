@@ -5,7 +5,7 @@
 namespace lull {
 
 Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& woWorld) {
-    const Vec3f wo = bsdf.Shading().ToLocal(woWorld);
+    const Vec3f wo = bsdf.FrameTowards(woWorld).ToLocal(woWorld);
     Rgb sum = Rgb::Zero();
     if (wo.z() == 0) return sum;
     for (int i = 0; i < bsdf.LobeCount(LobeSet::All); ++i)

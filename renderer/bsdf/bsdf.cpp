@@ -13,6 +13,22 @@ constexpr bool IsTwoSided() {
     return requires { L::kIsTwoSided; };
 }
 
+// Returns whether light that a lobe scatters below the surface is reflected there once more. Of the
+// others, f behind the shading normal makes up for it, as in pbrt-v3.
+template <typename L>
+constexpr bool ReflectsAgain() {
+    return IsMirrorLike<L>() && !L::kIsSpecular && !std::is_same_v<L, FresnelBlend>;
+}
+
+// Returns whether light goes to the side of the geometric normal that the lobe means.
+template <typename L>
+bool KeepsSide(bool reflects, bool sameHemisphere) {
+    if constexpr (requires { L::kTellsSides; })
+        return reflects == sameHemisphere;
+    else
+        return IsTwoSided<L>() || reflects != L::kTransmits;
+}
+
 }  // namespace
 
 bool Bsdf::Transmits() const {
@@ -27,7 +43,7 @@ bool Bsdf::Transmits() const {
 void Bsdf::ChooseByShare(const Vec3f& woWorld) {
     // No lobe gets less: the estimates know nothing of where light comes from.
     constexpr float kLeast = 0.1f;
-    const Vec3f wo = shading.ToLocal(woWorld);
+    const Vec3f wo = FrameTowards(woWorld).ToLocal(woWorld);
     if (wo.z() == 0) return;
     for (int i = 0; i < lobeCount; ++i) ChoosePartsByShare(wo, kLeast, &lobes[i]);
     if (lobeCount < 2) return;
@@ -54,19 +70,55 @@ const Lobe& Bsdf::Choose(int choice, LobeSet set) const {
     return lobes[i];
 }
 
-BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const {
+// In the plane of both normals, with the geometric one along z, a normal that halves the angle
+// between wo and a direction mirrors one into the other, whatever wo has across the plane.
+Frame Bsdf::TurnedFrame(const Vec3f& wo) const {
+    const float side = wo.dot(ng) < 0 ? -1 : 1;
+    const Vec3f g = side * ng;
+    const Vec3f x = (side * shading.n - alongNg * g).normalized();
+    const float woX = wo.dot(x), woZ = wo.dot(g), z = LeastHeight(woZ);
+    const float rest = (woZ - z) * (woZ + z);  // of the squared length in the plane
+    const float root = std::sqrt(Sqr(woX) + rest);
+    const Vec3f n = (woX > 0 ? woX + root : rest / (root - woX)) * x + (woZ + z) * g;
+    const float length = n.norm();
+    Frame frame{{}, {}, length > 0 ? Vec3f(n * (side / length)) : ng};
+    const Vec3f s = shading.s - frame.n * frame.n.dot(shading.s);
+    if (const float across = s.norm(); across > 1e-4f) {
+        frame.s = s / across;
+        frame.t =
+            std::copysign(1.f, shading.n.cross(shading.s).dot(shading.t)) * frame.n.cross(frame.s);
+    } else {
+        CoordinateSystem(frame.n, &frame.s, &frame.t);
+    }
+    return frame;
+}
+
+Bsdf Bsdf::Turned(const Vec3f& wo) const {
+    Bsdf turned = *this;
+    turned.shading = TurnedFrame(wo);
+    turned.alongNg = turned.shading.n.dot(ng);
+    return turned;
+}
+
+BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, const Vec3f* below, bool reflects,
+                              LobeSet set) const {
     const bool sameHemisphere = SameHemisphere(wo, wi);
     const bool byShare = hasShares && set == LobeSet::All;
     BsdfValue sum;
     for (int i = 0; i < lobeCount; ++i) {
         VisitLobe(lobes[i], [&]<typename L>(const L& lobe) {
             if constexpr (!L::kIsSpecular) {
-                const bool scatters = IsTwoSided<L>() || reflects != L::kTransmits;
+                const bool scatters = KeepsSide<L>(reflects, sameHemisphere) &&
+                                      (sameHemisphere || !mayTurn || !ReflectsAgain<L>());
                 const bool isSampled = IsTwoSided<L>() || sameHemisphere != L::kTransmits;
-                if (!scatters && !isSampled) return;
-                const BsdfValue v = lobe.Evaluate(wo, wi);
-                if (scatters) sum.f += v.f;
-                sum.pdf += byShare ? shares[i] * v.pdf : v.pdf;
+                const auto add = [&](const BsdfValue& v, float weight) {
+                    if (scatters) sum.f += v.f * weight;
+                    sum.pdf += byShare ? shares[i] * v.pdf : v.pdf;
+                };
+                if (scatters || isSampled) add(lobe.Evaluate(wo, wi), 1);
+                if constexpr (ReflectsAgain<L>())
+                    if (below && scatters)
+                        add(lobe.Evaluate(wo, *below), std::abs(below->z() / wi.z()));
             }
         });
     }
@@ -74,17 +126,56 @@ BsdfValue Bsdf::EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, L
     return Finite(sum);
 }
 
+BsdfValue Bsdf::EvaluateHere(const Vec3f& wo, const Vec3f& woWorld, const Vec3f& wiWorld,
+                             LobeSet set) const {
+    const Vec3f wi = shading.ToLocal(wiWorld);
+    const bool reflects = Reflects(woWorld, wiWorld);
+    if (mayTurn && reflects) {
+        const float height = wiWorld.dot(ng);
+        // Lobes scatter there only above the shading normal's plane.
+        if ((wi.z() - 2 * height * alongNg) * wo.z() > 0) {
+            const Vec3f below = shading.ToLocal(wiWorld - 2 * height * ng);
+            return EvaluateLocal(wo, wi, &below, reflects, set);
+        }
+    }
+    return EvaluateLocal(wo, wi, nullptr, reflects, set);
+}
+
 BsdfValue Bsdf::Evaluate(const Vec3f& woWorld, const Vec3f& wiWorld, LobeSet set) const {
     const Vec3f wo = shading.ToLocal(woWorld);
+    if (mayTurn && IsTurned(wo.z(), woWorld.dot(ng))) [[unlikely]] {
+        const Bsdf turned = Turned(woWorld);
+        const Vec3f local = turned.shading.ToLocal(woWorld);
+        if (local.z() == 0) return {};
+        BsdfValue v = turned.EvaluateHere(local, woWorld, wiWorld, set);
+        // Callers multiply by the cosine with the shading normal.
+        v.f *= std::abs(wiWorld.dot(turned.shading.n) / wiWorld.dot(shading.n));
+        return Finite(v);
+    }
     if (wo.z() == 0) return {};
-    return EvaluateLocal(wo, shading.ToLocal(wiWorld), Reflects(woWorld, wiWorld), set);
+    return EvaluateHere(wo, woWorld, wiWorld, set);
 }
 
 std::optional<BsdfSample> Bsdf::Sample(const Vec3f& woWorld, const Vec2f& u, LobeSet set) const {
+    const Vec3f wo = shading.ToLocal(woWorld);
+    if (mayTurn && IsTurned(wo.z(), woWorld.dot(ng))) [[unlikely]] {
+        const Bsdf turned = Turned(woWorld);
+        const Vec3f local = turned.shading.ToLocal(woWorld);
+        if (local.z() == 0) return {};
+        auto sample = turned.SampleHere(local, woWorld, u, set);
+        if (!sample) return sample;
+        sample->f *= std::abs(sample->wi.dot(turned.shading.n) / sample->wi.dot(shading.n));
+        if (!(sample->f.sum() < kInfinity)) return {};
+        return sample;
+    }
+    if (wo.z() == 0) return {};
+    return SampleHere(wo, woWorld, u, set);
+}
+
+std::optional<BsdfSample> Bsdf::SampleHere(const Vec3f& wo, const Vec3f& woWorld, const Vec2f& u,
+                                           LobeSet set) const {
     const int count = LobeCount(set);
     if (count == 0) return {};
-    const Vec3f wo = shading.ToLocal(woWorld);
-    if (wo.z() == 0) return {};
     int choice;
     float x, probability;
     if (hasShares && set == LobeSet::All) {
@@ -105,18 +196,24 @@ std::optional<BsdfSample> Bsdf::Sample(const Vec3f& woWorld, const Vec2f& u, Lob
                 if (!lobe.Sample(wo, v, &s)) return {};
                 const float sum = s.f.sum();
                 if (!(sum > 0 && sum < kInfinity && s.pdf > 0)) return {};
+                const Vec3f wiWorld = shading.FromLocal(s.wi);
+                if (mayTurn && !s.isTransmission && !Reflects(woWorld, wiWorld)) return {};
                 return BsdfSample{s.f, probability > 0 ? s.pdf * probability : s.pdf / count,
-                                  shading.FromLocal(s.wi), true, s.isTransmission};
+                                  wiWorld, true, s.isTransmission};
             } else {
                 Vec3f wi;
                 if (!lobe.Sample(wo, v, &wi)) return {};
-                const Vec3f wiWorld = shading.FromLocal(wi);
+                Vec3f wiWorld = shading.FromLocal(wi);
                 const bool reflects = Reflects(woWorld, wiWorld);
                 BsdfValue value;
-                if (count > 1)
-                    value = EvaluateLocal(wo, wi, reflects, set);
-                else if (IsTwoSided<L>() || reflects != L::kTransmits)
+                if (mayTurn && ReflectsAgain<L>()) {
+                    if (!reflects) wiWorld -= 2 * wiWorld.dot(ng) * ng;
+                    value = EvaluateHere(wo, woWorld, wiWorld, set);
+                } else if (count > 1) {
+                    value = EvaluateLocal(wo, wi, nullptr, reflects, set);
+                } else if (KeepsSide<L>(reflects, SameHemisphere(wo, wi))) {
                     value = Finite(lobe.Evaluate(wo, wi));
+                }
                 if (!(value.pdf > 0) || IsBlack(value.f)) return {};
                 return BsdfSample{value.f, value.pdf, wiWorld, false, L::kTransmits};
             }

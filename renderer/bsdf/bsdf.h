@@ -19,6 +19,12 @@ struct BsdfSample {
     bool isSpecular, isTransmission;
 };
 
+// A shading normal that the surface does not have, of a map or of interpolation, may send a
+// mirror's light below the surface. Light to such a direction wo is scattered in a turned frame:
+// its normal lies between both normals, where the mirror direction just stays above. (Cycles does
+// so for maps.) Glossy light that is still scattered below is reflected at the surface once more,
+// so that none is lost. Diffuse lobes alone are pbrt-v3's.
+
 class Bsdf {
   public:
     static constexpr int kMaxLobes = 8;  // as pbrt-v3; materials that could need more are refused
@@ -27,12 +33,13 @@ class Bsdf {
     // index of refraction across the surface (1 for opaque surfaces), which only the radiance
     // scale of paths through it needs.
     Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1)
-        : shading(shading), ng(ng), eta(eta) {}
+        : shading(shading), ng(ng), eta(eta), alongNg(shading.n.dot(ng)) {}
 
     // Adds a lobe, at most kMaxLobes of them.
     void Add(const Lobe& lobe) {
         assert(lobeCount < kMaxLobes && lobe.index() != 0);
         specularCount += IsSpecular(lobe);
+        if (alongNg < kUntilted) mayTurn |= Mirrors(lobe);
         lobes[lobeCount++] = lobe;
     }
     // Multiplies f of lobes begin to end - 1.
@@ -56,6 +63,11 @@ class Bsdf {
     const Lobe& At(int i) const { return lobes[i]; }
     float Eta() const { return eta; }
     const Frame& Shading() const { return shading; }
+    // Returns the frame in which light to wo is scattered, and whether it is not Shading().
+    Frame FrameTowards(const Vec3f& wo) const { return IsTurned(wo) ? TurnedFrame(wo) : shading; }
+    bool IsTurned(const Vec3f& wo) const {
+        return mayTurn && IsTurned(wo.dot(shading.n), wo.dot(ng));
+    }
 
     // Returns f and the density with which Sample(wo, ., set) chooses wi; both 0 for specular
     // lobes. Directions are world, unit, pointing away from the surface. As in pbrt-v3 the
@@ -75,14 +87,38 @@ class Bsdf {
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;
 
   private:
+    // Normals whose product is not less are the same.
+    static constexpr float kUntilted = 0.999999f;
+
     // Returns whether world directions are on the same side of the surface, so that lobes reflect.
     bool Reflects(const Vec3f& wo, const Vec3f& wi) const { return wi.dot(ng) * wo.dot(ng) > 0; }
+    // Takes the cosines of wo with the shading and the geometric normal.
+    bool IsTurned(float cosine, float geometric) const {
+        const float mirrored = 2 * cosine * alongNg - geometric;
+        return (geometric < 0 ? -mirrored : mirrored) < LeastHeight(std::abs(geometric));
+    }
+    // Returns the cosine with the geometric normal that a mirror direction has at least; directions
+    // may always leave as flat as they come.
+    static float LeastHeight(float geometric) { return std::min(0.9f * geometric, 0.01f); }
+    Frame TurnedFrame(const Vec3f& wo) const;
+    Bsdf Turned(const Vec3f& wo) const;
+
     const Lobe& Choose(int choice, LobeSet set) const;
-    BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, bool reflects, LobeSet set) const;
+    // As Evaluate() and Sample(), in the shading frame; `wo` is local, `woWorld` is not.
+    BsdfValue EvaluateHere(const Vec3f& wo, const Vec3f& woWorld, const Vec3f& wiWorld,
+                           LobeSet set) const;
+    std::optional<BsdfSample> SampleHere(const Vec3f& wo, const Vec3f& woWorld, const Vec2f& u,
+                                         LobeSet set) const;
+    // `below` is the local direction that the surface reflects to wi, where light is scattered to
+    // it; null where there is none.
+    BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, const Vec3f* below, bool reflects,
+                            LobeSet set) const;
 
     Frame shading;
     Vec3f ng;
     float eta;
+    float alongNg;         // shading.n . ng
+    bool mayTurn = false;  // the normals differ, and a lobe favours the mirror direction
     int lobeCount = 0, specularCount = 0;
     bool hasShares = false;
     std::array<float, kMaxLobes> shares;  // probabilities of lobes, where hasShares

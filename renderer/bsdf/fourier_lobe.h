@@ -45,6 +45,7 @@ class StoredTable {
 
 struct FourierLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false, kIsTwoSided = true;
+    static constexpr bool kTellsSides = true;
     StoredRgb r;         // scales f
     StoredTable stored;  // outlives the lobe
 

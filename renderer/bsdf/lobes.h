@@ -7,8 +7,9 @@
 // a perfectly specular one has
 //     bool Sample(wo, u, &sample)      chooses among the few directions there are.
 // Both demand wo.z != 0 for Sample only. f is for radiance, not importance: transmission scales it
-// by the square of the indices' ratio. A lobe that has kIsTwoSided scatters to both sides. As in
-// pbrt-v3, f of a reflecting lobe does not ask whether wo and wi lie on the same side of the
+// by the square of the indices' ratio. A lobe that has kIsTwoSided scatters to both sides; if it
+// has kTellsSides as well, light that both normals take for reflected, or both for transmitted. As
+// in pbrt-v3, f of a reflecting lobe does not ask whether wo and wi lie on the same side of the
 // shading normal (Bsdf asks the geometric one), the density does.
 #pragma once
 
@@ -205,6 +206,20 @@ void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe);
 template <typename F>
 [[gnu::always_inline]] inline auto VisitLobe(const Lobe& lobe, F&& f) {
     return Visit<1>(lobe, f);
+}
+
+// Returns whether a lobe favours the mirror direction.
+template <typename L>
+constexpr bool IsMirrorLike() {
+    constexpr bool isDiffuse = std::is_same_v<L, LambertianReflection> ||
+                               std::is_same_v<L, OrenNayar> || std::is_same_v<L, DisneyDiffuse> ||
+                               std::is_same_v<L, DiffuseExit> || std::is_same_v<L, CharlieSheen>;
+    constexpr bool reflects =
+        !L::kTransmits || std::is_same_v<L, FresnelSpecular> || std::is_same_v<L, ThinSpecular>;
+    return reflects && !isDiffuse && !requires { L::kIsTwoSided; };
+}
+inline bool Mirrors(const Lobe& lobe) {
+    return VisitLobe(lobe, []<typename L>(const L&) { return IsMirrorLike<L>(); });
 }
 
 inline bool IsSpecular(const Lobe& lobe) {

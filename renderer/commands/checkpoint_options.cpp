@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
 
@@ -32,7 +33,7 @@ CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options) {
     return app
         .add_option("--checkpoint-interval", options->interval,
                     "Save the checkpoint every S seconds")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(Between(0.1, 1e6))
         ->type_name("S")
         ->capture_default_str();
 }

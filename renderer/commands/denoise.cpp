@@ -8,9 +8,11 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/denoise/dependence.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/results/channel_names.h"
 #include "renderer/results/denoiser_channels.h"
 #include "renderer/results/image_files.h"
 
@@ -27,7 +29,8 @@ struct Options {
 constexpr const char* kFooter =
     R"(IN.exr is an image of `lull render --denoise-layers`, with both half buffers and their features. For
 images of other renderers, give two renders with different seeds and equal sample counts, with R, G, B
-and, for sharp results, albedo.R .G .B, N.X .Y .Z and Z.
+(or LAYER.Combined, or Y) and, for sharp results, albedo.R .G .B, N.X .Y .Z and Z (or Blender's passes
+Denoising Albedo, Normal and Depth).
 
 OUT.exr has R, G, B denoised, the mean of the samples as noisy.R .G .B, the estimated standard error
 of each pixel in L* as error, and the other channels of IN.exr. OUT.png is the same image for displays.
@@ -89,9 +92,15 @@ ExitCode RunDenoise(Options options) {
         throw Error("--half " + options.half + ": the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
-    NoisyPicture picture =
-        options.half.empty() ? ReadPicture(exr, options.input)
-                             : ReadPicture(exr, options.input, ReadExr(options.half), options.half);
+    NoisyPicture picture;
+    if (options.half.empty()) {
+        picture = ReadPicture(exr, options.input);
+    } else {
+        ExrImage half = ReadExr(options.half);
+        UseOwnNames(options.input, &exr);
+        UseOwnNames(options.half, &half);
+        picture = ReadPicture(exr, options.input, half, options.half);
+    }
 
     CheckHalves(options, exr, picture);
 
@@ -136,7 +145,7 @@ void AddDenoiseCommand(CLI::App& app, Command* command) {
     denoise
         ->add_option("--block", options->blockSize,
                      "Set the side of the blocks with an error each, in pixels")
-        ->check(CLI::Range(10, 1 << 16))
+        ->check(Between(10, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
     denoise->add_flag("--quiet", options->quiet, "Print only errors and the names of files");

@@ -6,6 +6,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/number_option.h"
 
 namespace lull {
 
@@ -16,7 +17,7 @@ void AddGuideOptions(CLI::App& app, GuideOptions* options) {
         "lights as each place sees them");
     app.add_option("--guide-memory", options->megabytes,
                    "Limit the memory of the guiding distribution, in MB")
-        ->check(CLI::Range(2, 1 << 16))
+        ->check(Between(2, 1 << 16))
         ->type_name("MB")
         ->needs(guide)
         ->capture_default_str();

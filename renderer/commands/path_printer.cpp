@@ -7,6 +7,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/scene/scene_names.h"
 
 namespace lull {
@@ -78,7 +79,7 @@ void AddPathOptions(CLI::App& app, PathOfSample* options) {
             ->type_name("x,y");
     app.add_option("--sample", options->sample, "Choose the sample of --pixel, from 0")
         ->needs(pixel)
-        ->check(CLI::Range(0, (1 << 24) - 1))
+        ->check(Between(0, (1 << 24) - 1))
         ->type_name("K")
         ->capture_default_str();
 }

@@ -8,6 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/number_option.h"
 
 namespace lull {
 
@@ -45,7 +46,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         })
         ->type_name("HOST:PORT");
     app.add_option("--preview", options->preview, "Write the current image every SECONDS")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(Between(0.1, 1e6))
         ->type_name("SECONDS");
 }
 

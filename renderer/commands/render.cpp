@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
+#include <sstream>
 
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
@@ -111,6 +112,56 @@ RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) 
     if (const int frame = request.frameNumber; frame > 0)
         return NameFiles(NumberedFile(output, frame), NumberedFile(request.report, frame));
     return NameFiles(output, request.report);
+}
+
+// Returns all that decides the files of a frame, by which --resume knows it; a line each.
+std::string SettingsOf(const PreparedRender& p) {
+    const RenderRequest& request = p.request;
+    const PictureFormat& format = request.pictures.format;
+    RenderIdentity identity = p.render.Identity();
+    identity["aov"] = TextOf(request.aovs);
+    identity["light groups"] = NameOf(p.lightGroups);
+    identity["denoise"] = request.denoise ? "yes" : "no";
+    identity["denoise-layers"] = request.denoiseLayers ? "yes" : "no";
+    identity["png-bits"] = std::to_string(format.pngBits);
+    identity["tone-map"] =
+        format.view ? std::string(format.view->Name()) : std::to_string(int(format.toneMap));
+    identity["transparent"] = format.isTransparent ? "yes" : "no";
+    identity["exr-half"] = format.exrHalf ? "yes" : "no";
+    return TextOf(identity);
+}
+
+// Returns the first line of a text that another has not, for a message.
+std::string FirstDifference(const std::string& text, const std::string& other) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (("\n" + other).find("\n" + line + "\n") == std::string::npos) return line;
+    return "";
+}
+
+// Returns whether all files of a frame are there, whole. Throws Error where they are of another
+// render.
+bool IsFinished(const PreparedRender& p) {
+    const RenderFiles& files = p.files;
+    for (const std::string& file :
+         {files.exr, files.png, files.sppMap, files.thresholds, files.report})
+        if (!file.empty() && !IsThere(file)) return false;
+    std::string found;
+    try {
+        const ExrImage image = ReadExr(files.exr);
+        const auto at = image.attributes.find(kSettingsAttribute);
+        if (at == image.attributes.end()) return false;  // it was interrupted
+        if (const auto* text = std::get_if<std::string>(&at->second)) found = *text;
+    } catch (const Error&) {
+        return false;
+    }
+    const std::string wanted = SettingsOf(p);
+    if (found == wanted) return true;
+    throw Error(
+        fmt::format("{}: was rendered with other settings ({} there, {} here); remove the "
+                    "frames to render them again, or name others by -o",
+                    files.exr, Printable(FirstDifference(found, wanted)),
+                    Printable(FirstDifference(wanted, found))));
 }
 
 // Checks all that can be wrong before the work begins.
@@ -287,6 +338,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
+    const bool isFrame = p.request.frameNumber > 0 && !settings.checkpoint.file.empty();
     const ResultFiles written = WriteFiles(
         p.files, {{*p.render.scene, p.render.provenance},
                   session->TheFilm(),
@@ -297,7 +349,8 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
                   denoised.image ? &*denoised.image : nullptr,
                   denoised.halves,
                   p.render.input.description,
-                  p.request.pictures.format});
+                  p.request.pictures.format,
+                  isFrame && !result.cancelled ? SettingsOf(p) : ""});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;
@@ -318,21 +371,24 @@ ExitCode RunPath(const RenderRequest& request, Job* ranks) {
     return kDone;
 }
 
-// Renders one image.
-ExitCode RunImage(const RenderRequest& request, Job* ranks) {
+// Renders one image, unless it is a frame that is finished.
+ExitCode RunImage(const RenderRequest& request, Job* ranks, const std::string& note = "") {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
+    const CheckpointOptions& checkpoint = request.render.checkpoint;
+    if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
+        return kDone;
+    if (!note.empty()) TalkOf(request.render).Note(note);
     Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();
     return p->render.Leads() ? Write(*p, result, &session) : kDone;
 }
 
-// Renders all frames, each with a checkpoint of its own. To be resumed are those without an image,
-// and those whose checkpoint has been left.
+// Renders all frames, each with a checkpoint of its own. To be resumed are those without all of
+// their files, and those whose checkpoint has been left.
 ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
     if (ranks->Count() > 1)
         throw UsageError("--frames: needs one process; give each rank frames of its own");
-    const Talk talk = TalkOf(request.render);
     const int count = request.sequence->Count();
     for (int number = 1; number <= count; ++number) {
         RenderRequest frame = request;
@@ -341,13 +397,10 @@ ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
         frame.render.scene.view.frame = time;
         CheckpointOptions& checkpoint = frame.render.checkpoint;
         checkpoint.file = NumberedFile(checkpoint.file, number);
-        const std::string image = NumberedFile(
-            request.output.empty() ? DefaultOutput("", request.render.scene.file) : request.output,
-            number);
-        if (checkpoint.resume && IsThere(image) && !IsThere(checkpoint.file)) continue;
+        std::string note;
         if (!request.render.quiet)
-            talk.Note(fmt::format("frame {} of {}, at {:.6g} s", number, count, time));
-        if (const ExitCode code = RunImage(frame, ranks); code != kDone) return code;
+            note = fmt::format("frame {} of {}, at {:.6g} s", number, count, time);
+        if (const ExitCode code = RunImage(frame, ranks, note); code != kDone) return code;
     }
     return kDone;
 }

@@ -55,6 +55,7 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         AddLightLayers(*render.layers.lights, film, render.denoised,
                        render.pictures.isTransparent ? render.layers.mattes : nullptr, &extra);
     extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
+    if (!render.settings.empty()) extra.attributes[kSettingsAttribute] = render.settings;
     ResultFiles results;
     const int64_t clamped =
         WriteImage({files.exr, files.png}, origin, film, render.denoised, render.layers.mattes,

@@ -7,6 +7,9 @@
 
 namespace lull {
 
+// The attribute of an EXR that has FinishedRender::settings.
+inline constexpr const char* kSettingsAttribute = "settings";
+
 // Names the files; a report that is not wanted is empty.
 struct RenderFiles {
     std::string exr, png, sppMap, thresholds, ranges, report;
@@ -37,6 +40,7 @@ struct FinishedRender {
     const std::vector<ExrChannel>& halves;  // inputs of `lull denoise`
     const Description& description;
     const PictureFormat& pictures;
+    std::string settings{};  // for the header of the EXR, by which a finished one is known; or none
 };
 
 // Writes all files, each whole or not at all; a report whose name ends in .html as a page. Those of

@@ -81,7 +81,9 @@ void RenderJob::Compile() {
     if (settings.scene.integrator == IntegratorKind::Bdpt &&
         settings.estimator == Estimator::PbrtV3)
         throw UsageError(
-            "--estimator pbrt-v3 is that of paths from the camera; leave --integrator bdpt out");
+            "--integrator bdpt has no estimator of pbrt-v3's, by which lull record renders unless "
+            "told "
+            "otherwise; give --estimator combined, or leave --integrator bdpt out");
     provenance = MakeProvenance(settings, *scene, input.film);
 }
 

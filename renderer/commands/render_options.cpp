@@ -8,6 +8,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/light_group_options.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/render/film_picture.h"
 #include "stopping/rules/denoised.h"
@@ -77,7 +78,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
             ->type_name("RULE");
     AddCautionOption(app, &o->render.caution);
     app.add_option("--spp", o->spp, "Render all blocks with N spp, as --stop fixed:N")
-        ->check(CLI::Range(1, 1 << 24))
+        ->check(Between(1, 1 << 24))
         ->type_name("N")
         ->excludes(stop);
     app.add_option("--report", o->report, "Write every decision, as a page or as JSON")
@@ -111,11 +112,13 @@ void CheckRequest(const RenderRequest& request) {
     if (request.path.pixel && request.guide.mode != GuideMode::Off)
         throw UsageError("--pixel: guided paths depend on all earlier samples; leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.
-    if (request.denoiseLayers && request.spp > 0 && request.spp < int(kLeastDenoisedSpp))
+    const int cap = request.render.cap.value_or(int(kLeastDenoisedSpp));
+    const bool isSpp = request.spp > 0 && request.spp <= cap;
+    if (const int spp = isSpp ? request.spp : cap;
+        request.denoiseLayers && spp < int(kLeastDenoisedSpp))
         throw UsageError(
-            fmt::format("--spp {}: --denoise-layers needs at least {}, to estimate the "
-                        "noise",
-                        request.spp, kLeastDenoisedSpp));
+            fmt::format("--{} {}: --denoise-layers needs at least {}, to estimate the noise",
+                        isSpp ? "spp" : "cap", spp, kLeastDenoisedSpp));
 }
 
 }  // namespace lull

@@ -9,6 +9,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/number_option.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 
@@ -22,7 +23,7 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
 void AddCautionOption(CLI::App& app, double* caution) {
     const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
     app.add_option("--caution", *caution, "Divide the noise threshold of " + rules + " by X")
-        ->check(CLI::Range(0.01, 100.0))
+        ->check(Between(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();
 }
@@ -30,14 +31,14 @@ void AddCautionOption(CLI::App& app, double* caution) {
 void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Stop every block at N spp at the latest [10000]")
-        ->check(CLI::Range(1, 1 << 24))
+        ->check(Between(1, 1 << 24))
         ->type_name("N");
     app.add_option("--pass", s->schedule.passLength, "Decide every N spp")
-        ->check(CLI::Range(1, 1 << 20))
+        ->check(Between(1, 1 << 20))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--block", s->schedule.blockSize, "Set the side of the blocks, in pixels")
-        ->check(CLI::Range(1, 1 << 16))
+        ->check(Between(1, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
 
@@ -45,7 +46,7 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         AddChoiceOption(app, "--sampler", &s->sampler, "Choose the sampler [the scene's]");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")
-        ->check(CLI::NonNegativeNumber)
+        ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the names of files");
@@ -81,7 +82,7 @@ Rule ReadRule(const std::string& option, const std::string& rule, const RenderSe
                     ": needs --denoise of lull render; lull compare and lull bench add a denoised "
                     "image with --denoise");
     const ScheduleOptions& schedule = settings.schedule;
-    const RuleContext context{.passSpp = std::min(schedule.passLength, schedule.cap),
+    const RuleContext context{.passSpp = schedule.passLength,
                               .blockCount = int(MakeBlocks(region, schedule).size()),
                               .cap = schedule.cap,
                               .sceneName = SceneName(settings.scene.file),

@@ -8,6 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 #include "renderer/render/provenance.h"
@@ -94,10 +95,10 @@ void AddFilmOptions(CLI::App& app, FilmOverrides* film) {
 
 void AddCompileOptions(CLI::App& app, CompileOptions* options) {
     app.add_option("--max-depth", options->maxDepth, "Limit paths to N bounces [the scene's]")
-        ->check(CLI::Range(0, 1000000))
+        ->check(Between(0, 1000000))
         ->type_name("N");
     app.add_option("--threads", options->threads, "Render on N threads; 0: one per core")
-        ->check(CLI::Range(0, 4096))
+        ->check(Between(0, 4096))
         ->type_name("N")
         ->capture_default_str();
     AddChoiceOption(app, "--filtering", &options->filtering,
@@ -107,7 +108,7 @@ void AddCompileOptions(CLI::App& app, CompileOptions* options) {
 void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("--exposure", options->exposure,
                    "Multiply the radiance by 2^EV, in the EXR as well [0]")
-        ->check(CLI::Range(-100., 100.))
+        ->check(Between(-100., 100.))
         ->type_name("EV");
     auto* environment =
         app.add_option("--environment", options->environment,
@@ -116,13 +117,13 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("--environment-rotation", options->environmentRotation,
                    "Rotate the environment map, in degrees, counterclockwise from above [0]")
         ->needs(environment)
-        ->check(CLI::Range(-360., 360.))
+        ->check(Between(-360., 360.))
         ->type_name("DEG");
 }
 
 void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
     auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animations at this time")
-                      ->check(CLI::Range(0., 1e9))
+                      ->check(Between(0., 1e9))
                       ->type_name("SECONDS");
     app.add_option("--animation", view->animation,
                    "glTF: choose one animation, by name or number from 0 [all]")
@@ -131,7 +132,7 @@ void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
     app.add_option("--shutter", view->shutter,
                    "glTF: open the shutter at --frame for this time [0]")
         ->needs(frame)
-        ->check(CLI::Range(0., 1e9))
+        ->check(Between(0., 1e9))
         ->type_name("SECONDS");
 }
 

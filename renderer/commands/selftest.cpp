@@ -9,6 +9,7 @@
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/render/progress.h"
 #include "stopping/rules/learned.h"
@@ -144,6 +145,7 @@ void AddSelftestCommand(CLI::App& app, Command* command) {
     selftest
         ->add_option("--seed", options->cases.seed,
                      "Seed the random numbers; a failure names its seed")
+        ->check(WholeNumber().description(""))
         ->capture_default_str();
     selftest->add_flag("--long", options->cases.isLong,
                        "Take 10 to 250 times as many samples, which takes hours");

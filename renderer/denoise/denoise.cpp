@@ -74,7 +74,7 @@ DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
     for (size_t i = 0; i < result.picture.values.size(); ++i)
         result.picture.values[i] =
             Sane((result.halves.a.values[i] + result.halves.b.values[i]) / 2);
-    GiveBack(fireflies, &result.picture);
+    result.returned = GiveBack(fireflies, &result.picture);
     return result;
 }
 

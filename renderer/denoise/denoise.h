@@ -24,6 +24,7 @@ struct DenoisedPicture {
     Halves halves;    // each half denoised; their mean is the picture without fireflies
     Halves noisy;     // the halves of the samples without fireflies, which judge them
     Planes variance;  // of a pixel of these, R, G, B
+    Planes returned;  // the standard deviation of the fireflies' light in the picture, luminance
 };
 
 // Estimates the variance of a pixel of either half, R, G, B, > 0, from that of the mean (see

@@ -74,6 +74,7 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         Add(denoised.picture, &sum.picture);
         Add(denoised.halves, &sum.halves);
         Add(denoised.noisy, &sum.noisy);
+        Add(denoised.returned, &sum.returned);
         DenoiserResult own = Measured(std::move(denoised), blocks, {.withDeviation = false});
         result.groups.push_back(std::move(own.rgb));
         errors.push_back(std::move(own.blocks));

@@ -6,9 +6,10 @@ namespace lull {
 
 namespace {
 
-constexpr int kScaleRadius = 4;    // pixels, over which differences are measured
-constexpr int kSpreadRadius = 20;  // of each of two box filters, one after the other
-constexpr int kRounds = 2;         // as fireflies hide each other
+constexpr int kScaleRadius = 4;        // pixels, over which differences are measured
+constexpr int kSpreadRadius = 20;      // of each of two box filters, one after the other
+constexpr int kRounds = 2;             // as fireflies hide each other
+constexpr float kMostReturned = 0.5f;  // of a pixel's brightness, by one firefly
 
 // Returns the largest luminance of each pixel and its eight neighbours.
 Planes MostAround(const Planes& image) {
@@ -64,24 +65,40 @@ std::vector<Firefly> TakeFireflies(float limit, Halves* halves) {
     return taken;
 }
 
-void GiveBack(const std::vector<Firefly>& fireflies, Planes* picture) {
-    if (fireflies.empty()) return;
+Planes GiveBack(const std::vector<Firefly>& fireflies, Planes* picture) {
+    Planes deviation(picture->width, picture->height, 1);
+    if (fireflies.empty()) return deviation;
     Planes share(picture->width, picture->height, 1);
     for (size_t i = 0; i < share.Area(); ++i)
         share.values[i] = std::clamp(LuminanceOf(*picture, i), 1e-4f, 1.f);
     const auto spread = [](Planes image) {
         return BoxSum(BoxSum(std::move(image), kSpreadRadius), kSpreadRadius);
     };
-    // The energy of a pixel is divided among its neighbours in proportion to brightness.
+    // The energy of a pixel is divided among its neighbours in proportion to brightness. The
+    // squares of its parts are at most these times the largest weight of the spread.
+    constexpr float kLargestWeight = Sqr(2 * kSpreadRadius + 1.f);
     const Planes around = spread(share);
-    for (int c = 0; c < kColours; ++c) {
-        Planes given(share.width, share.height, 1);
-        for (const Firefly& f : fireflies)
-            given.values[f.pixel] += f.excess[c] / around.values[f.pixel];
-        given = spread(std::move(given));
-        for (size_t i = 0; i < share.Area(); ++i)
-            picture->Plane(c)[i] += given.values[i] * share.values[i];
+    Planes given(share.width, share.height, kColours), squares(share.width, share.height, 1);
+    for (const Firefly& f : fireflies) {
+        // More of one would not be given anyway, and its square would be beyond floats.
+        constexpr float kMost = 1e9f;
+        const Rgb whole = f.excess / around.values[f.pixel];
+        const Rgb part = whole * std::min(1.f, kMost / std::max(Luminance(whole), 1.f));
+        for (int c = 0; c < kColours; ++c) given.Plane(c)[f.pixel] += part[c];
+        squares.values[f.pixel] += Sqr(Luminance(part));
     }
+    given = spread(std::move(given));
+    squares = spread(std::move(squares));
+    for (size_t i = 0; i < share.Area(); ++i) {
+        const float y = LuminanceOf(given, i), variance = kLargestWeight * squares.values[i];
+        if (!(y > 0) || !(variance > 0)) continue;
+        const float count = Sqr(y) / variance;  // of fireflies, of equal size
+        const float kept = std::min(1.f, kMostReturned * count / y) * share.values[i];
+        for (int c = 0; c < kColours; ++c) picture->Plane(c)[i] += given.Plane(c)[i] * kept;
+        deviation.values[i] =
+            std::min(std::sqrt(variance) * share.values[i], LuminanceOf(*picture, i));
+    }
+    return deviation;
 }
 
 }  // namespace lull

@@ -205,9 +205,14 @@ Planes StandardError(const DenoisedPicture& denoised, const Planes& structure) {
     const EstimatedError error = Measure(denoised, false);
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
     Planes result = BoxMean(error.least, kSmoothRadius);
-    for (size_t i = 0; i < result.Area(); ++i)
-        result.values[i] = std::max(std::sqrt(std::max({0.f, result.values[i], squared.values[i]})),
-                                    std::abs(structure.values[i]));
+    for (size_t i = 0; i < result.Area(); ++i) {
+        const float y = LuminanceOf(denoised.picture, i);
+        const float returned = DisplayedLightness(y).lightness -
+                               DisplayedLightness(y - denoised.returned.values[i]).lightness;
+        result.values[i] =
+            std::max({std::sqrt(std::max({0.f, result.values[i], squared.values[i]})),
+                      std::abs(structure.values[i]), returned});
+    }
     return result;
 }
 

@@ -36,7 +36,7 @@ struct LightnessError {
 LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
-// with that of missing structure (EstimatedError::structure).
+// with that of missing structure (EstimatedError::structure) and of fireflies.
 Planes StandardError(const DenoisedPicture&, const Planes& structure);
 
 }  // namespace lull

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "renderer/base/color.h"
@@ -39,8 +40,10 @@ inline float LuminanceOf(const Planes& image, size_t i) {
 
 inline constexpr float kLargest = 1e18f;  // its square is finite
 
-// Returns 0 for negative values and NaN, and at most kLargest.
-inline float Sane(float x) { return x > 0 ? std::min(x, kLargest) : 0; }
+// Returns 0 for values that are negative or not finite, and at most kLargest.
+inline float Sane(float x) {
+    return x > 0 && x <= std::numeric_limits<float>::max() ? std::min(x, kLargest) : 0;
+}
 
 // Returns the values pixel by pixel, with adjacent channels.
 std::vector<float> Interleaved(const Planes&);

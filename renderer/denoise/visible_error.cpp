@@ -40,11 +40,15 @@ VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const Estimate
     const LightnessError lightness = MeasureLightnessError(error, block);
     const ImageTile tile{block.min.x(), block.min.y(), block.max.x(), block.max.y()};
     const Planes picture = Crop(denoised.picture, tile), structure = Crop(error.structure, tile);
+    const Planes returned = Crop(denoised.returned, tile);
     const Halves halves{Crop(denoised.halves.a, tile), Crop(denoised.halves.b, tile)};
     const Halves noisy{Crop(error.noisy.a, tile), Crop(error.noisy.b, tile)};
-    std::vector<float> slope;  // of lightness by luminance
-    for (size_t i = 0; i < picture.Area(); ++i)
-        slope.push_back(DisplayedLightness(LuminanceOf(picture, i)).slope);
+    std::vector<float> slope, sure;  // of lightness by luminance; share of the luminance
+    for (size_t i = 0; i < picture.Area(); ++i) {
+        const float y = LuminanceOf(picture, i);
+        slope.push_back(DisplayedLightness(y).slope);
+        sure.push_back(y > 0 ? std::max(0.f, 1 - returned.values[i] / y) : 1);
+    }
     const VisibleReference reference =
         PrepareReference(Interleaved(picture), block.Width(), block.Height(), display);
     const auto ratioOf = [&](double magnitude) {
@@ -57,8 +61,9 @@ VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const Estimate
             const float lacks = structure.values[i] + missing.values[i];
             const float luminance = slope[i] > 0 ? lacks / slope[i] : 0;
             for (int c = 0; c < kColours; ++c)
-                other.Plane(c)[i] +=
-                    ratio * ((halves.a.Plane(c)[i] - halves.b.Plane(c)[i]) / 2) + luminance;
+                other.Plane(c)[i] = sure[i] * picture.Plane(c)[i] +
+                                    ratio * ((halves.a.Plane(c)[i] - halves.b.Plane(c)[i]) / 2) +
+                                    luminance;
         }
         return PooledDifference(FindVisibleDifference(Interleaved(other), reference));
     };

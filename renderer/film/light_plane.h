@@ -16,9 +16,10 @@ namespace lull {
 struct LightPixel {
     std::array<int64_t, 3> sum = {}, halfSum = {};
     int64_t squares = 0;  // of luminance
+    uint64_t rejected = 0;
 };
 
-// The pixels of a film's region: 56 bytes a pixel.
+// The pixels of a film's region: 64 bytes a pixel.
 class LightPlane : public PixelPlane<LightPixel> {
   public:
     // Values are about as large as `unit`, > 0, W/(m^2 sr): differences below 2^-24 of it are lost,
@@ -41,6 +42,11 @@ class LightPlane : public PixelPlane<LightPixel> {
         const double y = double(Luminance(radiance));
         const auto squares = int64_t(std::llround(std::min(y * y / squaresPerStep, kMostSquares)));
         std::atomic_ref(pixel.squares).fetch_add(squares, std::memory_order_relaxed);
+    }
+
+    // Counts light that was no number, or negative, from any thread.
+    void Reject(const Vec2i& p) {
+        std::atomic_ref(At(p).rejected).fetch_add(1, std::memory_order_relaxed);
     }
 
     // Light of a pixel, in W/(m^2 sr).

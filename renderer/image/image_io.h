@@ -16,9 +16,10 @@ namespace lull {
 // Reads the first image of a file: PNG, OpenEXR, or any other format that OpenImageIO knows. 8-bit,
 // half and float texels stay as they are, everything else becomes float (16-bit integers: 0 to 1).
 // Values are neither linearised nor multiplied by alpha. Of 4 or more channels the first 4 are read
-// if the last of these is alpha, else the first 3; an EXR's data window is the image, as in
-// pbrt-v3. Throws Error with the path and the reason: missing, unreadable, truncated, larger than
-// 2^16 a side, too short for its size, or a format whose module is not installed.
+// if the last of these is alpha, else the first 3. An EXR's display window is the image, which is 0
+// outside the data window. Throws Error with the path and the reason: missing, unreadable,
+// truncated, larger than 2^16 a side, too short for its size, or a format whose module is not
+// installed.
 Image ReadImage(const std::string& path);
 
 // Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,

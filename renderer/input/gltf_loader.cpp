@@ -71,6 +71,7 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         ShapeEntity shape = MakeShapeEntity(std::move(triangles), loc);
         shape.material = material.index;
         shape.areaLight = material.emission;
+        if (shape.areaLight) ParameterWriter(&shape.parameters, loc).Bool("frontbywinding", true);
         shape.insideMedium = material.medium;
         for (const Parameter& parameter : material.coverage.All()) shape.parameters.Add(parameter);
         result.shapes.push_back(std::move(shape));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "renderer/files/file_contents.h"
+#include "renderer/files/text_file.h"
 
 namespace lull {
 namespace {
@@ -19,13 +20,15 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
     const FileContents contents = ReadFile(path, loc);
     FileLoc place{std::make_shared<const std::string>(path), 1};
     std::vector<float> numbers;
-    const char* pos = contents.View().data();
-    const char* const end = pos + contents.size;
+    const std::string_view text = CleanText(contents.View(), {place.file, 0});
+    const char* pos = text.data();
+    const char* const end = pos + text.size();
     while (pos < end) {
         if (*pos == '#') {
-            pos = std::find(pos, end, '\n');
+            pos = std::find_if(pos, end, [](char c) { return c == '\n' || c == '\r'; });
         } else if (IsSeparator(*pos)) {
-            if (*pos++ == '\n') ++place.line;
+            const char c = *pos++;
+            if (c == '\n' || (c == '\r' && (pos == end || *pos != '\n'))) ++place.line;
         } else {
             const char* const stop =
                 std::find_if(pos, end, [](char c) { return IsSeparator(c) || c == '#'; });

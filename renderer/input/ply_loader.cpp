@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "renderer/files/text_file.h"
 #include "renderer/input/inflate.h"
 #include "renderer/input/ply/ply_cursor.h"
 #include "renderer/input/ply/ply_header.h"
@@ -153,52 +155,135 @@ uint32_t ReadIndex(PlyType type, PlyCursor& cursor) {
     return uint32_t(index);
 }
 
-// Reads one list of vertex indices and adds its triangles.
-void ReadFace(const PlyProperty& list, PlyCursor& cursor, MeshData* mesh, Warnings& warnings) {
-    const size_t count = cursor.ReadListCount(list);
-    if (count == 0) throw Error(cursor.loc, "a face has no vertices");
-    if (count != 3 && count != 4) {
-        for (size_t i = 0; i < count; ++i) cursor.Read(list.type);
-        warnings.Add(cursor.loc, "face left out that is neither triangle nor quad",
-                     "it has " + std::to_string(count) + " vertices");
-        return;
-    }
-    std::array<uint32_t, 4> v;
-    for (size_t i = 0; i < count; ++i) v[i] = ReadIndex(list.type, cursor);
-    mesh->triangles.push_back({v[0], v[1], v[2]});
-    if (count == 4) mesh->triangles.push_back({v[0], v[2], v[3]});
+// One row of the faces.
+struct Face {
+    size_t corners = 0;
+    std::array<uint32_t, 4> vertices;
+    std::vector<float> uvs;  // of the corners; empty: it has none
+    int index = 0;
+};
+
+// Names of the lists of texture coordinates, two a corner, as MeshLab and others write them.
+constexpr std::string_view kWedgeUvs[] = {"texcoord", "texcoords", "texture_uv", "texture_coords",
+                                          "uv",       "uvs",       "st",         "t"};
+
+bool IsIndices(const PlyProperty& property) {
+    return property.isList &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+bool IsWedgeUvs(const PlyProperty& property) {
+    return property.isList && std::ranges::count(kWedgeUvs, property.name) > 0;
+}
+bool IsFaceIndex(const PlyProperty& property) {
+    return property.name == "face_indices" && !property.isList;
 }
 
-void ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh, Warnings& warnings) {
-    const auto isIndices = [](const PlyProperty& property) {
-        return property.isList &&
-               (property.name == "vertex_indices" || property.name == "vertex_index");
+void ReadIndices(const PlyProperty& list, PlyCursor& cursor, Face* face) {
+    face->corners = cursor.ReadListCount(list);
+    if (face->corners == 0) throw Error(cursor.loc, "a face has no vertices");
+    const bool isModelled = face->corners == 3 || face->corners == 4;
+    for (size_t i = 0; i < face->corners; ++i)
+        if (isModelled)
+            face->vertices[i] = ReadIndex(list.type, cursor);
+        else
+            cursor.Read(list.type);
+}
+
+void ReadWedgeUvs(const PlyProperty& list, PlyCursor& cursor, Face* face) {
+    face->uvs.resize(cursor.ReadListCount(list));
+    for (float& value : face->uvs) value = float(cursor.Read(list.type));
+}
+
+Face ReadFace(const PlyElement& element, PlyCursor& cursor) {
+    Face face;
+    for (const PlyProperty& property : element.properties) {
+        if (IsIndices(property)) {
+            ReadIndices(property, cursor, &face);
+        } else if (IsWedgeUvs(property)) {
+            ReadWedgeUvs(property, cursor, &face);
+        } else if (IsFaceIndex(property)) {
+            const double value = cursor.Read(property.type);
+            if (!(std::abs(value) <= double(kMostElements)))
+                throw Error(cursor.loc, "a face index is beyond the range of an integer");
+            face.index = int(value);
+        } else {
+            cursor.SkipProperty(property);
+        }
+    }
+    return face;
+}
+
+// Texture coordinates of the corners of triangles; none where they are those of the vertices.
+using WedgeUvs = std::vector<std::optional<std::array<Vec2f, 3>>>;
+
+// Adds the triangles of a face; `uvs`, if there are any, keep to them.
+void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs,
+             Warnings& warnings) {
+    if (face.corners != 3 && face.corners != 4) {
+        warnings.Add(loc, "face left out that is neither triangle nor quad",
+                     "it has " + std::to_string(face.corners) + " vertices");
+        return;
+    }
+    const bool hasUvs = face.uvs.size() == 2 * face.corners;
+    if (uvs && !hasUvs && !face.uvs.empty())
+        warnings.Add(loc, "texture coordinates of a face left out: it needs two for each vertex",
+                     "it has " + std::to_string(face.uvs.size()) + " for " +
+                         std::to_string(face.corners) + " vertices");
+    const auto add = [&](size_t a, size_t b, size_t c) {
+        mesh->triangles.push_back({face.vertices[a], face.vertices[b], face.vertices[c]});
+        if (!uvs) return;
+        const auto at = [&](size_t i) { return Vec2f(face.uvs[2 * i], face.uvs[2 * i + 1]); };
+        uvs->emplace_back();
+        if (hasUvs) uvs->back() = {at(a), at(b), at(c)};
     };
-    if (std::ranges::count_if(element.properties, isIndices) != 1)
+    add(0, 1, 2);
+    if (face.corners == 4) add(0, 2, 3);
+}
+
+// Returns the uvs of the corners, one entry a triangle, where faces have lists of them.
+WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
+                   Warnings& warnings) {
+    if (std::ranges::count_if(element.properties, IsIndices) != 1)
         throw Error({cursor.loc.file}, "the faces of the PLY file need one list vertex_indices");
     // Kept to the triangles below, since a face may become two of them or none.
-    const bool hasFaceIndices = std::ranges::any_of(element.properties, [](const auto& property) {
-        return property.name == "face_indices" && !property.isList;
-    });
+    const bool hasFaceIndices = std::ranges::any_of(element.properties, IsFaceIndex);
+    const bool hasUvs = std::ranges::any_of(element.properties, IsWedgeUvs);
+    WedgeUvs uvs;
     mesh->triangles.reserve(size_t(element.count));
     for (int64_t i = 0; i < element.count; ++i) {
         i += ReadTrianglesInBulk(element, element.count - i, cursor, mesh);
         if (i == element.count) break;
-        int faceIndex = 0;
-        for (const PlyProperty& property : element.properties) {
-            if (isIndices(property)) {
-                ReadFace(property, cursor, mesh, warnings);
-            } else if (property.name == "face_indices" && !property.isList) {
-                const double value = cursor.Read(property.type);
-                if (!(std::abs(value) <= double(kMostElements)))
-                    throw Error(cursor.loc, "a face index is beyond the range of an integer");
-                faceIndex = int(value);
-            } else {
-                cursor.SkipProperty(property);
-            }
-        }
-        if (hasFaceIndices) mesh->faceIndices.resize(mesh->triangles.size(), faceIndex);
+        const Face face = ReadFace(element, cursor);
+        AddFace(face, cursor.loc, mesh, hasUvs ? &uvs : nullptr, warnings);
+        if (hasFaceIndices) mesh->faceIndices.resize(mesh->triangles.size(), face.index);
     }
+    return uvs;
+}
+
+// Gives the corners of triangles uvs of their own: a vertex becomes as many as it has uvs.
+void SplitVertices(const WedgeUvs& uvs, MeshData* mesh) {
+    if (std::ranges::none_of(uvs, [](const auto& uv) { return uv.has_value(); })) return;
+    constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+    const std::vector<Vec3f> positions = std::exchange(mesh->positions, {});
+    const std::vector<Vec3f> normals = std::exchange(mesh->normals, {});
+    const std::vector<Vec2f> own = std::exchange(mesh->uvs, {});
+    // The copies of a vertex are a list that begins with the latest.
+    std::vector<uint32_t> latest(positions.size(), kNone), next;
+    for (size_t i = 0; i < uvs.size(); ++i)
+        for (size_t k = 0; k < 3; ++k) {
+            uint32_t& vertex = mesh->triangles[i][k];
+            const Vec2f uv = uvs[i] ? (*uvs[i])[k] : own.empty() ? Vec2f(0, 0) : own[vertex];
+            uint32_t copy = latest[vertex];
+            while (copy != kNone && mesh->uvs[copy] != uv) copy = next[copy];
+            if (copy == kNone) {
+                copy = uint32_t(mesh->positions.size());
+                mesh->positions.push_back(positions[vertex]);
+                if (!normals.empty()) mesh->normals.push_back(normals[vertex]);
+                mesh->uvs.push_back(uv);
+                next.push_back(std::exchange(latest[vertex], copy));
+            }
+            vertex = copy;
+        }
 }
 
 void SkipElement(const PlyElement& element, PlyCursor& cursor) {
@@ -234,7 +319,6 @@ void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
                                      std::to_string(index) + ", but there are " +
                                      std::to_string(mesh->positions.size()));
     ReplaceNonFinite(&mesh->normals, "normal in a PLY file that is not finite", loc, warnings);
-    ReplaceNonFinite(&mesh->uvs, "uv in a PLY file that is not finite", loc, warnings);
 }
 
 }  // namespace
@@ -242,12 +326,13 @@ void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
 MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc) {
     const FileLoc place{std::make_shared<const std::string>(path), 0};
     const FileContents contents = Inflated(ReadFile(path, loc), place);
-    const std::string_view file = contents.View();
+    const std::string_view file = WithoutByteOrderMark(contents.View(), place);
     const PlyHeader header = ParsePlyHeader(file, place);
     PlyCursor cursor{file.data() + header.bytes, file.data() + file.size(), header.format, place};
     if (header.format == PlyFormat::Ascii) cursor.loc.line = header.lines + 1;
 
     MeshData mesh;
+    WedgeUvs wedgeUvs;
     bool hasVertices = false, hasFaces = false;
     for (const PlyElement& element : header.elements) {
         // Nothing is allocated for rows that cannot be there.
@@ -265,11 +350,13 @@ MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc
         if (isVertex)
             ReadVertices(element, cursor, &mesh);
         else if (isFace)
-            ReadFaces(element, cursor, &mesh, warnings);
+            wedgeUvs = ReadFaces(element, cursor, &mesh, warnings);
         else
             SkipElement(element, cursor);
     }
     CheckMesh(&mesh, place, warnings);
+    SplitVertices(wedgeUvs, &mesh);
+    ReplaceNonFinite(&mesh.uvs, "uv in a PLY file that is not finite", place, warnings);
     return mesh;
 }
 

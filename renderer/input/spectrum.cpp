@@ -56,12 +56,9 @@ Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc) {
         return a.wavelength < b.wavelength;
     };
     std::stable_sort(samples.begin(), samples.end(), before);
-    for (size_t i = 1; i < samples.size(); ++i)
-        if (samples[i].wavelength == samples[i - 1].wavelength)
-            throw Error(loc, "the wavelength " + std::to_string(samples[i].wavelength) +
-                                 " nm appears twice in a spectrum; remove one");
 
     // Wavelengths are asked for in rising order, so one pass over the samples serves them all.
+    // Where two were rounded to the same one, values jump.
     size_t next = 0;
     const Rgb rgb = Integrate([&](double wavelength) -> double {
         while (next < samples.size() && samples[next].wavelength <= wavelength) ++next;

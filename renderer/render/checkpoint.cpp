@@ -126,7 +126,8 @@ RenderIdentity ParseIdentity(const std::vector<std::string>& lines) {
 
 std::string ValueIn(const RenderIdentity& identity, const std::string& key) {
     const auto at = identity.find(key);
-    return at == identity.end() ? "none" : at->second;
+    if (at != identity.end()) return at->second;
+    return key == "integrator" ? "path" : "none";
 }
 
 int CapIn(const RenderIdentity& identity) {

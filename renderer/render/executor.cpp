@@ -102,14 +102,19 @@ bool Executor::IsPauseDue() const {
 
 void Executor::BeginLight() {
     context.light->Begin(schedule.Unlocked());
+    // With a larger cap this round would be a longer one: whoever goes on begins it again.
+    if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
+    isLastRound = context.light->IsCutShort();
     schedule.BeginRound(context.light->End());
     isLit = context.light->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
-    if (context.light && !IsCancelled() && schedule.IsRoundOver()) {
+    if (context.light && schedule.Unlocked().NoPassUnderWay()) {
+        // Also in the end: whoever goes on from the checkpoint has to know what was learned.
         context.light->Learn(*context.film);
+        if (IsCancelled() || !schedule.IsRoundOver()) return false;
         BeginLight();
         return true;
     }
@@ -198,7 +203,7 @@ std::vector<int> Executor::Undo() {
 
 void Executor::WriteCheckpoint() {
     const Checkpointing& checkpoints = context.checkpoints;
-    if (checkpoints.write && !(schedule.Unlocked().Done() && !checkpoints.atEnd))
+    if (checkpoints.write && !isLastRound && !(schedule.Unlocked().Done() && !checkpoints.atEnd))
         checkpoints.write({ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()});
     nextCheckpoint = ledger.Seconds() + checkpoints.interval;
 }

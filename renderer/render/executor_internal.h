@@ -70,7 +70,8 @@ class Executor {
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
-    bool isLit = true;  // the light of the round, if there is any, has been traced
+    bool isLit = true;         // the light of the round, if there is any, has been traced
+    bool isLastRound = false;  // and the cap cuts it short: the checkpoint is of before
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

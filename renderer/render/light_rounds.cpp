@@ -1,6 +1,7 @@
 #include "renderer/render/light_rounds.h"
 
 #include <atomic>
+#include <limits>
 
 #include "stopping/base/parallel.h"
 
@@ -63,6 +64,9 @@ double LightRounds::FindUnit() const {
 void LightRounds::Begin(const Schedule& schedule) {
     first = schedule.LeastSpp();
     end = PassEndAfter(first, schedule.Options());
+    ScheduleOptions uncapped = schedule.Options();
+    uncapped.cap = std::numeric_limits<int>::max();
+    isCutShort = !schedule.Done() && PassEndAfter(first, uncapped) != end;
     int64_t active = 0;
     for (const Block& block : schedule.Blocks())
         if (!block.stopped || block.spp > first) active += block.pixels.Area();
@@ -93,6 +97,11 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
     const Vec2f radius = filter.Radius(), middle(0.5f, 0.5f);
     const bool inHalf = InHalf(sample);
     const std::function<void(const Splat&)> splat = [&](const Splat& s) {
+        if (s.rejected) {
+            const Vec2i p = s.film.array().floor().cast<int>().matrix();
+            plane.Reject(p.cwiseMax(region.min).cwiseMin(region.max - Vec2i(1, 1)));
+            return;
+        }
         const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
         const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
         const Vec2i to =
@@ -116,6 +125,7 @@ void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel*
         sums->sum[c] += light.sum[c] * share;
         sums->halfSum[c] += light.halfSum[c] * share;
     }
+    sums->rejected += uint32_t(plane.At(p).rejected);
     if (!layers.aovs && !layers.features) return;
     // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
     // process.

@@ -34,8 +34,9 @@ class LightRounds {
 
     // Returns the samples that the strategies of this round take.
     const BdptShares& Shares() const { return shares; }
-    // Returns the spp at which the round ends.
+    // Returns the spp at which the round ends, and whether it is the cap that ends it there.
     int End() const { return end; }
+    bool IsCutShort() const { return isCutShort; }
 
     // Begins the round that the active blocks are in, or come to next. Light paths are the fewer,
     // the fewer pixels are left that wait for them.
@@ -69,6 +70,7 @@ class LightRounds {
     BdptShares learned, shares;         // for all pixels, and of this round
     std::vector<SampleSpread> spreads;  // of the round, by tile
     int first = 0, end = 0;
+    bool isCutShort = false;
     double unit = 1;
     LightPlane plane;
 };

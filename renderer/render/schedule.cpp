@@ -95,8 +95,8 @@ int Schedule::LeastSpp() const {
     return Done() ? 0 : least;
 }
 
-bool Schedule::IsRoundOver() const {
-    return !Done() && std::ranges::none_of(progress, &Progress::underWay);
+bool Schedule::NoPassUnderWay() const {
+    return std::ranges::none_of(progress, &Progress::underWay);
 }
 
 void Schedule::BeginRound(int end) {

@@ -148,8 +148,10 @@ class Schedule {
     // Returns the samples per pixel of the block that has the fewest, of those that have not
     // stopped; 0 if all have.
     int LeastSpp() const;
-    // Returns whether all blocks that have not stopped have come to the end of the round.
-    bool IsRoundOver() const;
+    // Returns whether all blocks that have not stopped have come to the end of the round; false if
+    // all have.
+    bool IsRoundOver() const { return !Done() && NoPassUnderWay(); }
+    bool NoPassUnderWay() const;
     // Begins a round: makes the passes of these blocks ready.
     void BeginRound(int end);
 

@@ -4,6 +4,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/results/channel_names.h"
 
 namespace lull {
 
@@ -40,8 +41,9 @@ ChannelsOf<N> Channels(const ExrImage& image, const std::string& file, const std
         if (!found)
             throw Error(
                 fmt::format("{}: it has no channel '{}'; `lull render --denoise-layers` writes "
-                            "all that is needed to denoise a picture later",
-                            file, layer + names[c]));
+                            "all that is needed to denoise a picture later, and images of other "
+                            "programs need a second render (--half). Its channels are {}",
+                            file, layer + names[c], ListOfChannels(image)));
         channels[c] = found->values.data();
     }
     return channels;
@@ -107,6 +109,8 @@ NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const Ex
             fmt::format("{} has {}x{} pixels and {} has {}x{}: they are to be of the same "
                         "picture",
                         nameOfA, a.width, a.height, nameOfB, b.width, b.height));
+    if (a.origin != b.origin)
+        throw Error(fmt::format("{} and {} show different parts of the picture", nameOfA, nameOfB));
     NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}};
     Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
     Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);

@@ -1,7 +1,10 @@
 #include "renderer/results/light_layers.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 namespace lull {
 
@@ -41,20 +44,55 @@ void LeaveOutBackground(const LightGroupFilm& lights, int group, const Film& fil
     });
 }
 
+// Returns the text in UTF-8, with U+FFFD in place of other bytes and of NUL.
+std::string ReadableUtf8(const std::string& text) {
+    using nlohmann::json;
+    const std::string utf8 =
+        json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+    std::string clean;
+    for (const char c : utf8) clean += c == '\0' ? std::string("\xef\xbf\xbd") : std::string(1, c);
+    return clean;
+}
+
+// Returns the beginning of UTF-8 text, of up to `most` bytes, without part of a character.
+std::string Beginning(const std::string& text, size_t most) {
+    if (text.size() <= most) return text;
+    while (most > 0 && (text[most] & 0xc0) == 0x80) --most;
+    return text.substr(0, most);
+}
+
+// Returns names of layers that differ, in UTF-8: an EXR cuts those of channels off, silently.
+std::vector<std::string> LayerNames(const std::vector<std::string>& groups) {
+    constexpr size_t kLongest = 240;  // bytes; 255 with "light." and ".R"
+    std::vector<std::string> names;
+    for (const std::string& group : groups) {
+        const std::string whole = ReadableUtf8(group);
+        std::string name = whole;
+        bool isLong = whole.size() > kLongest;
+        for (int number = 1; isLong || std::ranges::count(names, name) > 0; ++number) {
+            const std::string end = "~" + std::to_string(number);
+            name = Beginning(whole, kLongest - end.size()) + end;
+            isLong = false;
+        }
+        names.push_back(name);
+    }
+    return names;
+}
+
 }  // namespace
 
 void AddLightLayers(const LightGroupFilm& lights, const Film& film, const DenoisedImage* denoised,
                     const MatteFilm* mattes, ExtraLayers* extra) {
-    extra->attributes["lightGroups"] = NameOf(lights.Groups());
+    const std::vector<std::string> names = LayerNames(lights.Groups().names);
+    extra->attributes["lightGroups"] = fmt::format("{}", fmt::join(names, ","));
     if (mattes && denoised) extra->colours.resize(size_t(film.Region().Area()) * 3);
     for (int group = 0; group < lights.Count(); ++group) {
         std::vector<float> rgb =
             denoised ? denoised->lights[size_t(group)] : MeansOf(lights, group, film);
         if (mattes) LeaveOutBackground(lights, group, film, *mattes, denoised != nullptr, &rgb);
         std::ranges::transform(extra->colours, rgb, extra->colours.begin(), std::plus());
-        std::ranges::move(
-            ColourChannels("light." + lights.Groups().names[size_t(group)] + ".", rgb),
-            std::back_inserter(extra->channels));
+        std::ranges::move(ColourChannels("light." + names[size_t(group)] + ".", rgb),
+                          std::back_inserter(extra->channels));
     }
 }
 

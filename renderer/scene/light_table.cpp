@@ -76,11 +76,18 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
         light);
 }
 
+// Returns false, with a warning, where another kind of light is to be left out; throws Error where
+// it is not.
+bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
+    if (entity.name == "diffuse" || entity.name == "area") return true;
+    warnings.Substitute(entity.loc,
+                        fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
+                                    Printable(entity.name)),
+                        "it gives no light");
+    return false;
+}
+
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
-    if (entity.name != "diffuse" && entity.name != "area")
-        throw Error(entity.loc, fmt::format("AreaLightSource \"{}\" is not supported; only "
-                                            "\"diffuse\" is",
-                                            Printable(entity.name)));
     const Parameters& params = entity.parameters;
     AreaLight light;
     light.L = LightColor(entity, "L", warnings);
@@ -119,9 +126,11 @@ std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const S
                                                    const TextureTable& textures) {
     const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());
     const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
-    const bool isPlain = emission.IsConstant() && (emission.constant == 1).all();
+    const bool vertexColors = entity.parameters.GetBool("emissioncolors", false);
+    const bool isPlain = !vertexColors && emission.IsConstant() && (emission.constant == 1).all();
     if (!shape.IsMesh() || (isPlain && !shape.coverage)) return {};
-    return std::make_unique<const EmissionMap>(EmissionMap{&textures, &shape, emission, secondUv});
+    return std::make_unique<const EmissionMap>(
+        EmissionMap{&textures, &shape, emission, secondUv, vertexColors});
 }
 
 }  // namespace
@@ -145,7 +154,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     }
     for (int i = 0; i < shapes.worldShapeCount; ++i) {
         const auto& entity = description.shapes[i].areaLight;
-        if (!entity) continue;
+        if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
         Shape& shape = shapes.shapes[i];
         std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
         AreaLight light = MakeAreaLight(*entity, shape, warnings);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/base/visit.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
@@ -99,14 +100,16 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
         warnings.Add(entity.loc, "unknown medium preset, pbrt-v3's default is used",
                      Printable(preset));
     const float scale = params.GetFloat("scale", 1);
-    const float g = params.GetFloat("g", 0);
+    float g = params.GetFloat("g", 0);
     sigmaA = params.GetSpectrum("sigma_a", sigmaA) * scale;
     sigmaS = params.GetSpectrum("sigma_s", sigmaS) * scale;
     CheckCoefficient(entity, "sigma_a", sigmaA);
     CheckCoefficient(entity, "sigma_s", sigmaS);
-    if (!(std::abs(g) < 1))
+    constexpr float kMostForward = 0.99999f;  // with 1, light would go straight on
+    if (!InRange(double(g), -1, 1))
         throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",
                                             Printable(entity.mediumName)));
+    if (std::abs(g) > kMostForward) g = std::copysign(kMostForward, g);
     std::optional<Medium> made;
     if (entity.name == "homogeneous")
         made = HomogeneousMedium{sigmaS, sigmaA + sigmaS, g};

@@ -369,7 +369,7 @@ class Onlooker {
         const Vec3f w = d / std::sqrt(distance2);
         const BsdfValue value = v.TowardsCamera(w);
         Rgb L = value.f * v.beta * (view.perSolidAngle / distance2);
-        if (IsBlack(L) || !IsFinite(L)) return;
+        if (IsBlack(L)) return;
         const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
         if (scene.accelerator.Occluded({origin, view.lens - origin, 1}, context.time)) return;
         const double seen = double(view.perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
@@ -379,7 +379,8 @@ class Onlooker {
         if (luminance > scene.film.maxSampleLuminance)
             L *= scene.film.maxSampleLuminance / luminance;
         L *= scene.film.scale;
-        if (IsFinite(L)) splat({view.film, L});
+        const bool isValid = IsFinite(L) && luminance >= 0;
+        splat({view.film, isValid ? L : Rgb(Rgb::Zero()), !isValid});
     }
 
     const Context& context;

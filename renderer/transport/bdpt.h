@@ -15,8 +15,9 @@ double LightPathCount(const Scene&, const BdptShares&);
 
 // A contribution of a light path to the image.
 struct Splat {
-    Vec2f film;    // pixels
-    Rgb radiance;  // film scale applied; pixels are sums of these, times the filter
+    Vec2f film;             // pixels
+    Rgb radiance;           // film scale applied; pixels are sums of these, times the filter
+    bool rejected = false;  // was not finite, or of negative luminance, and is black
 };
 
 // Traces light path `index` of those that belong to sample `round` of all pixels. The result

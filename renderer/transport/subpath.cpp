@@ -33,6 +33,10 @@ bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stri
     const float cosine = std::abs(wi.dot(hit.ns));
     *isSpecular = sample->isSpecular;
     *isTransmission = sample->isTransmission;
+    // A mirror that is turned for either direction takes many directions from the camera to one.
+    // Subpaths from lights would have to find that, so they leave such light to the others.
+    const bool isOneWay = sample->isSpecular && (v.bsdf.IsTurned(hit.wo) || v.bsdf.IsTurned(wi));
+    if (isOneWay && origin == Origin::Light) return false;
     float forth, back;
     Rgb f;  // times the cosine
     if (sample->isSpecular) {
@@ -65,7 +69,8 @@ bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stri
     stride->p = hit.p;
     stride->n = hit.n;
     stride->density = v.arrival.density;
-    stride->sum = (sample->isSpecular ? 0 : v.arrival.own) + Sqr(double(back)) * v.arrival.fewer;
+    stride->sum = sample->isSpecular ? 0 : v.arrival.own;
+    if (!isOneWay) stride->sum += Sqr(double(back)) * v.arrival.fewer;
     stride->connects = !sample->isSpecular;
     stride->fromInfinity = false;
     return stride->density > 0;

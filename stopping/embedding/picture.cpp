@@ -106,6 +106,16 @@ std::vector<double> LightnessOf(const lull_picture& picture) {
     return LightnessOf(ReadPixels(picture, picture.mean, whole));
 }
 
+bool HasMeanAsHalf(const lull_picture& picture, const lull_rect& part) {
+    if (!picture.half) return false;
+    if (picture.half == picture.mean) return true;
+    if (picture.format == LULL_SRGB8) return false;
+    const std::vector<float> mean = ReadPixels(picture, picture.mean, part);
+    bool isEven = true;
+    for (size_t i = 3; i < mean.size() && isEven; ++i) isEven = mean[i] == mean[i - 3];
+    return !isEven && mean == ReadPixels(picture, picture.half, part);
+}
+
 bool HasFourthChannel(const lull_picture& picture) {
     const Strides s = StridesOf(picture);
     return std::abs(s.pixel) == 4 * std::abs(s.channel);

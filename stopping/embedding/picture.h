@@ -12,6 +12,11 @@ namespace lull {
 // that do not overlap, and a half if that is needed.
 void CheckPicture(const lull_picture& picture, int width, int height, bool needsHalf);
 
+// Returns whether the half buffer of a part is nothing but its mean, which would be taken for an
+// image without noise. Even colours, as of a sky, and 8 bits tell nothing, unless both are the same
+// memory.
+bool HasMeanAsHalf(const lull_picture& picture, const lull_rect& part);
+
 // Returns the part of a picture that begins at `origin`, the mean or the half of a checked one, as
 // a BlockView has it: linear R, G, B, row by row, finite. 8-bit codes become the middle of the
 // range that is rounded to them, so that EncodeSrgb8() returns the same codes.

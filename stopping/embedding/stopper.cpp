@@ -233,6 +233,9 @@ PictureValues Stopper::CheckValues(int block, const lull_picture& picture, const
     const PictureValues values = ValuesOf(picture, picture.mean, part);
     std::string fault = FaultOfValues(values);
     if (fault.empty() && picture.half) fault = FaultOfValues(ValuesOf(picture, picture.half, part));
+    // One sample may be all of the half.
+    if (fault.empty() && spp > 1 && HasMeanAsHalf(picture, part))
+        fault = "the half buffer equals the mean; pass the mean of a fixed half of the samples";
     Require(fault.empty(), "block " + std::to_string(block) + ": " + fault);
     return values;
 }

@@ -85,6 +85,12 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
         bad = good;
         bad.half = nullptr;
         refuse(bad, spp, "half buffer");
+        bad = good;
+        bad.half = bad.mean;
+        refuse(bad, spp, "the half buffer equals the mean");
+        const std::vector<float> copy = image.mean;
+        bad.half = copy.data();
+        refuse(bad, spp, "the half buffer equals the mean");
         refuse(good, 0, "above 0");
         refuse(good, spp - 20, spp == 20 ? "above 0" : "spp must increase");
         ExpectError(LULL_BAD_ARGUMENT,

@@ -15,45 +15,71 @@ struct SceneDirectory : TemporaryDirectory {
 
 TEST(CommandLine, RefusesWrongUsage) {
     const SceneDirectory directory;
-    for (const char* arguments : {"",
-                                  "paint",
-                                  "render",
-                                  "render scene.pbrt --frobnicate",
-                                  "render scene.pbrt extra",
-                                  "render scene.pbrt --resolution -3x4",
-                                  "render scene.pbrt --resolution 3",
-                                  "render scene.pbrt --resolution 3x4x5",
-                                  "render scene.pbrt --crop 0.5,0.2,0,1",
-                                  "render scene.pbrt --crop 0,1",
-                                  "render scene.pbrt --crop 0,nan,0,1",
-                                  "render scene.pbrt --crop 3,2,0,1px",
-                                  "render scene.pbrt --crop 0,0.5,0,1px",
-                                  "render scene.pbrt --pixel 24,0",
-                                  "render scene.pbrt --pixel 1",
-                                  "render scene.pbrt --pixel 1,1 --guide on",
-                                  "render scene.pbrt --sample 1",
-                                  "render scene.pbrt --threads -1",
-                                  "render scene.pbrt --threads many",
-                                  "render scene.pbrt --seed -1",
-                                  "render scene.pbrt --seed 1.5",
-                                  "render scene.pbrt --cap 0",
-                                  "render scene.pbrt --pass 0",
-                                  "render scene.pbrt --block 0",
-                                  "render scene.pbrt --spp 0",
-                                  "render scene.pbrt --spp 4 --stop fixed:5",
-                                  "render scene.pbrt --sampler halton",
-                                  "render scene.pbrt --estimator best",
-                                  "render scene.pbrt --filtering ewa",
-                                  "render scene.pbrt -o image.jpg",
-                                  "render scene.pbrt -o image",
-                                  "render scene.pbrt --max-depth -1",
-                                  "info"}) {
+    for (const char* arguments :
+         {"",
+          "paint",
+          "render",
+          "render scene.pbrt --frobnicate",
+          "render scene.pbrt extra",
+          "render scene.pbrt --resolution -3x4",
+          "render scene.pbrt --resolution 3",
+          "render scene.pbrt --resolution 3x4x5",
+          "render scene.pbrt --crop 0.5,0.2,0,1",
+          "render scene.pbrt --crop 0,1",
+          "render scene.pbrt --crop 0,nan,0,1",
+          "render scene.pbrt --crop 3,2,0,1px",
+          "render scene.pbrt --crop 0,0.5,0,1px",
+          "render scene.pbrt --pixel 24,0",
+          "render scene.pbrt --pixel 1",
+          "render scene.pbrt --pixel 1,1 --guide on",
+          "render scene.pbrt --sample 1",
+          "render scene.pbrt --threads -1",
+          "render scene.pbrt --threads many",
+          "render scene.pbrt --seed -1",
+          "render scene.pbrt --seed 1.5",
+          "render scene.pbrt --seed 18446744073709551616",
+          "selftest --seed 18446744073709551616",
+          "render scene.pbrt --exposure nan",
+          "render scene.pbrt --exposure inf",
+          "render scene.pbrt --environment a.exr --environment-rotation nan",
+          "render scene.pbrt --frame nan",
+          "render scene.pbrt --frame 0 --shutter nan",
+          "render scene.pbrt --caution nan",
+          "render scene.pbrt --preview nan",
+          "render scene.pbrt --checkpoint c.h5 --checkpoint-interval nan",
+          "render scene.pbrt --orbit nan,0",
+          "render scene.pbrt --cap nan",
+          "render scene.pbrt --stop fixed:nan",
+          "render scene.pbrt --stop noise:nan",
+          "render scene.pbrt --time nan",
+          "render scene.pbrt --cap 3 --denoise-layers",
+          "render scene.pbrt --cap 0",
+          "render scene.pbrt --pass 0",
+          "render scene.pbrt --block 0",
+          "render scene.pbrt --spp 0",
+          "render scene.pbrt --spp 4 --stop fixed:5",
+          "render scene.pbrt --sampler halton",
+          "render scene.pbrt --estimator best",
+          "render scene.pbrt --filtering ewa",
+          "render scene.pbrt -o image.jpg",
+          "render scene.pbrt -o image",
+          "render scene.pbrt --max-depth -1",
+          "info"}) {
         const Outcome outcome = RunLull(directory, arguments);
         EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.err;
         EXPECT_NE(outcome.err, "") << arguments;
         EXPECT_EQ(outcome.out, "") << arguments;
     }
     EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+// Whatever the cap, the pass is the one that was given, or the usual one.
+TEST(CommandLine, TakesAnyCap) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    for (const int cap : {1, 3, 7, 19, 23})
+        ExpectSuccess(directory, fmt::format("render scene.pbrt --quiet --cap {} -o a.exr", cap));
+    ExpectFailure(directory, "render scene.pbrt --pass 7 -o out.exr", {"pass of 7 spp"});
 }
 
 TEST(CommandLine, SuggestsOptions) {

@@ -141,5 +141,61 @@ TEST(DenoiseCommand, SaysWhatIsMissing) {
                   {"again.exr", "the same colours", "--seed"});
 }
 
+// Two halves of an image of other programs: 0.2 to the left, 0.6 to the right, and noise.
+void WriteHalves(const TemporaryDirectory& directory, const std::vector<std::string>& names) {
+    uint32_t state = 1;
+    for (const char* file : {"a.exr", "b.exr"}) {
+        ExrImage exr{64, 48, Vec2i(3, 2), {100, 80}, {}, {}};
+        for (const std::string& name : names) {
+            ExrChannel& channel = exr.channels.emplace_back(ExrChannel{name, {}});
+            for (int i = 0; i < 64 * 48; ++i) {
+                state = state * 1664525 + 1013904223;
+                const float noise = 1 + 0.3f * (float(state >> 8) * 0x1p-23f - 1);
+                channel.values.push_back((i % 64 < 32 ? 0.2f : 0.6f) * noise);
+            }
+        }
+        WriteExr(directory.File(file), exr);
+    }
+}
+
+TEST(DenoiseCommand, KnowsTheChannelsOfOthers) {
+    const TemporaryDirectory directory;
+    const std::string layer = "ViewLayer.", combined = layer + "Combined.";
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"R", "G", "B"},
+          {combined + "R", combined + "G", combined + "B", combined + "A"},
+          {combined + "R", combined + "G", combined + "B", layer + "Denoising Albedo.R",
+           layer + "Denoising Albedo.G", layer + "Denoising Albedo.B", layer + "Denoising Normal.X",
+           layer + "Denoising Normal.Y", layer + "Denoising Normal.Z", layer + "Denoising Depth.Z",
+           layer + "DiffDir.R", layer + "DiffDir.G", layer + "DiffDir.B"},
+          {"beauty.R", "beauty.G", "beauty.B"},
+          {"Y"}}) {
+        SCOPED_TRACE(names.back());
+        WriteHalves(directory, names);
+        ASSERT_TRUE(Succeeds(directory, "LULL denoise a.exr --half b.exr -o out.exr"));
+        const Channels out = ChannelsOf(directory, "out.exr");
+        for (const std::string channel : {"R", "G", "B"}) {
+            double error = 0, before = 0;
+            for (size_t i = 0; i < 64 * 48; ++i) {
+                const double truth = i % 64 < 32 ? 0.2 : 0.6;
+                error += Sqr(double(out.at(channel)[i]) - truth);
+                before += Sqr(double(out.at("noisy." + channel)[i]) - truth);
+            }
+            EXPECT_LT(error, before / 3) << channel;
+        }
+        const bool hasFeatures = names.size() > 10;
+        EXPECT_EQ(out.contains("albedo.G") && out.contains("N.X") && out.contains("Z"),
+                  hasFeatures);
+        const ExrImage exr = ReadExr(directory.File("out.exr"));
+        EXPECT_EQ(exr.origin, Vec2i(3, 2));
+    }
+    WriteHalves(directory, {"depth.V", "mask"});
+    ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr",
+                  {"no channels R, G and B, nor Y", "mask, depth.V"});
+    WriteHalves(directory, {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"});
+    ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr", {"several layers", "a.R"});
+    ExpectFailure(directory, "denoise a.exr -o out.exr", {"half", "--half", "a.R"});
+}
+
 }  // namespace
 }  // namespace lull

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
@@ -222,6 +223,39 @@ TEST_F(LayersTest, OfLightGroupsAreTheSameAfterAnInterruption) {
     ExpectFailure(directory, other, {"another light groups (bulb,key,rest of", "key,rest of"});
     ExpectSuccess(RunShell(directory, render + "--resume"));
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
+}
+
+// Names of channels are UTF-8 of up to 255 bytes; those of lights can be anything.
+TEST_F(LayersTest, OfLightGroupsHaveNamesThatEveryoneReads) {
+    const std::string letters = "\xc3\xa4", broken =
+                                                "k\xff\xfe"
+                                                "y";
+    std::string longName;
+    for (int i = 0; i < 150; ++i) longName += letters;
+    const auto lamp = [](const std::string& name) {
+        return "LightSource \"point\" \"point from\" [0 2 -2] \"rgb I\" [9 9 9] "
+               "\"string lightgroup\" \"" +
+               name + "\"\n";
+    };
+    directory.Write("scene.pbrt",
+                    SceneText(lamp(longName) + lamp(longName + "b") + lamp(broken) + kSphere));
+    Render("--spp 4 --light-groups each -o out.exr");
+    std::set<std::string> layers;
+    for (const ExrChannel& channel : ReadExr(directory.File("out.exr")).channels) {
+        EXPECT_LE(channel.name.size(), 255u);
+        // Throws for what is not UTF-8.
+        EXPECT_NO_THROW(nlohmann::json(channel.name).dump());
+        if (channel.name.starts_with("light.") && channel.name.ends_with(".R"))
+            layers.insert(channel.name);
+        if (channel.name.starts_with("light.k")) {
+            EXPECT_TRUE(
+                channel.name.starts_with("light.k\xef\xbf\xbd\xef\xbf\xbd"
+                                         "y."));
+        }
+    }
+    EXPECT_EQ(layers.size(), 4u);  // these and the sky
+    EXPECT_TRUE(layers.contains("light." + longName.substr(0, 238) + "~1.R"));
+    EXPECT_TRUE(layers.contains("light." + longName.substr(0, 238) + "~2.R"));
 }
 
 TEST_F(LayersTest, OfLightGroupsAreRefusedWhereTheyCannotBe) {

@@ -68,6 +68,29 @@ TEST(Sequence, GoesOnWithTheFramesThatAreLeft) {
     EXPECT_TRUE(again.out.starts_with("moving.0002.exr\n")) << again.out;
 }
 
+// A frame is done when all of its files are there, whole, by the same settings.
+TEST(Sequence, KnowsFramesThatAreNotDone) {
+    const SequenceDirectory directory;
+    const std::string command =
+        std::string(kRender) + "--frames 0:0.5:4 --checkpoint c.h5 --resume --report r.json ";
+    ExpectSuccess(directory, command + "-o a.exr");
+    const std::string whole = ReadBytes(directory.File("a.0001.exr"));
+    EXPECT_EQ(ExpectSuccess(directory, command + "-o a.exr").out, "");
+    for (const char* file :
+         {"a.0001.png", "a.0001.spp.png", "a.0001.thresholds.csv", "r.0001.json", "a.0001.exr"}) {
+        std::filesystem::remove(directory.File(file));
+        EXPECT_TRUE(ExpectSuccess(directory, command + "-o a.exr").out.starts_with("a.0001.exr\n"))
+            << file;
+        EXPECT_TRUE(std::filesystem::exists(directory.File(file)));
+    }
+    directory.Write("a.0001.exr", std::string_view(whole).substr(0, whole.size() / 2));
+    EXPECT_TRUE(ExpectSuccess(directory, command + "-o a.exr").out.starts_with("a.0001.exr\n"));
+    EXPECT_NO_THROW(ReadExr(directory.File("a.0001.exr")));
+    ExpectFailure(directory, command + "-o a.exr --seed 7",
+                  {"a.0001.exr", "other settings", "seed=0 there", "seed=7 here"});
+    ExpectFailure(directory, command + "-o a.exr --aov depth", {"a.0001.exr", "aov"});
+}
+
 TEST(Sequence, IsRefusedWhereItCannotBe) {
     const SequenceDirectory directory;
     for (const char* frames : {"0:1", "1:0:24", "0:1:0", "0:1:24mm", "0:1e9:24", "nan:1:1"})

@@ -135,34 +135,71 @@ bool ExrFile::IsHalf(const std::string& channel) const {
     return ChannelOf(parts->Header(), channel).type == Imf::HALF;
 }
 
-void ExrFile::Read(TexelType type, size_t count, void* texels) try {
+// Reads rows `first` to `last` of the data window, by their numbers in the file.
+void ExrFile::ReadRows(TexelType type, size_t count, int first, int last, char* texels) {
     const Imf::Header& header = parts->Header();
-    const Imath::Box2i window = header.dataWindow();
+    Imath::Box2i window = header.dataWindow();
+    window.min.y = first;
+    window.max.y = last;
     const Vec2i size = ExtentOf(window);
     const size_t bytes = SizeOf(type), pixel = bytes * count, row = pixel * size_t(size.x());
     const auto isInteger = [&](size_t c) {
         return ChannelOf(header, channels[c]).type == Imf::UINT;
     };
-    auto* begin = static_cast<char*>(texels);
     Imf::FrameBuffer frame;
     for (size_t c = 0; c < count; ++c)
         frame.insert(channels[c], Imf::Slice::Make(type == TexelType::Half ? Imf::HALF
                                                    : isInteger(c)          ? Imf::UINT
                                                                            : Imf::FLOAT,
-                                                   begin + bytes * c, window, pixel, row));
+                                                   texels + bytes * c, window, pixel, row));
     Imf::InputPart part(parts->file, 0);
     part.setFrameBuffer(frame);
-    part.readPixels(window.min.y, window.max.y);
+    part.readPixels(first, last);
 
     for (size_t c = 0; c < count; ++c) {
         if (!isInteger(c)) continue;
         for (size_t i = 0; i < size_t(size.x()) * size_t(size.y()); ++i) {
-            char* at = begin + i * pixel + bytes * c;
+            char* at = texels + i * pixel + bytes * c;
             uint32_t integer;
             std::memcpy(&integer, at, sizeof(integer));
             const float value = float(integer) * 0x1p-32f;
             std::memcpy(at, &value, sizeof(value));
         }
+    }
+}
+
+void ExrFile::Read(TexelType type, size_t count, void* texels) try {
+    const Imath::Box2i window = parts->Header().dataWindow();
+    ReadRows(type, count, window.min.y, window.max.y, static_cast<char*>(texels));
+} catch (const std::exception& e) {
+    throw WithoutName(e);
+}
+
+void ExrFile::ReadDisplayed(TexelType type, size_t count, void* texels) try {
+    const Imath::Box2i data = parts->Header().dataWindow(),
+                       display = parts->Header().displayWindow();
+    if (data == display) return Read(type, count, texels);
+    constexpr int kStrip = 256, kWidest = 1 << 16;  // rows, pixels
+    const Vec2i size = ExtentOf(display), stored = ExtentOf(data);
+    if (stored.maxCoeff() > kWidest) throw std::runtime_error("its data window is absurd");
+    const size_t pixel = SizeOf(type) * count;
+    std::memset(texels, 0, pixel * size_t(size.x()) * size_t(size.y()));
+    const Imath::Box2i both(
+        Imath::V2i(std::max(data.min.x, display.min.x), std::max(data.min.y, display.min.y)),
+        Imath::V2i(std::min(data.max.x, display.max.x), std::min(data.max.y, display.max.y)));
+    if (both.isEmpty()) return;
+    const size_t width = size_t(both.max.x - both.min.x + 1);
+    std::vector<char> strip(pixel * size_t(stored.x()) * size_t(std::min(kStrip, stored.y())));
+    for (int y = both.min.y; y <= both.max.y; y += kStrip) {
+        const int last = std::min(y + kStrip - 1, both.max.y);
+        ReadRows(type, count, y, last, strip.data());
+        for (int row = y; row <= last; ++row)
+            std::memcpy(static_cast<char*>(texels) +
+                            pixel * (size_t(row - display.min.y) * size_t(size.x()) +
+                                     size_t(both.min.x - display.min.x)),
+                        strip.data() + pixel * (size_t(row - y) * size_t(stored.x()) +
+                                                size_t(both.min.x - data.min.x)),
+                        pixel * width);
     }
 } catch (const std::exception& e) {
     throw WithoutName(e);
@@ -176,7 +213,7 @@ class ExrPicture final : public ImageFile {
         const std::vector<std::string>& names = file.Channels();
         const ExrImage header = file.Header();
         const auto alpha = std::ranges::find_if(names, IsAlpha);
-        shape = {header.width, header.height,
+        shape = {header.displaySize.x(), header.displaySize.y(),
                  CountChannels(int(names.size()),
                                alpha == names.end() ? -1 : int(alpha - names.begin())),
                  std::ranges::all_of(names, [&](const auto& name) { return file.IsHalf(name); })
@@ -184,7 +221,9 @@ class ExrPicture final : public ImageFile {
                      : TexelType::Float};
     }
     ImageShape Shape() const override { return shape; }
-    void Read(void* texels) override { file.Read(shape.type, size_t(shape.channels), texels); }
+    void Read(void* texels) override {
+        file.ReadDisplayed(shape.type, size_t(shape.channels), texels);
+    }
 
   private:
     ExrFile file;

@@ -27,17 +27,22 @@ class ExrFile {
     // Lists the channels as SortChannels() does.
     const std::vector<std::string>& Channels() const { return channels; }
     bool IsHalf(const std::string& channel) const;
-    // Reads the first `count` channels side by side, as halves, if all are, or as floats; integers
-    // become 0 to 1. Throws as the constructor does.
+    // Read the first `count` channels side by side, as halves, if all are, or as floats; integers
+    // become 0 to 1. Read() takes the data window, ReadDisplayed() the display window, 0 where the
+    // file has no data. Throw as the constructor does.
     void Read(TexelType type, size_t count, void* texels);
+    void ReadDisplayed(TexelType type, size_t count, void* texels);
 
   private:
+    void ReadRows(TexelType type, size_t count, int first, int last, char* texels);
+
     struct Parts;
     std::unique_ptr<Parts> parts;
     std::vector<std::string> channels;
 };
 
-// Opens an EXR as a picture: halves where all channels are. As OpenPng() otherwise.
+// Opens an EXR as a picture, its display window: halves where all channels are. As OpenPng()
+// otherwise.
 std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes);
 
 }  // namespace lull

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "renderer/base/rounding.h"
 #include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/accessors.h"
 #include "renderer/input/gltf/choice.h"
@@ -33,10 +34,13 @@ struct Keys {
 Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sampler,
               int components) {
     Keys keys{ReadFloats(document, sampler.input, 1, 1).values, {}, 0, sampler.interpolation};
-    for (size_t i = 1; i < keys.times.size(); ++i)
-        if (!(keys.times[i] > keys.times[i - 1]))
+    // Keys that follow each other closely are rounded to the same time.
+    for (size_t i = 1; i < keys.times.size(); ++i) {
+        if (IsAbove(double(keys.times[i - 1]), double(keys.times[i])))
             throw Error(document.At(fmt::format("/accessors/{}", sampler.input)),
-                        fmt::format("key {} is not later than the one before", i));
+                        fmt::format("key {} is earlier than the one before", i));
+        keys.times[i] = std::max(keys.times[i], keys.times[i - 1]);
+    }
     const int least = std::max(components, 1);
     keys.values = ReadFloats(document, sampler.output, least, least).values;
     const size_t parts = keys.times.size() * (sampler.interpolation == "CUBICSPLINE" ? 3 : 1);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/input/gltf/choice.h"
 #include "renderer/input/gltf/parameters.h"
 
@@ -51,13 +52,20 @@ void SetFilm(double aspect, const FileLoc& loc, Description* description) {
     film.Int("yresolution", kHeight);
 }
 
-// Sets the field of view, given vertically in radians, by the shorter side of the image.
-void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* description) {
-    const double tangent = std::tan(fov / 2) * std::min(aspect, 1.0);
-    description->camera = {"perspective", {}, loc};
+// Sets a camera that shows the plane at distance 1 from -x to x and -y to y, whatever aspect the
+// image gets. The usual one is x / y; where the file has none, `x` is 0, and only y is fixed.
+void SetCamera(const char* projection, double x, double y, const FileLoc& loc,
+               Description* description) {
+    description->camera = {projection, {}, loc};
     ParameterWriter(&description->camera.parameters, loc)
-        .Float("fov", 2 * std::atan(tangent) * 180 / std::numbers::pi);
-    SetFilm(aspect, loc, description);
+        .Floats(ParameterType::Float, "screenfit", {float(x), float(y)});
+    SetFilm(x > 0 ? x / y : kDefaultAspect, loc, description);
+}
+
+// Takes the vertical field of view in radians, and the aspect or 0.
+void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* description) {
+    const double tangent = std::tan(fov / 2);
+    SetCamera("perspective", aspect * tangent, tangent, loc, description);
 }
 
 // Sets the properties that glTF's cameras lack, from `extras`: the window moved by fractions of the
@@ -99,21 +107,18 @@ void LookThrough(const GltfDocument& document, const View& view, Description* de
             TransformPair{{description->cameraFromWorld, CameraFromWorld(*view.node.atClose, loc)}};
     if (view.camera->type == "perspective") {
         const auto& p = view.camera->perspective;
-        if (!(p.yfov > 0 && p.yfov < std::numbers::pi))
+        constexpr double kWidest = std::numbers::pi - 1e-3;
+        if (!(p.yfov > 0) || IsAbove(p.yfov, std::numbers::pi))
             throw Error(loc, fmt::format("yfov is {}; it has to lie between 0 and pi", p.yfov));
         if (!(p.aspectRatio >= 0)) throw Error(loc, "aspectRatio has to be positive");
-        SetPerspective(p.yfov, p.aspectRatio > 0 ? p.aspectRatio : kDefaultAspect, loc,
-                       description);
+        SetPerspective(std::min(p.yfov, kWidest), p.aspectRatio, loc, description);
         SetLens(view.camera->extras, loc, description);
         return;
     }
     const double x = std::abs(view.camera->orthographic.xmag);
     const double y = std::abs(view.camera->orthographic.ymag);
     if (!(x > 0 && y > 0)) throw Error(loc, "xmag and ymag have to be other than 0");
-    description->camera = {"orthographic", {}, loc};
-    ParameterWriter(&description->camera.parameters, loc)
-        .Floats(ParameterType::Float, "screenwindow", {float(-x), float(x), float(-y), float(y)});
-    SetFilm(x / y, loc, description);
+    SetCamera("orthographic", x, y, loc, description);
     SetLens(view.camera->extras, loc, description);
 }
 

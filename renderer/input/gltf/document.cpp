@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/files/file_contents.h"
+#include "renderer/files/text_file.h"
 #include "renderer/input/gltf/decompression.h"
 #include "renderer/input/gltf/validation.h"
 
@@ -136,13 +137,18 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     if (bytes.size() > std::numeric_limits<uint32_t>::max())
         throw Error(file + ": is larger than 4 GB, which glTF files cannot be");
     {
-        nlohmann::json root = ParseGltfJson(file, JsonOf(file, bytes));
+        // Padding by NULs instead of spaces is usual, but none to the library.
+        const std::string_view raw = JsonOf(file, bytes);
+        const std::string_view text =
+            CleanText(raw, {std::make_shared<const std::string>(file), 0});
+        nlohmann::json root = ParseGltfJson(file, text);
         CheckGltfJson(file, root);
         CheckExtensions(file, root, warnings);
-        if (HideCompressed(&root)) {
+        if (HideCompressed(&root))
             rewritten = WithJson(bytes, root.dump());
-            bytes = rewritten;
-        }
+        else if (text.size() != raw.size())
+            rewritten = WithJson(bytes, std::string(text));
+        if (!rewritten.empty()) bytes = rewritten;
     }
 
     GltfDocument document{file, {}};

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "renderer/base/error.h"
+#include "renderer/base/rounding.h"
 #include "renderer/files/file_contents.h"
 
 namespace lull {
@@ -64,10 +65,10 @@ struct JsonAt {
         Numbers(name, count);
         ForEachAny(name, [&](const JsonAt& n) { n.Within(least, most); });
     }
-    // Checks a value that is a number.
+    // Checks a value that is a number, but for rounding: who reads it clamps it.
     void Within(double least, double most) const {
         const auto n = value.get<double>();
-        if (!(n >= least && n <= most))
+        if (!InRange(n, least, most))
             Fail(fmt::format("is {:g}, but has to lie between {:g} and {:g}", n, least, most));
     }
     void Numbers(const std::string& name, size_t count) const {

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "renderer/base/rounding.h"
 #include "renderer/input/gltf/parameters.h"
 
 namespace lull {
@@ -40,11 +41,14 @@ double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
 }
 
 void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const ParameterWriter& write) {
-    const double outer = spot.outerConeAngle, inner = spot.innerConeAngle;
-    if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2))
+    constexpr double kWidest = std::numbers::pi / 2;
+    const auto outerAngle = InRange(spot.outerConeAngle, 0, kWidest);
+    const auto innerAngle = InRange(spot.innerConeAngle, 0, kWidest);
+    if (!outerAngle || !innerAngle || !(*outerAngle > 0) || IsAbove(*innerAngle, *outerAngle))
         throw Error(loc, fmt::format("the cone's angles are {} and {}; they have to be 0 <= inner "
-                                     "< outer <= pi/2",
-                                     inner, outer));
+                                     "<= outer <= pi/2, and outer above 0",
+                                     spot.innerConeAngle, spot.outerConeAngle));
+    const double outer = *outerAngle, inner = std::min(*innerAngle, outer);
     write.Point("from", Vec3f::Zero());
     write.Point("to", Vec3f(0, 0, -1));
     write.Float("coneangle", outer * 180 / std::numbers::pi);

@@ -45,7 +45,7 @@ int AddMedium(const tinygltf::Value& volume, const FileLoc& loc, Description* de
     const Rgb color = Color(volume, "attenuationColor", Rgb::Ones());
     if (distance == 0 || (color == 1).all()) return -1;
     const Rgb absorption =
-        (color.cast<double>().log() / -distance).cast<float>().min(kMost).max(0.f);
+        (color.max(0.f).cast<double>().log() / -distance).cast<float>().min(kMost).max(0.f);
     MediumEntity medium;
     medium.name = "homogeneous";
     medium.mediumName = *loc.file;
@@ -231,7 +231,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
         result.emission =
             EmissionOf(ColorOf(pbr.baseColorFactor, Rgb::Ones()), true,
                        textures.Add(color, GltfTexels::EncodedColor, warnings), color.uvSet, loc);
-        if (hasColors) warnings.Add(loc, "vertex colours of unlit materials are left out");
+        ParameterWriter(&result.emission->parameters, loc).Bool("emissioncolors", hasColors);
     } else {
         AddSurface(use, color, hasColors, &result, warnings);
     }

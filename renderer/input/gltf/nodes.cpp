@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/input/gltf/accessors.h"
 
 namespace lull {
@@ -14,8 +15,10 @@ Mat4d LocalMatrix(const GltfDocument& document, int index) {
     Mat4d m;
     if (node.matrix.size() == 16) {
         m = Eigen::Map<const Mat4d>(node.matrix.data());  // columns first, both
-        if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        const Eigen::RowVector4d affine(0, 0, 0, 1);
+        if (!((m.row(3) - affine).cwiseAbs().maxCoeff() <= kRounding))
             throw Error(document.At(PathOf(index) + "/matrix"), "is not affine");
+        m.row(3) = affine;
     } else {
         const auto three = [](const std::vector<double>& v, double otherwise) {
             return v.size() == 3 ? Eigen::Vector3d(v[0], v[1], v[2])

@@ -233,7 +233,9 @@ void CheckMaterial(const JsonAt& o) {
                 [](const JsonAt& e) { e.Numbers("specularColorFactor", 3); });
     o.Extension("KHR_materials_volume", [](const JsonAt& e) {
         e.NumbersWithin("attenuationColor", 3, 0, 1);
-        e.NumberWithin("thicknessFactor", 0, kLargest);
+        e.Number("thicknessFactor");
+        if (e.Has("thicknessFactor") && e.value.at("thicknessFactor") < 0)
+            e.Member("thicknessFactor").Fail("is negative");
         e.Number("attenuationDistance");
         if (e.Has("attenuationDistance") && !(e.value.at("attenuationDistance") > 0))
             e.Member("attenuationDistance").Fail("has to be above 0");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "renderer/files/text_file.h"
+
 namespace lull {
 namespace {
 
@@ -50,7 +52,9 @@ constexpr std::pair<std::string_view, std::string_view> kV4Kinds[] = {
 std::string ForeignFormat(std::string_view bytes) {
     for (const auto& [magic, what] : kFormats)
         if (bytes.starts_with(magic)) return what;
-    // No text has a NUL byte; UTF-16 has one in every other place.
+    if (const std::string_view wide = WideEncoding(bytes); !wide.empty())
+        return std::string(wide) + " text; save it as UTF-8";
+    // No other text has a NUL byte.
     constexpr size_t kLookedAt = 1024;
     if (bytes.substr(0, kLookedAt).find('\0') == std::string_view::npos) return "";
     return "a binary file; name a scene of pbrt-v3 or glTF";

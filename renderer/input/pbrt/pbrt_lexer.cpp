@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "renderer/files/text_file.h"
 #include "renderer/input/pbrt/foreign_file.h"
 
 namespace lull {
@@ -89,8 +90,9 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
         throw Error(loc,
                     "files included again and again come to more than 1 GiB of text; use "
                     "ObjectInstance to repeat geometry");
-    std::string_view text = source.contents.View();
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte-order mark
+    const std::string_view bytes = source.contents.View();
+    const bool isWide = !WideEncoding(bytes).empty();
+    const std::string_view text = isWide ? bytes : CleanText(bytes, loc);
     if (const std::string format = ForeignFormat(text); !format.empty())
         throw Error(loc,
                     "'" + Printable(file, 4096) + "' is not a pbrt scene file: it is " + format);
@@ -110,7 +112,7 @@ FileLoc PbrtLexer::Loc() const { return {sources.back().name, sources.back().lin
 bool PbrtLexer::SkipSpace() {
     Source& s = sources.back();
     for (; s.pos < s.end; ++s.pos) {
-        if (*s.pos == '\n')
+        if (*s.pos == '\n' || (*s.pos == '\r' && (s.pos + 1 == s.end || s.pos[1] != '\n')))
             ++s.line;
         else if (*s.pos == '#') {
             while (s.pos < s.end && *s.pos != '\n' && *s.pos != '\r') ++s.pos;
@@ -164,7 +166,7 @@ void PbrtLexer::ReadString(Token* token) {
     token->kind = TokenKind::String;
     const char* const begin = ++s.pos;
     for (;; ++s.pos) {
-        if (s.pos == s.end || *s.pos == '\n')
+        if (s.pos == s.end || *s.pos == '\n' || *s.pos == '\r')
             throw Error(token->loc,
                         "the string that begins with \"" +
                             Printable({begin, size_t(std::min<ptrdiff_t>(s.pos - begin, 40))}) +
@@ -249,8 +251,11 @@ bool PbrtLexer::TakeNumber(int* value, bool* cut) {
     const double wide = ParseNumber<double>();
     if (std::abs(wide) > double(std::numeric_limits<int>::max()))
         throw Error(Loc(), "'" + Printable(WordAt(begin)) + "' is beyond the range of an integer");
-    *value = int(wide);
-    *cut |= *value != wide;
+    // Whole numbers may have become fractions by rounding.
+    const double whole = std::round(wide);
+    const bool isWhole = std::abs(wide - whole) <= 1e-6 * std::max(1., std::abs(wide));
+    *value = int(isWhole ? whole : wide);
+    *cut |= !isWhole;
     return true;
 }
 

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "renderer/base/rounding.h"
+
 namespace lull {
 namespace {
 
@@ -51,11 +53,13 @@ Mat4d LookAtMatrix(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, const 
 }
 
 Mat4d ColumnsMatrix(std::span<const double, 16> numbers, const FileLoc& loc) {
-    const Mat4d m = Eigen::Map<const Mat4d>(numbers.data());
-    if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
+    Mat4d m = Eigen::Map<const Mat4d>(numbers.data());
+    const Eigen::RowVector4d affine(0, 0, 0, 1);
+    if (!((m.row(3) - affine).cwiseAbs().maxCoeff() <= kRounding))
         throw Error(loc,
                     "the matrix is a projection, which is not supported: its 4th, 8th, 12th and "
                     "16th numbers must be 0 0 0 1");
+    m.row(3) = affine;
     const Eigen::Matrix3d linear = m.topLeftCorner<3, 3>();
     const double lengths =
         linear.col(0).stableNorm() * linear.col(1).stableNorm() * linear.col(2).stableNorm();

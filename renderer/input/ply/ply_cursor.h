@@ -46,7 +46,7 @@ struct PlyCursor {
     std::string_view Word() {
         const auto isSpace = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
         for (; pos < end && isSpace(*pos); ++pos)
-            if (*pos == '\n') ++loc.line;
+            if (*pos == '\n' || (*pos == '\r' && (pos + 1 == end || pos[1] != '\n'))) ++loc.line;
         if (pos == end) FailTruncated();
         const char* const begin = pos;
         while (pos < end && !isSpace(*pos)) ++pos;

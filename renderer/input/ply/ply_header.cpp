@@ -76,14 +76,23 @@ PlyProperty ParseProperty(const std::vector<std::string_view>& words, const File
     return {std::string(words[4]), ParseType(words[3], loc), true, countType};
 }
 
+// Data may follow the last line's CR with a byte that looks like LF.
+char LineEnd(std::string_view file) {
+    const size_t first = file.substr(0, kLongestLine).find_first_of("\r\n");
+    const bool isCr = first != std::string_view::npos && file[first] == '\r' &&
+                      !file.substr(first + 1).starts_with('\n');
+    return isCr ? '\r' : '\n';
+}
+
 }  // namespace
 
 PlyHeader ParsePlyHeader(std::string_view file, FileLoc loc) {
     PlyHeader header;
     bool hasFormat = false;
+    const char lineEnd = LineEnd(file);
     for (loc.line = 1;; ++loc.line) {
         const std::string_view rest = file.substr(header.bytes);
-        const size_t length = rest.substr(0, kLongestLine).find('\n');
+        const size_t length = rest.substr(0, kLongestLine).find(lineEnd);
         if (length == std::string_view::npos || loc.line > kMostLines)
             throw Error(loc, loc.line == 1 ? "not a PLY file: its first line must be 'ply'"
                                            : "the PLY header has no end_header");

@@ -62,8 +62,8 @@ struct PlyHeader {
     int lines = 0;
 };
 
-// Parses the header at the beginning of `file`, whose name is in `loc`. Throws Error with the line
-// of whatever is wrong.
+// Parses the header at the beginning of `file`, whose name is in `loc`. Lines end in LF, CR LF or,
+// where the first one does, CR. Throws Error with the line of whatever is wrong.
 PlyHeader ParsePlyHeader(std::string_view file, FileLoc loc);
 
 }  // namespace lull

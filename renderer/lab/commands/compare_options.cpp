@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/number_option.h"
 #include "renderer/lab/commands/viewing_option.h"
 
 namespace lull {
@@ -81,7 +82,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.add_option("--verify", o->verify,
                    "Measure cost and savings of the rule on N threads; 0: all")
         ->delimiter(',')
-        ->check(CLI::Range(0, 4096))
+        ->check(Between(0, 4096))
         ->needs(scene)
         ->type_name("N,N,...");
     app.add_option("-o,--output", o->output, "Write files whose names begin with OUT, or to DIR/")

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "renderer/commands/command.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/picture_options.h"
@@ -63,22 +64,22 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("OUT.h5");
     app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
         ->delimiter(',')
-        ->check(CLI::NonNegativeNumber)
+        ->check(WholeNumber())
         ->type_name("N,N,...");
     auto* human = app.add_option("--human", o->human, "Read the human thresholds for --past")
                       ->check(CLI::ExistingFile)
                       ->type_name("H.csv");
     app.add_option("--past", o->past, "Record each block up to X times its human threshold")
-        ->check(CLI::Range(0.1, 100.0))
+        ->check(Between(0.1, 100.0))
         ->type_name("X")
         ->needs(human);
     app.add_option("--cap", o->render.schedule.cap, "Record up to N spp")
-        ->check(CLI::Range(1, 1 << 24))
+        ->check(Between(1, 1 << 24))
         ->type_name("N")
         ->capture_default_str();
     AddEstimatorOption(app, &o->render.estimator);
     app.add_option("--seed", o->render.seed, "Seed the random numbers")
-        ->check(CLI::NonNegativeNumber)
+        ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
     AddCheckpointInterval(app, &o->render.checkpoint);

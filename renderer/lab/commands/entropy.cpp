@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "renderer/commands/command.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/comparison/compared_files.h"
@@ -52,11 +53,11 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--images", o->images, "Folder of pictures, with their spp in the file names")
         ->type_name("DIR[:NAME]");
     app.add_option("--block", o->blockSize, "Pixels a side of the blocks")
-        ->check(CLI::Range(5, 1 << 16))
+        ->check(Between(5, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--sub-blocks", o->subBlocks, "Parts of each block, a square number")
-        ->check(CLI::Range(1, 10000))
+        ->check(Between(1, 10000))
         ->check([](const std::string& text) {
             const int n = std::stoi(text), root = int(std::lround(std::sqrt(n)));
             return root * root == n ? "" : text + " is not a square number, such as 25 or 100";

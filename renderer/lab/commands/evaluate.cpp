@@ -8,6 +8,7 @@
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/input_files.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
@@ -116,12 +117,12 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
     app.add_option("--grid", score->grid, "Count the decisions of critical errors every N spp")
-        ->check(CLI::Range(1, kJudgedCap))
+        ->check(Between(1, kJudgedCap))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--margins", score->margins, "Set the margins of the critical error, in %")
         ->delimiter(',')
-        ->check(CLI::Range(0.0, 100.0))
+        ->check(Between(0.0, 100.0))
         ->type_name("M,M,...")
         ->default_str("2,6,10");
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
 namespace lull {
@@ -50,16 +51,16 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
     AddChoiceOption(app, "--procedure", &s->procedure, "Choose the procedure, described below");
     app.add_option("--repeats", s->repeats, "Ask this fraction of the blocks twice")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(Between(0.0, 1.0))
         ->type_name("X")
         ->capture_default_str();
     app.add_option("--catches", s->catches,
                    "Check observers in this fraction of the blocks (staircase: trials)")
-        ->check(CLI::Range(0.0, 0.5))
+        ->check(Between(0.0, 0.5))
         ->type_name("X")
         ->capture_default_str();
     app.add_option("--answers", s->answers, "Ask N times per block of a staircase")
-        ->check(CLI::Range(2, 100))
+        ->check(Between(2, 100))
         ->type_name("N")
         ->capture_default_str();
 }
@@ -84,7 +85,7 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
         ->check(CheckViewpointName);
     app.add_option("--levels", s->levels,
                    "Set the number of sample counts per block [each 1.25 times the last]")
-        ->check(CLI::Range(2, 200))
+        ->check(Between(2, 200))
         ->type_name("N");
     app.add_option("--record", s->record,
                    "Record the block histories of the render in this data set")
@@ -102,7 +103,7 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
                  "Ask observers for their age, and whether they see well and tell colours apart");
     app.add_option("--descending", s->study.descending,
                    "Share of the blocks that are also asked from above, by adjustment")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(Between(0.0, 1.0))
         ->type_name("X")
         ->capture_default_str();
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")

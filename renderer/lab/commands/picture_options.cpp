@@ -1,4 +1,5 @@
 #include "renderer/lab/commands/picture_options.h"
+#include "renderer/commands/number_option.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blo
 
 void AddBlockOption(CLI::App& app, int* blockSize) {
     app.add_option("--block", *blockSize, "Pixels a side of the blocks")
-        ->check(CLI::Range(1, 1 << 16))
+        ->check(Between(1, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
 }

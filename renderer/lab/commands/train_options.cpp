@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/number_option.h"
 #include "renderer/lab/commands/split_option.h"
 #include "stopping/lab/training/training_preset.h"
 
@@ -122,7 +123,7 @@ template <typename T>
 void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most,
                const std::string& help) {
     app.add_option(name, *value, help)
-        ->check(CLI::Range(least, most))
+        ->check(Between(least, most))
         ->type_name("N")
         ->capture_default_str();
 }
@@ -130,7 +131,7 @@ void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most
 void AddReal(CLI::App& app, const std::string& name, double* value, double least, double most,
              const std::string& help) {
     app.add_option(name, *value, help)
-        ->check(CLI::Range(least, most))
+        ->check(Between(least, most))
         ->type_name("X")
         ->capture_default_str();
 }
@@ -165,7 +166,7 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
             "Do not stop blocks with this much peak noise in L*; 0: no limit");
     AddNumber(app, "--votes", &s->votes, 1, 1000, "Stop after N consecutive votes");
     app.add_option("--vote-spacing", s->voteSpacing, "Vote every N spp [n]")
-        ->check(CLI::Range(1, 1000000))
+        ->check(Between(1, 1000000))
         ->type_name("N");
 }
 
@@ -173,17 +174,17 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
     AddUnits(app, "--units", &t->units, "Set the units of the LSTM layers, or none");
     AddUnits(app, "--dense", &t->dense, "Set the units of dense layers before the last one");
     app.add_option("--dropout", t->dropout, "Drop this fraction of each LSTM layer's inputs")
-        ->check(CLI::Range(0.0, 0.99))
+        ->check(Between(0.0, 0.99))
         ->type_name("X")
         ->capture_default_str();
     app.add_option("--learning-rate", t->learningRate, "Set the learning rate of RMSprop")
-        ->check(CLI::PositiveNumber)
+        ->check(AboveZero())
         ->type_name("X")
         ->capture_default_str();
     AddNumber(app, "--batch", &t->batch, 1, 1 << 20, "Set the samples per batch");
     AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "Set the number of epochs");
     app.add_option("--seed", t->seed, "Seed the initial weights")
-        ->check(CLI::NonNegativeNumber)
+        ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
@@ -252,7 +253,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
     app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(Between(0.1, 1e6))
         ->capture_default_str();
     app.add_option("--csv", o->csv, "Write the scores to a CSV file")->type_name("F.csv");
     AddNumber(app, "--threads", &o->threads, 0, 4096, "Train on N threads; 0: one per core");

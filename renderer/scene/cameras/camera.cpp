@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/base/sampling.h"
 #include "renderer/files/file_contents.h"
 #include "renderer/scene/cameras/lens_file.h"
@@ -88,6 +89,14 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
             throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
         std::copy(window.begin(), window.end(), screen.begin());
     }
+    // lull's own, of glTF's cameras: the least window of the image's aspect that shows -x to x and
+    // -y to y.
+    if (const auto fit = params.GetFloats(ParameterType::Float, "screenfit"); !fit.empty()) {
+        if (fit.size() != 2 || !(fit[0] >= 0) || !(fit[1] > 0))
+            throw Error(entity.loc, "\"screenfit\" needs two values: x >= 0, y > 0");
+        const float y = std::max(fit[1], fit[0] / aspect), x = y * aspect;
+        screen = {-x, x, -y, y};
+    }
     // lull's own: moves the window by shares of its width and height, right and up.
     if (const auto shift = params.GetFloats(ParameterType::Float, "screenshift"); !shift.empty()) {
         if (shift.size() != 2) throw Error(entity.loc, "\"screenshift\" needs two values: x y");
@@ -132,7 +141,7 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
     for (LensInterface& stop : settings.interfaces)
         if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
-            if (radius > stop.apertureRadius)
+            if (IsAbove(radius, stop.apertureRadius))
                 warnings.Add(entity.loc,
                              "\"aperturediameter\" is limited to the aperture of the lens",
                              fmt::format("{:g} mm", 2000 * stop.apertureRadius));

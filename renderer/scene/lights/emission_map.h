@@ -12,12 +12,18 @@ struct EmissionMap {
     const Shape* shape;
     SpectrumTexture emission;  // multiplies the light's L
     bool secondUv = false;
+    bool vertexColors = false;  // multiply it, too
 
     // Returns the factor of the radiance at a point of a triangle.
     Rgb At(uint32_t triangle, float b1, float b2) const {
         const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
         const Vec2f uv = secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);
-        return textures->Evaluate(emission, TextureContext{Vec3f::Zero(), uv}).max(0.f);
+        Rgb factor = textures->Evaluate(emission, TextureContext{Vec3f::Zero(), uv});
+        if (vertexColors) {
+            const auto c = mesh.Color(triangle, b1, b2);
+            factor *= Rgb(c[0], c[1], c[2]);
+        }
+        return factor.max(0.f);
     }
 
     // Returns the same for light sampling, times the probability that a ray hits the surface.

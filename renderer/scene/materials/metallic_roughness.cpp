@@ -1,5 +1,6 @@
 #include "renderer/scene/materials/metallic_roughness.h"
 
+#include "renderer/base/rounding.h"
 #include "renderer/bsdf/sheen_albedo.h"
 
 namespace lull {
@@ -70,8 +71,11 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       solid(in.entity.parameters.GetBool("solid", false)),
       vertexColors(in.entity.parameters.GetBool("vertexcolors", false)) {
     // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
-    if (ior != 0 && !(ior >= 1 && ior < 100))
+    if (ior == 0) return;
+    const auto index = InRange(double(ior), 1, 100);
+    if (!index || IsAbove(1, double(ior)))
         throw Error(in.entity.loc, "\"ior\" has to be 0 or from 1 to 100");
+    ior = float(*index);
 }
 
 MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull {
@@ -86,6 +88,28 @@ TEST(RunDenoiser, HeedsTheErrorOfTheSumOfGroups) {
     one.features = lamps.features;
     const double ofOne = RunDenoiser(std::move(one), {&block, 1}).blocks.at(0)->upper;
     EXPECT_GT(RunDenoiser(lamps, {&block, 1}).sum.blocks.at(0)->upper, ofOne);
+}
+
+// One pixel of one half, as other programs leave them: the picture keeps its look, and the error
+// says that this may be wrong.
+TEST(Denoiser, DoesNotCallAnExtremePixelClean) {
+    for (const float extreme : {1e4f, 1e6f}) {
+        const Planes truth = MakePlanes(120, 100, 3, [](int, int, int) { return 0.3; });
+        NoisyPicture calm = AddNoise(truth, FlatFeatures(120, 100), 0.02, 1), picture = calm;
+        for (int c = 0; c < 3; ++c) picture.colour.a.Row(c, 40)[60] = extreme;
+        const std::array<PixelRect, 1> block = {{{{0, 0}, {120, 100}}}};
+        const DenoiserResult result = RunDenoiser(std::move(picture), block);
+        for (const float v : result.rgb) EXPECT_LT(v, 0.6f);
+        const double usual = RunDenoiser(std::move(calm), block).blocks[0]->upper;
+        EXPECT_GT(result.blocks[0]->upper, usual + 2) << extreme;
+        EXPECT_GT(result.deviation[40 * 120 + 60], 5);
+    }
+}
+
+TEST(Denoiser, TakesInfinityForBlack) {
+    EXPECT_EQ(Sane(kInfinity), 0);
+    EXPECT_EQ(Sane(1e30f), kLargest);
+    EXPECT_EQ(Sane(-1), 0);
 }
 
 }  // namespace

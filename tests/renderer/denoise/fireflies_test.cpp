@@ -56,5 +56,26 @@ TEST(Fireflies, KeepTheirColourAndShareItByBrightness) {
     for (size_t i = 0; i < picture.Area(); ++i) EXPECT_EQ(picture.Plane(1)[i], before.Plane(1)[i]);
 }
 
+// One event says nothing of how many there are: its light changes no pixel much, and all of it is
+// doubt.
+TEST(Fireflies, OfOneAreLimitedAndDoubted) {
+    for (const float excess : {1e3f, 1e4f, 1e9f, 1e17f}) {
+        Planes picture = Grey(0.3);
+        const Planes deviation = GiveBack({{50 * 120 + 50, {excess, excess, excess}}}, &picture);
+        for (const float v : picture.values) EXPECT_LE(v, 0.3f * 1.501f) << excess;
+        EXPECT_GT(deviation.Row(0, 50)[50], 0.2f) << excess;
+        EXPECT_EQ(deviation.Row(0, 50)[119], 0);
+        for (const float d : deviation.values) EXPECT_TRUE(d >= 0 && d <= 0.46f) << d;
+    }
+    // Of many, all is given back, with less doubt.
+    std::vector<Firefly> many;
+    for (size_t i = 0; i < 120 * 100; i += 7) many.push_back({i, {1, 1, 1}});
+    Planes picture = Grey(0.3);
+    const double before = SumOf(picture);
+    const Planes deviation = GiveBack(many, &picture);
+    EXPECT_NEAR((SumOf(picture) - before) / (3 * double(many.size())), 1, 1e-3);
+    EXPECT_LT(deviation.Row(0, 50)[50], 0.02f);
+}
+
 }  // namespace
 }  // namespace lull

@@ -135,5 +135,58 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     EXPECT_TRUE(Contains(damaged, "its list of channels is damaged")) << damaged;
 }
 
+// Writes Y = 1, 2, ... over the data window, of which a picture shows the display window.
+std::string WriteWindows(const TemporaryDirectory& directory, const Imath::Box2i& display,
+                         const Imath::Box2i& data, Imf::PixelType type = Imf::FLOAT) {
+    const std::string path = directory.File("windows.exr");
+    Imf::Header header(display, data);
+    header.channels().insert("Y", Imf::Channel(type));
+    const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
+    std::vector<float> floats(size_t(width * height));
+    std::iota(floats.begin(), floats.end(), 1.f);
+    std::vector<Half> halves;
+    for (const float v : floats) halves.emplace_back(v);
+    const void* texels = type == Imf::HALF ? static_cast<const void*>(halves.data())
+                                           : static_cast<const void*>(floats.data());
+    Imf::FrameBuffer frame;
+    frame.insert("Y", Imf::Slice::Make(type, texels, data));
+    Imf::OutputFile out(path.c_str(), header);
+    out.setFrameBuffer(frame);
+    out.writePixels(height);
+    return path;
+}
+
+Imath::Box2i Window(int x0, int y0, int x1, int y1) { return {{x0, y0}, {x1, y1}}; }
+
+TEST(ExrFile, ShowsTheDisplayWindow) {
+    const TemporaryDirectory directory;
+    const auto texels = [&](const Imath::Box2i& display, const Imath::Box2i& data) {
+        const Image image = ReadImage(WriteWindows(directory, display, data));
+        EXPECT_EQ(image.width, display.max.x - display.min.x + 1);
+        EXPECT_EQ(image.height, display.max.y - display.min.y + 1);
+        return std::get<std::vector<float>>(image.texels);
+    };
+    using Floats = std::vector<float>;
+    // Cropped; cropped, with other coordinates; larger than it; beyond two edges; beside it.
+    EXPECT_EQ(texels(Window(0, 0, 3, 2), Window(2, 0, 3, 1)),
+              (Floats{0, 0, 1, 2, 0, 0, 3, 4, 0, 0, 0, 0}));
+    EXPECT_EQ(texels(Window(-5, 7, -4, 8), Window(-5, 8, -5, 8)), (Floats{0, 0, 1, 0}));
+    EXPECT_EQ(texels(Window(0, 0, 1, 1), Window(-1, -1, 2, 2)), (Floats{6, 7, 10, 11}));
+    EXPECT_EQ(texels(Window(0, 0, 2, 1), Window(2, 1, 3, 5)), (Floats{0, 0, 0, 0, 0, 1}));
+    EXPECT_EQ(texels(Window(0, 0, 1, 0), Window(5, 5, 6, 6)), (Floats{0, 0}));
+    // More rows than are read at once, as halves.
+    const Image tall =
+        ReadImage(WriteWindows(directory, Window(0, 0, 0, 999), Window(0, 300, 0, 899), Imf::HALF));
+    const auto& halves = std::get<std::vector<Half>>(tall.texels);
+    EXPECT_EQ(float(halves[299]), 0);
+    EXPECT_EQ(float(halves[300]), 1);
+    EXPECT_EQ(float(halves[899]), 600);
+    EXPECT_EQ(float(halves[900]), 0);
+    // All of the data, with its place, is there for those who ask for the file.
+    const ExrImage exr = ReadExr(WriteWindows(directory, Window(0, 0, 3, 2), Window(2, 0, 3, 1)));
+    EXPECT_EQ(exr.origin, Vec2i(2, 0));
+    EXPECT_EQ(exr.Find("Y")->values, (Floats{1, 2, 3, 4}));
+}
+
 }  // namespace
 }  // namespace lull

@@ -52,6 +52,16 @@ constexpr const char* kHugePng =  // claims to be 60000x60000, holds 10 bytes
     "00"
     "000a00017f80745e0000000049454e44ae426082";
 
+// 3x2: 204 102 51 with alpha 0, 128, 255 / 255, 0, 1; lossless, and lossy with alpha beside it.
+constexpr const char* kLosslessWebP =
+    "5249464626000000574542505650384c190000002f024000101f3066c33c33028282e55d8f8701f0099c88fe4700";
+constexpr const char* kLossyWebP =
+    "524946466400000057454250565038580a00000010000000020000010000414c504807000000000080ffff00010056"
+    "50"
+    "3820360000005002009d012a0300020000000025a00274ba01f801fa01fc0009d000fedf803ffcb0fc7f5279ffcb10"
+    "ff"
+    "fb527ebcc1caffed32000000";
+
 template <typename T>
 const std::vector<T>& Texels(const Image& image) {
     return std::get<std::vector<T>>(image.texels);
@@ -399,6 +409,27 @@ TEST(WritePng, KeepsTheOldFileWhereItFails) {
         Contains(ErrorOf([&] { WritePng(directory.path.string(), pixels, 2, 2); }), "directory"));
     EXPECT_THROW(WritePng(directory.File("none/a.png"), pixels, 2, 2), Error);
     EXPECT_EQ(directory.CountFiles(), 0);
+}
+
+// Colours are those of the file whatever their alpha, as in PNG.
+TEST(ImageIo, WebPKeepsItsColours) {
+    for (const char* hex : {kLosslessWebP, kLossyWebP}) {
+        const std::string bytes = FromHex(hex);
+        const TemporaryDirectory directory;
+        const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
+        for (const Image& image : {ReadImage(directory.Write("a.webp", bytes)),
+                                   ReadImage("a", "webp", {data, bytes.size()})}) {
+            ASSERT_EQ(image.channels, 4);
+            const std::vector<uint8_t>& texels = Texels<uint8_t>(image);
+            ASSERT_EQ(texels.size(), 24u);
+            for (size_t i = 0; i < 6; ++i) {
+                EXPECT_NEAR(texels[4 * i], 204, 3) << i;
+                EXPECT_NEAR(texels[4 * i + 1], 102, 3) << i;
+                EXPECT_NEAR(texels[4 * i + 2], 51, 3) << i;
+                EXPECT_EQ(texels[4 * i + 3], (std::array{0, 128, 255, 255, 0, 1})[i]);
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -109,7 +109,9 @@ GltfFile WithCameras() {
 TEST(GltfCameras, LookAlongTheirNodes) {
     const Description d = kFolder.Parse(WithCameras());
     EXPECT_EQ(d.camera.name, "perspective");
-    EXPECT_NEAR(d.camera.parameters.GetFloat("fov", 0), 0.8 * 180 / kPi, 1e-4);
+    const float tangent = std::tan(0.4f);
+    ExpectNear(FloatsOf(d.camera, ParameterType::Float, "screenfit"), {2 * tangent, tangent},
+               1e-6f);
     EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 1600);
     EXPECT_EQ(d.film.parameters.GetInt("yresolution", 0), 800);
     // The origin lies 5 ahead; x is to the right and y upwards.
@@ -120,7 +122,7 @@ TEST(GltfCameras, AreChosenByNameOrNumber) {
     for (const char* name : {"1", "plan", "above"}) {
         const Description d = kFolder.Parse(WithCameras(), {.camera = name});
         EXPECT_EQ(d.camera.name, "orthographic") << name;
-        ExpectNear(FloatsOf(d.camera, ParameterType::Float, "screenwindow"), {-3, 3, -4, 4}, 0);
+        ExpectNear(FloatsOf(d.camera, ParameterType::Float, "screenfit"), {3, 4}, 0);
         EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 600);
     }
     const std::string error = ErrorOf([&] { kFolder.Parse(WithCameras(), {.camera = "2"}); });
@@ -205,6 +207,57 @@ TEST(GltfLights, AreTakenFromPhotometricUnits) {
     EXPECT_EQ(d.lights[2].name, "spot-squared");
     EXPECT_NEAR(d.lights[2].parameters.GetFloat("coneangle", 0), 0.5 * 180 / kPi, 1e-4);
     EXPECT_NEAR(d.lights[2].parameters.GetFloat("conedeltaangle", 0), 0.3 * 180 / kPi, 1e-4);
+}
+
+// What exporters write for cones with sharp edges, and up to half of the sphere.
+TEST(GltfLights, HaveConesUpToRounding) {
+    const auto cone = [](const json& spot) {
+        GltfFile file;
+        file.root["extensions"] = {
+            {"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", spot}}}}}}};
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        return file;
+    };
+    const auto angles = [&](double inner, double outer) {
+        const json spot = {{"innerConeAngle", inner}, {"outerConeAngle", outer}};
+        const Parameters light = kFolder.Parse(cone(spot)).lights.at(0).parameters;
+        return std::pair(light.GetFloat("coneangle", 0), light.GetFloat("conedeltaangle", -1));
+    };
+    EXPECT_EQ(angles(0, double(1.57079637f)), std::pair(90.f, 90.f));
+    EXPECT_EQ(angles(0, 1.5708), std::pair(90.f, 90.f));  // with six digits
+    EXPECT_EQ(angles(0.5, 0.5).second, 0);
+    EXPECT_EQ(angles(0.7, double(0.7f)).second, 0);
+    EXPECT_EQ(angles(-1e-9, 0.5).second, angles(0, 0.5).second);
+    for (const auto& [inner, outer] : {std::pair(0., 1.58), {0.6, 0.5}, {-0.1, 0.5}, {0., 0.}})
+        EXPECT_NE(kFolder.ErrorOf(cone({{"innerConeAngle", inner}, {"outerConeAngle", outer}}))
+                      .find("the cone's angles are"),
+                  std::string::npos)
+            << inner << " " << outer;
+}
+
+TEST(GltfNodes, MatricesAreAffineUpToRounding) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()},
+               {"matrix", {1, 0, 0, 1e-9, 0, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 0.99999994}}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_EQ(d.shapes.at(0).worldFromObject.row(3), Eigen::RowVector4d(0, 0, 0, 1));
+    file.root["nodes"][0]["matrix"][15] = 0.999;
+    EXPECT_NE(kFolder.ErrorOf(file).find("is not affine"), std::string::npos);
+}
+
+TEST(GltfMaterials, HaveFactorsUpToRounding) {
+    GltfFile file;
+    const auto material = [&](const json& extensions) {
+        file.root["materials"] = {{{"extensions", extensions}}};
+        file.root["meshes"][0]["primitives"][0]["material"] = 0;
+        return kFolder.ErrorOf(file);
+    };
+    file.Node({{"mesh", file.Triangle()}});
+    const double above = 1.0000001192;  // the float after 1
+    EXPECT_EQ(material({{"KHR_materials_sheen", {{"sheenColorFactor", {above, 1, 0}}}}}), "");
+    EXPECT_EQ(material({{"KHR_materials_anisotropy", {{"anisotropyStrength", above}}}}), "");
+    EXPECT_EQ(material({{"KHR_materials_volume", {{"attenuationColor", {above, -1e-9, 0}}}}}), "");
+    EXPECT_NE(material({{"KHR_materials_sheen", {{"sheenColorFactor", {1.01, 1, 0}}}}}), "");
 }
 
 TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {

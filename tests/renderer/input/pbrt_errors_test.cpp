@@ -138,6 +138,20 @@ TEST_F(PbrtErrors, BinaryFiles) {
     Expect(std::string("\x1f\x8b\x08\x00\x01", 5),
            "'scene.pbrt' is not a pbrt scene file: it is compressed (gzip)");
     Expect(std::string("\0\0\0", 3), "'scene.pbrt' is not a pbrt scene file: it is a binary file");
+    const std::string scene = "WorldBegin\nWorldEnd\n";
+    for (const bool bigEndian : {false, true})
+        for (const char* mark : {"", bigEndian ? "\xfe\xff" : "\xff\xfe"}) {
+            std::string wide = mark;
+            for (const char c : scene)
+                wide += bigEndian ? std::string{'\0', c} : std::string{c, '\0'};
+            Expect(wide,
+                   "'scene.pbrt' is not a pbrt scene file: it is UTF-16 text; save it as UTF-8");
+        }
+    // What editors and old programs put around text.
+    for (const std::string& text : {"\xef\xbb\xbf" + scene, scene + "\x1a", scene + '\0',
+                                    scene + std::string("\0\0\n", 3), scene + "\x1a\r\n"})
+        EXPECT_EQ(folder.ErrorOf(text), "");
+    Expect("WorldBegin\r\rShape \"sphere\" nonsense\rWorldEnd\r", "scene.pbrt:3: ");
     Expect("a\x01", "scene.pbrt:1: control character in 'a\\x01'");
     Expect("\xff\xfe\xfd", "scene.pbrt:1: unknown directive '\\xff\\xfe\\xfd'");
     // A long word is cut in the message.
@@ -170,7 +184,6 @@ TEST_F(PbrtErrors, Spectra) {
         ExpectInWorld("Shape \"sphere\" " + parameters, message);
     };
     shape("\"spectrum c\" []", "a spectrum needs pairs of wavelength and value");
-    shape("\"spectrum c\" [400 1 400 2]", "the wavelength 400.000000 nm appears twice");
     shape("\"spectrum c\" \"none.spd\"", "cannot read 'none.spd': No such file");
     shape("\"blackbody c\" [0 1]", "a black body needs a temperature above 0 K");
     shape("\"blackbody c\" [-5 1]", "a black body needs a temperature above 0 K");

@@ -322,5 +322,66 @@ TEST_F(Ply, FilesThatCannotBeRead) {
               "scene.pbrt:7: cannot read 'none.ply': No such file or directory");
 }
 
+// The square 0123, of which corner 0 has other uvs in the second triangle, as MeshLab writes it.
+TEST_F(Ply, VerticesAreSplitByTheUvsOfFaces) {
+    for (const std::string format : kFormats)
+        for (const char* name : {"texcoord", "t"}) {
+            PlyWriter ply(format);
+            ply.Header("element vertex 4\n" + std::string(kPositions) +
+                       "property float nx\nproperty float ny\nproperty float nz\n"
+                       "element face 2\n" +
+                       kFaces + "property list uchar float " + name + "\n");
+            for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0, 0, 0, double(i)});
+            ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
+            ply.Put<uint8_t>({6}).Put<float>({0, 0, 1, 0, 1, 1});
+            ply.Put<uint8_t>({3}).Put<int>({0, 2, 3});
+            ply.Put<uint8_t>({6}).Put<float>({.5, .5, 1, 1, 0, 1});
+            const MeshData mesh = Load(ply.text);
+            EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 2, 4}})) << format;
+            ASSERT_EQ(mesh.uvs.size(), 5u);
+            EXPECT_EQ(mesh.uvs[2], Vec2f(1, 1));
+            EXPECT_EQ(mesh.uvs[3], Vec2f(.5f, .5f));
+            EXPECT_EQ(mesh.positions[3], Vec3f(0, 0, 0));
+            EXPECT_EQ(mesh.positions[4], Vec3f(3, 0, 0));
+            EXPECT_EQ(mesh.normals[4], Vec3f(0, 0, 3));
+        }
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
+TEST_F(Ply, QuadsHaveUvsAndFacesWithoutKeepThoseOfVertices) {
+    PlyWriter ply("ascii");
+    ply.Header("element vertex 4\n" + std::string(kPositions) +
+               "property float s\nproperty float t\nelement face 2\n" +
+               "property list uchar float texcoord\n" + kFaces);
+    for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0, 7, double(i)});
+    ply.Put<int>({8}).Put<float>({0, 0, 1, 0, 1, 1, 0, 1}).Put<int>({4, 0, 1, 2, 3});
+    ply.Put<int>({0}).Put<int>({3, 0, 1, 2});
+    const MeshData mesh = Load(ply.text);
+    ASSERT_EQ(mesh.triangles.size(), 3u);
+    EXPECT_EQ(mesh.uvs[mesh.triangles[1][2]], Vec2f(0, 1));
+    EXPECT_EQ(mesh.uvs[mesh.triangles[2][1]], Vec2f(7, 1));
+    EXPECT_EQ(mesh.positions.size(), 7u);
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
+TEST_F(Ply, LinesMayEndInCarriageReturnsAlone) {
+    std::string binary =
+        "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar x\r"
+        "property uchar y\rproperty uchar z\relement face 1\r"
+        "property list uchar int vertex_indices\rend_header\r";
+    // Data begins at once, with what would be the other half of a line's end.
+    binary += std::string("\n\1\2\3\4\5\6\7\10\3\0\0\0\0\1\0\0\0\2\0\0\0", 22);
+    EXPECT_EQ(Load(binary).positions[0], Vec3f(10, 1, 2));
+    EXPECT_EQ(Load(binary).positions[2], Vec3f(6, 7, 8));
+    std::string ascii =
+        "ply\rformat ascii 1.0\relement vertex 3\rproperty float x\rproperty float y\r"
+        "property float z\relement face 1\rproperty list uchar int vertex_indices\rend_header\r"
+        "0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r";
+    EXPECT_EQ(Load(ascii).positions[1], Vec3f(1, 0, 0));
+    EXPECT_EQ(Load("\xef\xbb\xbf" + ascii).positions[1], Vec3f(1, 0, 0));
+    ascii.replace(ascii.find("1 0 0"), 1, "x");
+    EXPECT_EQ(ErrorOf(ascii), "a.ply:11: 'x' is not a number that can be used");
+}
+
 }  // namespace
 }  // namespace lull

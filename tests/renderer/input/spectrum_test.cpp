@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/input/cie_table.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/shared_folder.h"
 
 namespace lull {
@@ -68,6 +69,38 @@ TEST(Spectrum, FilesOfMetals) {
     ExpectNear(load("bathroom/spds/Ag.k.spd"), 4.8181009, 3.1156166, 2.1424017);
     ExpectNear(load("matpreview/spds/Au.eta.spd"), .14282006, .37414363, 1.4394444);
     ExpectNear(load("matpreview/spds/Au.k.spd"), 3.9747183, 2.3806598, 1.5998104);
+}
+
+// The same spectrum, as editors and old systems write it.
+TEST(Spectrum, FilesOfAnyTextEditor) {
+    const TemporaryDirectory directory;
+    const auto load = [&](const std::string& text) {
+        return LoadSpectrum(directory.Write("a.spd", text));
+    };
+    const Rgb rgb = load("# made by hand\n400 .2\n500 .9\n700 .1\n");
+    for (const char* text :
+         {"\xef\xbb\xbf"
+          "400 .2\n500 .9\n700 .1\n",
+          "400 .2\n500 .9\n700 .1\n\x1a", "# made by hand\r400 .2\r500 .9\r700 .1\r",
+          "400, .2\r\n500, .9\r\n700, .1\r\n"})
+        EXPECT_TRUE((load(text) == rgb).all()) << text;
+    EXPECT_TRUE((load(std::string("400 .2\n500 .9\n700 .1\n\0\0", 25)) == rgb).all());
+    std::string wide = "\xff\xfe";
+    for (const char c : std::string("400 .2\n")) wide += std::string{c, '\0'};
+    EXPECT_EQ(ErrorOf([&] { load(wide); }),
+              directory.File("a.spd") + ": the text is UTF-16; save it as UTF-8");
+    EXPECT_EQ(ErrorOf([&] { load("400 .2\r500 x\r"); }),
+              directory.File("a.spd") + ":2: 'x' in a spectrum file is not a number");
+}
+
+// Values jump where two wavelengths were rounded to the same one, as they do in pbrt-v3.
+TEST(Spectrum, WavelengthsMayBeRoundedToTheSame) {
+    const std::vector<float> same = {400, .2f, 500, .9f, 500, .9f, 700, .1f},
+                             once = {400, .2f, 500, .9f, 700, .1f},
+                             jump = {400, 1, 550, 1, 550, 0, 700, 0},
+                             steep = {400, 1, 549.999f, 1, 550.001f, 0, 700, 0};
+    EXPECT_TRUE((RgbFromSamples(same) == RgbFromSamples(once)).all());
+    EXPECT_TRUE(RgbFromSamples(jump).isApprox(RgbFromSamples(steep), 0.02f));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "renderer/render/session.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -77,6 +79,71 @@ TEST(LightRounds, HaveTheSameBitsForAnyThreadsAndInterruption) {
     EXPECT_GT(interruptions, 2);
 }
 
+// Counts the blocks that come to a number of samples, and stops none.
+class CountingCriterion : public Criterion {
+  public:
+    CountingCriterion(int at, std::atomic<int>* left) : at(at), left(left) {}
+    ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
+    Decision Observe(const BlockView& view) override {
+        if (view.spp == at) --*left;
+        Decision decision;
+        decision.checked = true;
+        return decision;
+    }
+
+  private:
+    int at;
+    std::atomic<int>* left;
+};
+
+// A first cap, or an interruption, loses nothing of what was learned, be it at the end of a round
+// or within one.
+TEST(LightRounds, HaveTheSameBitsFromTheEndsOfRoundsOn) {
+    const auto scene = MakeScene(true, "bdpt", "gaussian");
+    const auto optionsFor = [](const std::string& file, int cap) {
+        SessionOptions options = OptionsFor(file);
+        options.render.makeCriterion = {};
+        options.render.schedule.cap = cap;
+        options.identity["cap"] = std::to_string(cap);
+        options.checkpoint.mayDiffer = MayDiffer::Stops;
+        options.checkpoint.isKept = true;
+        return options;
+    };
+    Session whole(*scene, kRegion, optionsFor("", 60));
+    whole.Run();
+    for (const int cap : {2, 5, 20, 27}) {
+        const TemporaryDirectory directory;
+        const std::string file = directory.File("c.h5");
+        for (const int end : {cap, 60}) {
+            Session session(*scene, kRegion, optionsFor(file, end));
+            session.Resume();
+            session.Run();
+            if (end == 60) {
+                EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << cap;
+            }
+        }
+    }
+    // Cancelled when the last block's pass has been decided on.
+    for (const int spp : {20, 40}) {
+        const TemporaryDirectory directory;
+        const std::string file = directory.File("c.h5");
+        std::atomic<int> left = int(MakeBlocks(kRegion, OptionsFor("").render.schedule).size());
+        SessionOptions first = optionsFor(file, 60);
+        first.render.isCancelled = [&] { return left <= 0; };
+        first.render.makeCriterion = [&](const BlockInfo&) {
+            return std::make_unique<CountingCriterion>(spp, &left);
+        };
+        Session interrupted(*scene, kRegion, first);
+        EXPECT_TRUE(interrupted.Run().cancelled);
+        SessionOptions second = optionsFor(file, 60);
+        second.identity["stop"] = "another";
+        Session session(*scene, kRegion, second);
+        session.Resume();
+        session.Run();
+        EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << spp;
+    }
+}
+
 // Returns the mean over the image of all samples, or of either half.
 struct Means {
     double all = 0, half = 0, other = 0;
@@ -142,6 +209,32 @@ TEST(LightPlane, SumsInAnyOrder) {
     // Enormous values do not run over.
     for (int i = 0; i < 100; ++i) forth.Add({2, 3}, Rgb(1e30f, 1e30f, 1e30f), true);
     EXPECT_GT(forth.SumsAt({2, 3}).sum[0], 1e7);
+}
+
+// Light paths whose light is infinite, or negative, count as black, and as rejected, as samples of
+// paths do. None of these finds the lamp in its glass ball.
+TEST(LightRounds, RejectLightThatIsNone) {
+    const auto scene = SceneOf(R"(
+LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [45]
+Film "image" "integer xresolution" [32] "integer yresolution" [24] "float scale" [3e38]
+Integrator "bdpt" "integer maxdepth" [6]
+WorldBegin
+LightSource "point" "point from" [.2 .3 0] "rgb I" [300 200 100]
+AttributeBegin Material "glass" Translate .2 .3 0 Shape "sphere" "float radius" [.2] AttributeEnd
+Material "matte" "rgb Kd" [.7 .5 .3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1]
+WorldEnd
+)");
+    SessionOptions options = OptionsFor("");
+    options.render.makeCriterion = {};
+    options.render.schedule.cap = 20;
+    Session session(*scene, kRegion, options);
+    session.Run();
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x)
+            EXPECT_TRUE(std::isfinite(session.TheFilm().At({x, y}).sum[1]));
+    EXPECT_GT(session.TheFilm().RejectedCount(), 50);
 }
 
 }  // namespace

@@ -323,6 +323,60 @@ TEST(GltfMaterial, FollowsItsNormalMap) {
                 0.01);
 }
 
+// The front that emits is where triangles run counterclockwise, in the node's space, whatever their
+// normals say: mirrored nodes keep it.
+TEST(GltfMaterial, EmitsOnTheFrontOfTriangles) {
+    json lamp = Matte(0, 0, 0);
+    lamp["emissiveFactor"] = {1, 1, 1};
+    for (const json& scale : {json{1, 1, 1}, {-1, 1, 1}, {1, 1, -1}, {-1, -1, -1}, {-1, -1, 1}})
+        for (const float normal : {0.f, 1.f, -1.f})
+            for (const bool isInstanced : {false, true}) {
+                GltfFile file;
+                const int mesh = Square(&file, lamp);
+                if (normal != 0) {
+                    std::vector<float> normals;
+                    for (int i = 0; i < 4; ++i) normals.insert(normals.end(), {0, 0, normal});
+                    file.root["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["NORMAL"] =
+                        file.Floats(normals, "VEC3");
+                }
+                file.Node({{"mesh", mesh}, {"scale", scale}});
+                if (isInstanced) file.Node({{"mesh", mesh}, {"translation", {100, 0, 0}}});
+                // A white wall tells that light sampling agrees.
+                file.Node({{"mesh", Square(&file, Matte(1, 1, 1))},
+                           {"translation", {0, 0, 1}},
+                           {"rotation", {1, 0, 0, 0}}});
+                file.root["cameras"] = {
+                    {{"type", "orthographic"},
+                     {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
+                const bool isSeen = scale[2] > 0;
+                GltfFile front = file, wall = file;
+                front.Node({{"camera", 0}, {"translation", {0, 0, 0.5}}});
+                wall.Node(
+                    {{"camera", 0}, {"translation", {0, 0, 0.5}}, {"rotation", {0, 1, 0, 0}}});
+                EXPECT_EQ(Measure(*Compiled(front), Estimator::Combined, 4).mean.y(), isSeen)
+                    << scale << normal << isInstanced;
+                const float lit = Measure(*Compiled(wall), Estimator::PbrtV3, 64).mean.y();
+                EXPECT_EQ(lit > 0.1f, isSeen) << scale << normal << isInstanced;
+            }
+}
+
+TEST(GltfMaterial, ShowsTheColoursOfUnlitVertices) {
+    GltfFile file;
+    const int mesh =
+        Square(&file, {{"extensions", {{"KHR_materials_unlit", json::object()}}},
+                       {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 0.5, 1}}}}});
+    file.root["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["COLOR_0"] =
+        file.Floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, "VEC3");
+    file.Node({{"mesh", mesh}});
+    const auto pixels =
+        MeasurePixels(*Compiled(file, 40), Estimator::Combined, SamplerKind::Random, 4, 1);
+    const auto at = [&](int x, int y) { return pixels.mean[size_t(40 * y + x)]; };
+    EXPECT_TRUE(at(0, 39).isApprox(Eigen::Array3d(1, 0, 0), 0.05));
+    EXPECT_TRUE(at(39, 39).isApprox(Eigen::Array3d(0, 1, 0), 0.05));
+    EXPECT_TRUE(at(39, 0).isApprox(Eigen::Array3d(0, 0, 0.5), 0.05));
+    EXPECT_TRUE(at(0, 0).isApprox(Eigen::Array3d(1, 1, 0.5), 0.05));
+}
+
 TEST(GltfMaterial, ShowsItsTextureUpright) {
     GltfFile file;
     json material = Matte(1, 1, 1);

@@ -137,7 +137,10 @@ void Interact(const Mesh& mesh, const Ray&, const Hit& found, SurfaceNeeds needs
     }
     if (!mesh.n.empty()) {
         if (mesh.reverseOrientation) hit->ns = -hit->ns;
-        hit->n = FaceForward(hit->n, hit->ns);
+        if (mesh.frontByWinding)
+            hit->ns = FaceForward(hit->ns, hit->n);
+        else
+            hit->n = FaceForward(hit->n, hit->ns);
     }
 }
 
@@ -167,7 +170,7 @@ EmittingTriangle Mesh::EmitterAt(uint32_t triangle) const {
     const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
     const float twiceArea = LengthOf(cross);
     Vec3f normal = cross / twiceArea;
-    if (!n.empty())
+    if (!n.empty() && !frontByWinding)
         normal = FaceForward(normal, n[v[0]] + n[v[1]] + n[v[2]]);
     else if (flipNormals)
         normal = -normal;

@@ -39,6 +39,8 @@ struct Mesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     bool reverseOrientation = false;
     bool flipNormals = false;  // reverseOrientation xor the transform mirrors
+    // The order of the vertices tells the front side, as in glTF: vertex normals are turned to it.
+    bool frontByWinding = false;
 
     uint32_t PrimitiveCount() const { return uint32_t(triangles.size()); }
     Bounds3f WorldBounds() const;  // of the triangles
@@ -47,8 +49,8 @@ struct Mesh {
     Vec2f Uv1(uint32_t triangle, float b1, float b2) const;  // as Uv where there is no second set
     std::array<float, 4> Color(uint32_t triangle, float b1, float b2) const;  // 1 without colours
     float Area(uint32_t triangle) const;
-    // The emitting side is pbrt-v3's: vertex normals decide, regardless of ReverseOrientation;
-    // a triangle's own are added.
+    // The emitting side is pbrt-v3's, unless `frontByWinding`: vertex normals decide, regardless of
+    // ReverseOrientation; a triangle's own are added.
     EmittingTriangle EmitterAt(uint32_t triangle) const;
 };
 

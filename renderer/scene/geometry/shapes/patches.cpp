@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
+
 namespace lull {
 namespace {
 
@@ -50,17 +52,22 @@ Spline ReadSpline(const ShapeEntity& entity, const std::string& letter) {
         fail(fmt::format("\"{}knots\" has {} values; {} control points of order {} need {}", letter,
                          knots.size(), s.count, s.order, s.count + s.order));
     s.knots.assign(knots.begin(), knots.end());
-    for (size_t i = 0; i < s.knots.size(); ++i)
-        if (!std::isfinite(s.knots[i]) || (i > 0 && s.knots[i] < s.knots[i - 1]))
+    for (size_t i = 0; i < s.knots.size(); ++i) {
+        if (!std::isfinite(s.knots[i]) || (i > 0 && IsAbove(s.knots[i - 1], s.knots[i])))
             fail(fmt::format("\"{}knots\" have to be finite and ascending", letter));
+        if (i > 0) s.knots[i] = std::max(s.knots[i], s.knots[i - 1]);
+    }
     const double begin = s.knots[s.order - 1], end = s.knots[s.count];
     if (!(begin < end)) fail(fmt::format("\"{}knots\" leave no range to show", letter));
     s.first = params.GetFloat(letter + "0", float(begin));
     s.last = params.GetFloat(letter + "1", float(end));
-    for (const double t : {s.first, s.last})
-        if (!(t >= begin && t <= end))
+    for (double* t : {&s.first, &s.last}) {
+        const auto within = InRange(*t, begin, end);
+        if (!within)
             fail(fmt::format("\"{0}0\" and \"{0}1\" have to lie between the knots {1} and {2}",
                              letter, begin, end));
+        *t = *within;
+    }
     return s;
 }
 

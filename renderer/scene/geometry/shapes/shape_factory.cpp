@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/geometry/shapes/curve_reader.h"
@@ -115,6 +116,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     Mesh mesh;
     mesh.reverseOrientation = entity.reverseOrientation;
     mesh.flipNormals = entity.reverseOrientation != Mirrors(m);
+    mesh.frontByWinding = entity.parameters.GetBool("frontbywinding", false);  // of glTF's emitters
     for (Vec3f& p : data.positions) {
         p = TransformPoint(m, p);
         if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
@@ -222,7 +224,8 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
                       params.GetFloat("coveragefactor", 1), params.GetFloat("alphacutoff", -1),
                       params.GetInt("coverageuv", 0) == 1, params.GetBool("coveragecolors", false)};
     const bool isConstant = coverage.alpha.IsConstant() && !coverage.vertexAlpha;
-    const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1;
+    // A factor of 1 that was rounded is no reason to let light through.
+    const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1 - float(kRounding);
     if (isConstant && coverage.factor * coverage.alpha.constant >= enough) return {};
     return coverage;
 }

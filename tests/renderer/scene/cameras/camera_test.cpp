@@ -64,6 +64,35 @@ TEST(Camera, FollowsScreenWindowAndAspect) {
     ExpectNear(Direction(shifted, 200, 100), Vec3f(3, -2, 1).normalized());
 }
 
+// glTF's cameras: all of what they show is in images of any aspect, and nothing is stretched.
+TEST(Camera, FitsWhatItHasToShow) {
+    const auto corner = [](int width, int height, float x, float y, const char* kind) {
+        const Camera camera = MakeTestCamera(
+            FilmOf(width, height), {FloatParameter("screenfit", {x, y})}, Mat4d::Identity(), kind);
+        const Ray ray = camera.GenerateRay({{float(width), 0}, {0.5f, 0.5f}});
+        return ray.d.x() == 0 ? Vec2f(ray.o.x(), ray.o.y()) : Vec2f(ray.d.head<2>() / ray.d.z());
+    };
+    for (const char* kind : {"perspective", "orthographic"}) {
+        const auto expect = [&](int width, int height, float x, float y, const Vec2f& seen) {
+            EXPECT_NEAR((corner(width, height, x, y, kind) - seen).norm(), 0, 1e-5f)
+                << kind << " " << width << "x" << height << " " << x << " " << y;
+        };
+        // Without an aspect, the height is fixed.
+        expect(100, 100, 0, 0.5f, {0.5f, 0.5f});
+        expect(200, 100, 0, 0.5f, {1, 0.5f});
+        expect(100, 200, 0, 0.5f, {0.25f, 0.5f});
+        expect(150, 100, 0, 0.5f, {0.75f, 0.5f});
+        // With aspects of 1 and 2, so is the width where that needs more.
+        expect(100, 100, 0.5f, 0.5f, {0.5f, 0.5f});
+        expect(200, 100, 0.5f, 0.5f, {1, 0.5f});
+        expect(100, 200, 0.5f, 0.5f, {0.5f, 1});
+        expect(100, 100, 1, 0.5f, {1, 1});
+        expect(200, 100, 1, 0.5f, {1, 0.5f});
+        expect(100, 200, 1, 0.5f, {1, 2});
+        expect(150, 100, 1, 0.5f, {1, 2 / 3.f});
+    }
+}
+
 // A crop is a part of the same picture.
 TEST(Camera, DoesNotHeedTheCrop) {
     FilmSettings film = FilmOf(100, 80);

@@ -1,0 +1,26 @@
+// Compares numbers of files, which exporters have rounded, with limits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lull {
+
+// Relative error of a number that was rounded to float, or printed with six digits.
+inline constexpr double kRounding = 1e-5;
+
+// Returns whether `a` is above `b` by more than rounding.
+inline bool IsAbove(double a, double b) {
+    return a - b > kRounding * std::max(std::abs(a), std::abs(b));
+}
+
+// Returns x, clamped to the finite range, if it lies there or just as far outside as rounding the
+// range's ends could take it; nothing for all else and NaN.
+inline std::optional<double> InRange(double x, double least, double most) {
+    const double slack = kRounding * std::max(std::abs(least), std::abs(most));
+    if (!(x >= least - slack && x <= most + slack)) return {};
+    return std::clamp(x, least, most);
+}
+
+}  // namespace lull
