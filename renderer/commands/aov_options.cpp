@@ -24,11 +24,13 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                    }
                },
                "Write these AOVs of the first hits to the EXR")
+            ->group("Output")
             ->delimiter(',')
             ->allow_extra_args(false)
             ->type_name("albedo|normal|depth|position|object|material|alpha|cryptomatte|noise,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Take AOVs from the reflected or refracted surface, not from mirrors and glass")
+        ->group("Output")
         ->needs(aov);
 }
 

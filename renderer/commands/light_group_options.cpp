@@ -12,6 +12,7 @@ void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names) {
     app.add_option(
            "--light-groups", *names,
            "Write the light of these lamps, objects, materials or kinds as layers; each: all")
+        ->group("Output")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAME,...|each");

@@ -22,13 +22,13 @@
 #include "renderer/results/denoiser_channels.h"
 #include "stopping/base/input_file.h"
 
-namespace lull {
+namespace lull::render {
 
 namespace {
 
 // A render that is ready: all that could be wrong is checked.
 struct PreparedRender {
-    PreparedRender(const RenderRequest& request, Job* ranks)
+    PreparedRender(const RenderRequest& request, MpiJob* ranks)
         : request(request),
           clock(StartClock(request.clock)),
           render(request.render, ranks, false) {}
@@ -114,7 +114,7 @@ RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) 
 }
 
 // Checks all that can be wrong before the work begins.
-std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks) {
+std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
     auto p = std::make_unique<PreparedRender>(request, ranks);
     RenderJob& render = p->render;
     const PixelRect& region = render.input.region;
@@ -310,7 +310,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 }
 
 // Prints the path of a sample instead.
-ExitCode RunPath(const RenderRequest& request, Job* ranks) {
+ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
     PrintPath(request.path, render.settings, render.provenance.sampler, render.input.description,
@@ -319,7 +319,7 @@ ExitCode RunPath(const RenderRequest& request, Job* ranks) {
 }
 
 // Renders one image.
-ExitCode RunImage(const RenderRequest& request, Job* ranks) {
+ExitCode RunImage(const RenderRequest& request, MpiJob* ranks) {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
     Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
@@ -329,7 +329,7 @@ ExitCode RunImage(const RenderRequest& request, Job* ranks) {
 
 // Renders all frames, each with a checkpoint of its own. To be resumed are those without an image,
 // and those whose checkpoint has been left.
-ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
+ExitCode RunSequence(const RenderRequest& request, MpiJob* ranks) {
     if (ranks->Count() > 1)
         throw UsageError("--frames: needs one process; give each rank frames of its own");
     const Talk talk = TalkOf(request.render);
@@ -352,7 +352,7 @@ ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
     return kDone;
 }
 
-ExitCode RunRender(RenderRequest request, Job* ranks) {
+ExitCode RunRender(RenderRequest request, MpiJob* ranks) {
     CheckRequest(request);
     if (request.path.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
     SetWording(request.render, ranks);
@@ -363,7 +363,7 @@ ExitCode RunRender(RenderRequest request, Job* ranks) {
 
 }  // namespace
 
-void AddRenderCommand(CLI::App& app, Command* command, Job* ranks) {
+void AddCommand(CLI::App& app, Command* command, MpiJob* ranks) {
     CLI::App* render =
         app.add_subcommand("render",
                            "Renders a scene, 20 samples per pixel a pass, until each\n"
@@ -373,4 +373,4 @@ void AddRenderCommand(CLI::App& app, Command* command, Job* ranks) {
     render->callback([=] { *command = [=] { return RunRender(*request, ranks); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::render

@@ -7,7 +7,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/sequence_options.h"
 
-namespace lull {
+namespace lull::render {
 
 struct RenderRequest {
     RenderSettings render;
@@ -40,4 +40,4 @@ void AddRenderOptions(CLI::App& app, RenderRequest* request);
 // Throws UsageError for options that do not fit together.
 void CheckRequest(const RenderRequest&);
 
-}  // namespace lull
+}  // namespace lull::render

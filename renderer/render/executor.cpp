@@ -64,7 +64,7 @@ bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptio
 }
 
 Executor::Executor(const RenderContext& context, const RenderOptions& options,
-                   std::span<const BlockStart> starts, TileShare share, RankHooks given)
+                   std::span<const BlockStart> starts, RankTiles share, RankHooks given)
     : schedule(context, options, starts, std::move(share)),
       ledger(context, options, schedule.Unlocked().Blocks().size()),
       criteria(context, options, schedule.Unlocked().Blocks()),

@@ -25,7 +25,7 @@ class Executor {
     // `starts` is where blocks are, which an interrupted render has left or another rank has said.
     // Context and options must outlive it.
     Executor(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
-             TileShare = {}, RankHooks = {});
+             RankTiles = {}, RankHooks = {});
 
     // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();

@@ -19,7 +19,7 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
 }  // namespace
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
-                           std::span<const BlockStart> starts, TileShare given)
+                           std::span<const BlockStart> starts, RankTiles given)
     : context(context),
       options(options),
       share(std::move(given)),
@@ -28,7 +28,7 @@ LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& op
     ShowStops();
 }
 
-void LiveSchedule::Restart(std::span<const BlockStart> starts, TileShare given) {
+void LiveSchedule::Restart(std::span<const BlockStart> starts, RankTiles given) {
     std::lock_guard lock(mutex);
     share = std::move(given);
     schedule = Schedule(context.film->Region(), ScheduleFor(context, options), starts, share);

@@ -1,7 +1,7 @@
 // Lets several processes share a render.
 //
 // Each rank has the same scene and the same options. The tiles of every block are dealt out
-// (TileShare in schedule.h), so that the last live block still has all ranks; a pixel's samples are
+// (RankTiles in schedule.h), so that the last live block still has all ranks; a pixel's samples are
 // summed by the rank that owns it and by nobody else, in the order of their indices. Hence the
 // image is the same bits for any number of ranks.
 //

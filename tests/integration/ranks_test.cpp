@@ -240,13 +240,13 @@ TEST_F(RanksTest, CompareBenchAndRecord) {
     runBoth("bench" + size + "--block 25 --samplers random,sobol");
     EXPECT_EQ(WithoutSeconds("one.csv"), WithoutSeconds("some.csv"));
 
-    runBoth("dataset --name a" + size + "--blocks 0");
+    runBoth("record --name a" + size + "--blocks 0");
     const std::vector<ViewpointRecording> one = ReadDataset(directory.File("one")),
                                           some = ReadDataset(directory.File("some"));
     ASSERT_EQ(some.at(0).blocks.size(), 1u);
     EXPECT_EQ(some[0].blocks.at(0).spp, one.at(0).blocks.at(0).spp);
     EXPECT_EQ(some[0].blocks.at(0).values, one[0].blocks.at(0).values);
-    ExpectSuccess(Run(Ranks(2) + "LULL dataset --name a" + size + "--blocks 0 -o some"));
+    ExpectSuccess(Run(Ranks(2) + "LULL record --name a" + size + "--blocks 0 -o some"));
 }
 
 TEST_F(RanksTest, SaySharedErrorsOnce) {

@@ -2,9 +2,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/command.h"
 #include "renderer/lab/commands/viewing_option.h"
 
-namespace lull {
+namespace lull::compare {
 
 namespace {
 
@@ -58,9 +59,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
             ->type_name("DIR[:NAME]")
             ->excludes(scene);
     auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")
+                     ->group(kCommonOptions)
                      ->type_name("RULE")
                      ->capture_default_str();
-    AddCautionOption(app, &o->render.caution);
+    AddCautionOption(app, &o->render.caution)->group("Stopping");
     app.add_option("--human", o->human, "Compare human thresholds, or an image rendered with them")
         ->type_name("H.csv[:NAME]|H.exr|H.png");
     app.add_option("--automatic", o->automatic,
@@ -76,6 +78,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->needs(scene)
         ->excludes(reference);
     app.add_flag("--denoise", o->denoise, "Add \"denoised\", the image of `lull render --denoise`")
+        ->group(kCommonOptions)
         ->needs(scene);
     AddViewingOption(app, &o->display);
     app.add_option("--verify", o->verify,
@@ -85,8 +88,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->needs(scene)
         ->type_name("N,N,...");
     app.add_option("-o,--output", o->output, "Write files whose names begin with OUT, or to DIR/")
+        ->group(kCommonOptions)
         ->type_name("OUT|DIR/");
     app.add_option("--report", o->report, "Write a page with images and tables")
+        ->group(kCommonOptions)
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })
@@ -95,4 +100,4 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.footer(kFooter);
 }
 
-}  // namespace lull
+}  // namespace lull::compare

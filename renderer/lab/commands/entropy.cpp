@@ -13,7 +13,7 @@
 #include "renderer/lab/viewpoints/picture_entropies.h"
 #include "stopping/base/csv.h"
 
-namespace lull {
+namespace lull::entropy {
 
 namespace {
 
@@ -195,7 +195,7 @@ ExitCode RunEntropy(const Options& options) {
 
 }  // namespace
 
-void AddEntropyCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* entropy = app.add_subcommand("entropy", "Computes SVD-entropies of pictures.");
     auto options = std::make_shared<Options>();
     AddOptions(*entropy, options.get());
@@ -208,4 +208,4 @@ void AddEntropyCommand(CLI::App& app, Command* command) {
     });
 }
 
-}  // namespace lull
+}  // namespace lull::entropy

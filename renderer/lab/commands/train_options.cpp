@@ -13,7 +13,7 @@
 #include "renderer/lab/commands/split_option.h"
 #include "stopping/lab/training/training_preset.h"
 
-namespace lull {
+namespace lull::train {
 
 namespace {
 
@@ -319,4 +319,4 @@ ProgressStyle StyleOf(const TrainOptions& options) {
                                    : ProgressStyle::Plain;
 }
 
-}  // namespace lull
+}  // namespace lull::train

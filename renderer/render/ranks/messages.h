@@ -32,7 +32,7 @@ enum class RankWord : uint8_t {
 
 // Where all blocks are when a rank begins.
 struct StartMessage {
-    std::vector<int> deal;  // of the tiles, see TileShare
+    std::vector<int> deal;  // of the tiles, see RankTiles
     std::vector<BlockStart> blocks;
     std::vector<ViewNeed> needs;  // of criterion and clock after each block's next pass
 };
