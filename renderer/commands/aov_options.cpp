@@ -34,8 +34,8 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
         ->needs(aov);
 }
 
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
-    CheckMemory(region.Area() * BytesOfLayers(wanted, features),
+void CheckLayersFit(const LayerOptions& layers, const PixelRect& region) {
+    CheckMemory(region.Area() * BytesOfLayers(layers),
                 fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
                 "render it in parts with --crop, or smaller with --resolution");
 }

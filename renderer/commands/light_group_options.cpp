@@ -19,20 +19,19 @@ void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names) {
 }
 
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
-                              const Scene& scene, const LightGroupOptions& options,
-                              const PixelRect& region) {
+                              const Scene& scene, LayerOptions layers, const PixelRect& region) {
     if (names.empty()) return {};
     if (IsBidirectional(scene.integrator))
         throw Error(
             "--light-groups: \"bdpt\" does not tell lights apart; add --integrator path, or leave "
             "the groups out");
-    LightGroups groups;
+    LightGroups& groups = layers.groups;
     try {
         groups = MakeLightGroups(names, description, scene);
     } catch (const Error& e) {
         throw Error(std::string("--light-groups: ") + e.what());
     }
-    CheckMemory(region.Area() * BytesOfLights(groups.Count(), options),
+    CheckMemory(region.Area() * BytesOfLayers(layers),
                 fmt::format("{} light groups of {}x{} pixels", groups.Count(), region.Width(),
                             region.Height()),
                 "name fewer, or render in parts with --crop");

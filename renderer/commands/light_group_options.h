@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/film/light_group_film.h"
+#include "renderer/film/layer.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {
@@ -14,6 +14,6 @@ void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
 // Returns the groups of these names, none without any, as MakeLightGroups() does. Throws Error also
 // where paths start from lights, and where the memory cannot hold the layers of the region.
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description&,
-                              const Scene&, const LightGroupOptions&, const PixelRect& region);
+                              const Scene&, LayerOptions, const PixelRect& region);
 
 }  // namespace lull

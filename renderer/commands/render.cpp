@@ -38,7 +38,6 @@ struct PreparedRender {
     RenderJob render;
     Rule rule;
     FilmOptions film;
-    LightGroups lightGroups;
     RenderFiles files;
     std::unique_ptr<Display> display;  // null: none
     std::vector<BlockHistory> histories;
@@ -88,7 +87,7 @@ FilmOptions CheckedFilm(const PreparedRender& p) {
     const RenderSettings& settings = p.render.settings;
     const FilmOptions film{
         .grid = GridOf(settings.schedule),
-        .withHalf = p.clock || p.request.HasPage() || p.request.CollectsFeatures() ||
+        .withHalf = p.clock || p.request.HasPage() || p.request.WantedLayers().features ||
                     !settings.checkpoint.file.empty() || LooksAtHalf(p.rule, settings.schedule)};
     CheckFilmFits(p.render.input.region, film);
     return film;
@@ -125,12 +124,13 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
-    CheckLayersFit(request.aovs, request.CollectsFeatures(), region);
+    p->film.layers = request.WantedLayers();
+    CheckLayersFit(p->film.layers, region);
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
                              region, ranks->Count(), TalkOf(render.settings));
     render.Compile();
-    p->lightGroups = ChooseLightGroups(request.lightGroups, render.input.description, *render.scene,
-                                       request.Lights(), region);
+    p->film.layers.groups = ChooseLightGroups(request.lightGroups, render.input.description,
+                                              *render.scene, p->film.layers, region);
     CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
     p->histories.resize(MakeBlocks(region, render.settings.schedule).size());
@@ -171,10 +171,6 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
     how.film = p->film;
-    how.aovs = p->request.aovs;
-    how.features = p->request.CollectsFeatures();
-    how.lightGroups = p->lightGroups;
-    how.lights = p->request.Lights();
     how.guide = p->request.guide;
     how.clock = p->clock;
     // An interruption or a preview finds the whole image, whatever its sample counts.
@@ -210,14 +206,14 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     const Film& film = session->TheFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
-        denoised = DenoiseImage(PictureOf(film, *session->Features(), film.Region()), film.Region(),
-                                {}, {.isQuick = true});
+        denoised =
+            DenoiseImage(PictureOf(film, film.Region()), film.Region(), {}, {.isQuick = true});
         DoubtBlocks(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance}, film,
-               denoised ? &*denoised : nullptr, session->Mattes(), result, {},
-               p.request.pictures.format, &written);
+    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
+               {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures.format},
+               &written);
     written.Check();
 } catch (const Error& e) {
     TalkOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
@@ -254,13 +250,13 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     DenoiserResults made;
     NoisyPicture picture;
     GroupedPicture lights;
-    const bool hasGroups = p.request.denoise && session->Lights();
-    if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, *session->Features(), region);
+    const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
+    if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (hasGroups)
-        lights = PictureOf(film, *session->Features(), *session->Lights(), region);
+        lights = GroupedPictureOf(film, region);
     else if (p.request.denoise)
-        picture = FeaturesOf(film, *session->Features(), region);
-    session->DropFeatures();  // what follows needs the memory
+        picture = FeaturesOf(film, region);
+    film.layers.ForgetFeatures();  // what follows needs the memory
     if (p.request.denoise && !hasGroups) picture.colour = ColoursOf(film, region);
     film.DropHalf();
     if (!p.request.denoise) return made;
@@ -287,17 +283,15 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
-    const ResultFiles written = WriteFiles(
-        p.files, {{*p.render.scene, p.render.provenance},
-                  session->TheFilm(),
-                  result,
-                  p.histories,
-                  p.render.input.warnings,
-                  {p.request.aovs, session->Aovs(), session->Mattes(), session->Lights()},
-                  denoised.image ? &*denoised.image : nullptr,
-                  denoised.halves,
-                  p.render.input.description,
-                  p.request.pictures.format});
+    const ResultFiles written = WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
+                                                     session->TheFilm(),
+                                                     result,
+                                                     p.histories,
+                                                     p.render.input.warnings,
+                                                     denoised.image ? &*denoised.image : nullptr,
+                                                     denoised.halves,
+                                                     p.render.input.description,
+                                                     p.request.pictures.format});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;

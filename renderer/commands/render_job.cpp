@@ -97,7 +97,7 @@ SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
 }
 
 RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
-    if (denoiser) denoiser->Show(&session->TheFilm(), session->Features(), session->Lights());
+    if (denoiser) denoiser->Show(&session->TheFilm());
     session->Resume();
     CatchInterrupts();
     return session->Run(render);

@@ -28,11 +28,13 @@ struct RenderRequest {
     std::string Rule() const;
     // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
-    LightGroupOptions Lights() const {
-        return {.forDenoiser = denoise, .withBackground = pictures.format.isTransparent};
+    // Returns the layers, with no light groups yet.
+    LayerOptions WantedLayers() const {
+        return {.aovs = aovs,
+                .features = denoise || denoiseLayers,
+                .groupNoise = denoise,
+                .groupBackground = pictures.format.isTransparent};
     }
-    // Returns whether the inputs of the denoiser are collected.
-    bool CollectsFeatures() const { return denoise || denoiseLayers; }
 };
 
 void AddRenderOptions(CLI::App& app, RenderRequest* request);

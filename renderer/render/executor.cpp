@@ -50,11 +50,6 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
     return samples;
 }
 
-// Returns the luminance of all samples together.
-double LuminanceOf(const FilmPixel& pixel) {
-    return 0.212671 * pixel.sum[0] + 0.715160 * pixel.sum[1] + 0.072169 * pixel.sum[2];
-}
-
 }  // namespace
 
 bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptions& options) {
@@ -152,25 +147,25 @@ int64_t Executor::TakeSamples(const Tile& tile) {
         if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
         return RenderTile(take, tile, sampler, film, spread,
                           [&](const Vec2i& pixel, uint32_t first, FilmPixel* sums) {
-                              const double camera =
-                                  LuminanceOf(*sums) - LuminanceOf(film->At(pixel));
-                              context.light->AddTo(pixel, first, camera, sums, context.layers);
+                              context.light->AddTo(pixel, first, sums, film);
                           });
     };
-    if (!context.layers) {
+    if (film->layers.IsEmpty()) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
             return context.source(s, pixel, index, {});
         };
         return render(alone);
     }
+    const LightGroups& wanted = film->layers.Options().groups;
     std::optional<GroupRadiance> groups;
-    if (context.layers.lights) groups.emplace(context.layers.lights->Groups());
-    const auto withLayers = [&, asks = context.layers.NeedFirstHits()](
-                                Sampler& s, const Vec2i& pixel, uint32_t index) {
-        FirstHit firstHit;
-        const SampleDetail detail{asks ? &firstHit : nullptr, groups ? &*groups : nullptr};
+    if (wanted.Count() > 0) groups.emplace(wanted);
+    const auto withLayers = [&, asks = film->layers.NeedFirstHits()](Sampler& s, const Vec2i& pixel,
+                                                                     uint32_t index) {
+        LayerSample summed{.index = index, .groups = groups ? &*groups : nullptr};
+        const SampleDetail detail{asks ? &summed.hit : nullptr, groups ? &*groups : nullptr};
         const PathSample sample = context.source(s, pixel, index, detail);
-        context.layers.Add(pixel, index, firstHit, sample.radiance, detail.groups);
+        summed.radiance = sample.radiance;
+        film->layers.Add(pixel, summed);
         return sample;
     };
     return render(withLayers);

@@ -107,24 +107,24 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
         TraceLightPath(scene, shares, sampler, sample, i, splat);
 }
 
-void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel* sums,
-                        const Layers& layers) const {
-    const LightPlane::Sums light = plane.SumsAt(p);
+void LightRounds::AddTo(const Vec2i& p, uint32_t from, FilmPixel* sums, Film* film) const {
+    const double camera = Luminance(sums->sum) - Luminance(film->At(p).sum);
+    const LightPlane::Sums all = plane.SumsAt(p);
     // Passes of a render that goes on with another rule may begin within a round.
     const double samples = double(end) - double(from), share = samples / double(end - first);
+    SplatLight light{.squares = all.squares * share,
+                     .each = Luminance(all.sum) / double(end - first),
+                     .samples = samples};
     for (size_t c = 0; c < 3; ++c) {
-        sums->sum[c] += light.sum[c] * share;
-        sums->halfSum[c] += light.halfSum[c] * share;
+        light.sum[c] = all.sum[c] * share;
+        light.halfSum[c] = all.halfSum[c] * share;
+        sums->sum[c] += light.sum[c];
+        sums->halfSum[c] += light.halfSum[c];
     }
-    if (!layers.aovs && !layers.features) return;
-    // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
-    // process.
-    const double each =
-        (0.212671 * light.sum[0] + 0.715160 * light.sum[1] + 0.072169 * light.sum[2]) /
-        double(end - first);
-    const double squares = light.squares * share + 2 * each * camera + samples * each * each;
-    if (layers.aovs) layers.aovs->At(p).squares += squares;
-    if (layers.features) layers.features->At(p).squares += float(squares);
+    film->layers.ForEach([&](auto& layer) {
+        if constexpr (requires { layer.AddSplats(p, camera, light); })
+            layer.AddSplats(p, camera, light);
+    });
 }
 
 void LightRounds::Learn(const Film& film) {

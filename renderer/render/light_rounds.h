@@ -16,7 +16,6 @@
 #include <functional>
 #include <span>
 
-#include "renderer/film/layers.h"
 #include "renderer/film/light_plane.h"
 #include "renderer/render/guide_tally.h"
 #include "renderer/render/schedule.h"
@@ -47,9 +46,9 @@ class LightRounds {
     SampleSpread* SpreadOf(const Film& film, const PixelRect& tile) {
         return &spreads[film.TileAt(tile.min)];
     }
-    // Adds the round's light to a pixel that has its samples from `first` on to the end; `camera`
-    // is the sum of their luminance.
-    void AddTo(const Vec2i& p, uint32_t first, double camera, FilmPixel*, const Layers&) const;
+    // Adds the round's light to the sums of a pixel, which has its samples from `first` on to the
+    // end, and to its layers; the film has its sums without these samples.
+    void AddTo(const Vec2i& p, uint32_t first, FilmPixel* sums, Film*) const;
     // At the end of a round: chooses the shares of those to come.
     void Learn(const Film&);
 

@@ -42,7 +42,7 @@ std::optional<Tile> LiveSchedule::Next() {
     std::lock_guard lock(mutex);
     const std::optional<Tile> tile = schedule.Next();
     if (tile && hasClock && !undo.Has(tile->block))
-        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film, context.layers);
+        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film);
     return tile;
 }
 
@@ -86,7 +86,7 @@ void LiveSchedule::BeginRound(int end) {
     schedule.BeginRound(end);
 }
 
-std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film, context.layers); }
+std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film); }
 
 std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
     return TilesOf(BlockAt(block).pixels, block, options.schedule.tileSize, {rank, share.deal});

@@ -33,12 +33,10 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
     if (context.interrupted && !Fits(*context.interrupted, region, options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = ThreadCount(options.threads);
-    if (!context.layers.AreOf(region))
-        throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
     if (!alone && context.light) throw std::invalid_argument("several ranks trace no light paths");
-    if (context.light && context.layers.lights)
+    if (context.light && context.film->layers.Find<LightGroupLayer>())
         throw std::invalid_argument("light paths are of no light group");
     if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));

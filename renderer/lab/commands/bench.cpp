@@ -167,7 +167,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     RenderJob& render = bench->render;
     const PixelRect& region = render.input.region;
     if (options.denoise) {
-        CheckLayersFit({}, true, region);
+        CheckLayersFit({.features = true}, region);
         render.DenoiseBlocks();
     }
     bench->rules = MakeRules(options, render);
@@ -219,7 +219,7 @@ SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
     if (variant.isGuided) how.guide = options.guide;
     how.checkpoint.isKept = true;
     how.identity = IdentityOf(provenance, bench.sceneHash);
-    how.features = options.denoise;
+    how.film.layers.features = options.denoise;
     return how;
 }
 

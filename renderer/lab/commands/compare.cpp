@@ -107,7 +107,7 @@ void AddOtherRules(Compared* compared) {
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckLayersFit({}, true, region);
+    CheckLayersFit({.features = true}, region);
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));
@@ -146,7 +146,7 @@ SessionOptions MakeOptions(Compared* compared) {
         compared->rules, compared->render.input.region, options.render.schedule,
         {.snapshots = true, .noise = true, .curves = hasPage, .goesOn = options.snapshots},
         &compared->report.histories);
-    how.features = options.denoise;
+    how.film.layers.features = options.denoise;
     how.identity = compared->render.Identity();
     how.identity["human"] = compared->humanChecksum;
     how.identity["snapshots"] = options.snapshots ? "yes" : "no";

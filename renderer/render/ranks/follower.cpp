@@ -50,8 +50,7 @@ class Follower {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film,
-                      context.layers);
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film);
         } else if (word == RankWord::TimeUp) {
             schedule.CallTime();
         } else if (word == RankWord::Pause) {
@@ -94,7 +93,7 @@ class Follower {
                                taken.seconds, MeansOf(tiles, needs[size_t(block)], *context.film)};
         touched[size_t(block)] = true;
         if (needs[size_t(block)] == ViewNeed::Measured)
-            channel.Post(0, PackPixels(block, tiles, *context.film, context.layers));
+            channel.Post(0, PackPixels(block, tiles, *context.film));
         channel.Post(0, Pack(part));
     }
 
@@ -105,8 +104,7 @@ class Follower {
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
             const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
-            if (!tiles.empty())
-                channel.Post(0, PackPixels(i, tiles, *context.film, context.layers));
+            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *context.film));
         }
         channel.Post(0, Pack(RankWord::Collected));
     }

@@ -185,7 +185,7 @@ class Leader {
         for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
             for (int i = 0; i < int(blocks.size()); ++i) {
                 const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
-                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, context.layers));
+                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film));
             }
         channel.PostToAll(Pack(RankWord::Begin));
     }
@@ -274,7 +274,7 @@ class Leader {
             TakePart(from, GetPart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
-            GetPixels(reader, schedule.TilesOfRank(block, from), film, context.layers);
+            GetPixels(reader, schedule.TilesOfRank(block, from), film);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);
         } else if (word == RankWord::Collected) {

@@ -70,11 +70,11 @@ std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned) {
     return std::move(writer.bytes);
 }
 
-std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
-                                  const Layers& layers) {
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
+                                  const Film& film) {
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
-    for (const PixelRect& tile : tiles) PutPlanes(film, layers, tile, &writer);
+    for (const PixelRect& tile : tiles) PutPlanes(film, tile, &writer);
     return std::move(writer.bytes);
 }
 
@@ -119,9 +119,8 @@ int GetBlock(StateReader& reader, size_t blocks) {
     return block;
 }
 
-void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
-               const Layers& layers) {
-    for (const PixelRect& tile : tiles) GetPlanes(&reader, tile, film, layers);
+void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film) {
+    for (const PixelRect& tile : tiles) GetPlanes(&reader, tile, film);
     reader.Finish();
 }
 

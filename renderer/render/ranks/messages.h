@@ -1,7 +1,7 @@
 // Serialises the messages of ranks (peers.h).
 #pragma once
 
-#include "renderer/film/layers.h"
+#include "renderer/film/film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
@@ -62,8 +62,7 @@ std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
 std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
-std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&,
-                                  const Layers&);
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
 // Read the rest of a message after its word. Throw std::runtime_error for other bytes.
 StartMessage GetStart(StateReader&);
@@ -72,8 +71,8 @@ AnswerMessage GetAnswer(StateReader&);
 PartMessage GetPart(StateReader&);
 // Reads the number of a block, below `blocks`.
 int GetBlock(StateReader&, size_t blocks);
-// Reads sums of these tiles into the film and the layers.
-void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*, const Layers&);
+// Reads sums of these tiles into the film.
+void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
 
 // Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where
 // the sums are to be sent.

@@ -45,8 +45,14 @@ inline bool SamePixels(const Film& a, const Film& b) {
     return a.RejectedCount() == b.RejectedCount();
 }
 
-inline bool SameLayers(const AovFilm& a, const AovFilm& b) {
-    return std::ranges::equal(a.Pixels(), b.Pixels());
+// Returns whether the sums of their layers are, too.
+inline bool SameSums(const Film& a, const Film& b) {
+    const auto bytesOf = [](const Film& film) {
+        StateWriter writer;
+        PutPlanes(film, film.Region(), &writer);
+        return std::move(writer.bytes);
+    };
+    return PlanesOf(a) == PlanesOf(b) && bytesOf(a) == bytesOf(b);
 }
 
 // Stops at a given spp, and records its views.
