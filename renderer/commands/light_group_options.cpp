@@ -21,10 +21,6 @@ void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names) {
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
                               const Scene& scene, LayerOptions layers, const PixelRect& region) {
     if (names.empty()) return {};
-    if (IsBidirectional(scene.integrator))
-        throw Error(
-            "--light-groups: \"bdpt\" does not tell lights apart; add --integrator path, or leave "
-            "the groups out");
     LightGroups& groups = layers.groups;
     try {
         groups = MakeLightGroups(names, description, scene);

@@ -12,7 +12,7 @@ namespace lull {
 void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
 
 // Returns the groups of these names, none without any, as MakeLightGroups() does. Throws Error also
-// where paths start from lights, and where the memory cannot hold the layers of the region.
+// where the memory cannot hold the layers of the region with them.
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description&,
                               const Scene&, LayerOptions, const PixelRect& region);
 

@@ -1,6 +1,8 @@
 // What layers (layers.h) are made of: the sums that a user or a denoiser asks for, and samples.
 #pragma once
 
+#include <span>
+
 #include "renderer/film/aov_set.h"
 #include "renderer/film/pixel_plane.h"
 #include "renderer/transport/first_hit.h"
@@ -33,18 +35,23 @@ struct LayerSample {
     const GroupRadiance* groups = nullptr;  // of LayerOptions::groups, where there are any
 };
 
-// The light that light paths bring to a pixel in a round, of which some samples are added to it
-// (render/light_rounds.h). Each of these has the share `each` of the luminance.
+// Light that light paths bring to some samples of a pixel (render/light_rounds.h).
 struct SplatLight {
-    std::array<double, 3> sum = {}, halfSum = {};  // of these samples
-    double squares = 0;                            // of luminance, of single light paths
-    double each = 0, samples = 0;
+    std::array<double, 3> sum = {}, halfSum = {};
+    double squares = 0;  // of luminance, of single light paths
+    double each = 0;     // the luminance that each sample gets of it
+    double samples = 0;
+    double camera = 0;  // the luminance of these samples without it
 
-    // Returns how the sum of the squares of samples grows, whose luminance is `camera` without it:
-    // the variance of the light is that of a Poisson process.
-    double Squares(double camera) const {
-        return squares + 2 * each * camera + samples * each * each;
-    }
+    // Returns how much the squares of the samples' luminance add up to more by it: its variance is
+    // that of a Poisson process.
+    double Squares() const { return squares + 2 * each * camera + samples * each * each; }
+};
+
+// The light of all groups of lights together, and of each where there are any.
+struct PixelSplats {
+    SplatLight all;
+    std::span<const SplatLight> groups = {};
 };
 
 }  // namespace lull

@@ -29,6 +29,9 @@ class LightGroupLayer {
         for (size_t i = 0; i < planes.size(); ++i)
             planes[i].Add(p, InHalf(sample.index), light[i], sample.hit.found);
     }
+    void AddSplats(const Vec2i& p, const PixelSplats& splats) {
+        for (size_t i = 0; i < planes.size(); ++i) planes[i].AddSplats(p, splats.groups[i]);
+    }
     static std::string Identity(const LayerOptions& o) { return TextOf(o.groups); }
     template <typename Self, typename Visit>
     static void ForEachPlane(Self& self, const Visit& visit) {
@@ -81,6 +84,13 @@ class LightGroupLayer {
             Noise& pixel = noise->At(p);
             if (inHalf) AddTo(radiance, &pixel.halfSum);
             pixel.squares += Sqr(double(Luminance(radiance)));
+        }
+        void AddSplats(const Vec2i& p, const SplatLight& light) {
+            for (size_t c = 0; c < 3; ++c) sums.At(p)[c] += light.sum[c];
+            if (!noise) return;
+            Noise& pixel = noise->At(p);
+            for (size_t c = 0; c < 3; ++c) pixel.halfSum[c] += light.halfSum[c];
+            pixel.squares += light.Squares();
         }
     };
     static void AddTo(const Rgb& radiance, Sum* sum) {

@@ -26,12 +26,11 @@ class SquareLayer {
         else
             std::get<PixelPlane<double>>(plane).At(p) += Sqr(double(Luminance(sample.radiance)));
     }
-    // Adds the light of light paths to samples whose luminance is `camera` without it.
-    void AddSplats(const Vec2i& p, double camera, const SplatLight& light) {
+    void AddSplats(const Vec2i& p, const PixelSplats& splats) {
         std::visit(
             [&](auto& sums) {
                 auto& sum = sums.At(p);
-                sum += std::remove_reference_t<decltype(sum)>(light.Squares(camera));
+                sum += std::remove_reference_t<decltype(sum)>(splats.all.Squares());
             },
             plane);
     }

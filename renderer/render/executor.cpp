@@ -16,10 +16,10 @@ namespace {
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same part
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
 // render has taken further already keep what they have. Adds them to `spread`, if there is one, and
-// ends a pixel by finish(pixel, first sample, sums). Returns how many were taken.
-template <typename Take, typename Finish>
+// the light of light paths, if there is any. Returns how many were taken.
+template <typename Take>
 int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
-                   SampleSpread* spread, const Finish& finish) {
+                   SampleSpread* spread, RoundLight* light) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -27,6 +27,7 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             const Vec2i pixel(x, y);
             FilmPixel sums = pixels.At(pixel);
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
+            if (light && end > first) light->Begin(pixel);
             double sum = 0, squares = 0;  // of luminance
             for (uint32_t k = first; k < end; ++k) {
                 const PathSample sample = take(sampler, pixel, k);
@@ -40,7 +41,7 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
                 spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
-            if (end > first) finish(pixel, first, &sums);
+            if (light && end > first) light->End(pixel, first, &sums);
             pixels.Set(pixel, sums);
             if (spread && end > first) {
                 spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
@@ -144,11 +145,9 @@ int64_t Executor::TakeSamples(const Tile& tile) {
                            : context.light ? context.light->SpreadOf(*film, tile.pixels)
                                            : nullptr;
     const auto render = [&](const auto& take) {
-        if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
-        return RenderTile(take, tile, sampler, film, spread,
-                          [&](const Vec2i& pixel, uint32_t first, FilmPixel* sums) {
-                              context.light->AddTo(pixel, first, sums, film);
-                          });
+        if (!context.light) return RenderTile(take, tile, sampler, film, spread, nullptr);
+        RoundLight light(*context.light, film);
+        return RenderTile(take, tile, sampler, film, spread, &light);
     };
     if (film->layers.IsEmpty()) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {

@@ -38,7 +38,8 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
       shares(learned),
       spreads(film.TileCount()),
       unit(FindUnit()),
-      plane(region, unit) {}
+      plane(region, unit),
+      groups(film.layers.Options().groups) {}
 
 // Returns about the mean of what light paths bring, from a few of them.
 double LightRounds::FindUnit() const {
@@ -70,6 +71,7 @@ void LightRounds::Begin(const Schedule& schedule) {
     shares = learned;
     shares.lightPaths = std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
     plane = LightPlane(region, unit);
+    groupPlanes.assign(size_t(groups.Count()), plane);
 }
 
 bool LightRounds::Trace(const std::function<bool()>& isCancelled) {
@@ -100,30 +102,54 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
         for (int y = from.y(); y <= to.y(); ++y)
             for (int x = from.x(); x <= to.x(); ++x) {
                 const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
-                if (weight != 0) plane.Add({x, y}, s.radiance * weight, inHalf);
+                if (weight == 0) continue;
+                plane.Add({x, y}, s.radiance * weight, inHalf);
+                if (groups.Count() > 0)
+                    groupPlanes[groups.ofLight[size_t(s.light)]].Add({x, y}, s.radiance * weight,
+                                                                     inHalf);
             }
     };
     for (uint32_t i = begin; i < stop; ++i)
         TraceLightPath(scene, shares, sampler, sample, i, splat);
 }
 
-void LightRounds::AddTo(const Vec2i& p, uint32_t from, FilmPixel* sums, Film* film) const {
-    const double camera = Luminance(sums->sum) - Luminance(film->At(p).sum);
-    const LightPlane::Sums all = plane.SumsAt(p);
+SplatLight LightRounds::LightOf(const LightPlane& light, const Vec2i& p, uint32_t from) const {
+    const LightPlane::Sums all = light.SumsAt(p);
     // Passes of a render that goes on with another rule may begin within a round.
     const double samples = double(end) - double(from), share = samples / double(end - first);
-    SplatLight light{.squares = all.squares * share,
-                     .each = Luminance(all.sum) / double(end - first),
-                     .samples = samples};
+    SplatLight part{.squares = all.squares * share,
+                    .each = Luminance(all.sum) / double(end - first),
+                    .samples = samples};
     for (size_t c = 0; c < 3; ++c) {
-        light.sum[c] = all.sum[c] * share;
-        light.halfSum[c] = all.halfSum[c] * share;
-        sums->sum[c] += light.sum[c];
-        sums->halfSum[c] += light.halfSum[c];
+        part.sum[c] = all.sum[c] * share;
+        part.halfSum[c] = all.halfSum[c] * share;
+    }
+    return part;
+}
+
+void RoundLight::Begin(const Vec2i& p) {
+    if (const auto* groups = film->layers.Find<LightGroupLayer>())
+        for (int i = 0; i < groups->Count(); ++i)
+            before[size_t(i)] = Luminance(groups->At(i, p, 0).sum);
+}
+
+void RoundLight::End(const Vec2i& p, uint32_t first, FilmPixel* sums) const {
+    PixelSplats splats{rounds.LightOf(rounds.plane, p, first)};
+    splats.all.camera = Luminance(sums->sum) - Luminance(film->At(p).sum);
+    std::array<SplatLight, kMostLightGroups + 1> ofGroups;
+    if (const auto* groups = film->layers.Find<LightGroupLayer>()) {
+        for (size_t i = 0; i < size_t(groups->Count()); ++i) {
+            ofGroups[i] = rounds.LightOf(rounds.groupPlanes[i], p, first);
+            ofGroups[i].camera = Luminance(groups->At(int(i), p, 0).sum) - before[i];
+        }
+        splats.groups = {ofGroups.data(), size_t(groups->Count())};
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        sums->sum[c] += splats.all.sum[c];
+        sums->halfSum[c] += splats.all.halfSum[c];
     }
     film->layers.ForEach([&](auto& layer) {
-        if constexpr (requires { layer.AddSplats(p, camera, light); })
-            layer.AddSplats(p, camera, light);
+        if constexpr (requires { layer.AddSplats(p, splats); }) layer.AddSplats(p, splats);
     });
 }
 

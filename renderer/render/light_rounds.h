@@ -46,9 +46,6 @@ class LightRounds {
     SampleSpread* SpreadOf(const Film& film, const PixelRect& tile) {
         return &spreads[film.TileAt(tile.min)];
     }
-    // Adds the round's light to the sums of a pixel, which has its samples from `first` on to the
-    // end, and to its layers; the film has its sums without these samples.
-    void AddTo(const Vec2i& p, uint32_t first, FilmPixel* sums, Film*) const;
     // At the end of a round: chooses the shares of those to come.
     void Learn(const Film&);
 
@@ -58,7 +55,10 @@ class LightRounds {
     void Take(std::span<const std::byte>);
 
   private:
+    friend class RoundLight;
     double FindUnit() const;
+    // Returns light of a plane that belongs to a pixel's samples from `from` on.
+    SplatLight LightOf(const LightPlane&, const Vec2i& p, uint32_t from) const;
     void TraceSome(uint32_t sample, uint32_t begin, uint32_t end);
 
     const Scene& scene;
@@ -70,6 +70,24 @@ class LightRounds {
     int first = 0, end = 0;
     double unit = 1;
     LightPlane plane;
+    const LightGroups groups;
+    std::vector<LightPlane> groupPlanes;  // the light of each
+};
+
+// Adds the light of a round to the pixels of a film, for one thread.
+class RoundLight {
+  public:
+    RoundLight(const LightRounds& rounds, Film* film) : rounds(rounds), film(film) {}
+
+    // To be called before the first and after the last sample of a pixel in the round. These are
+    // the samples from `first` on, and in the layers; the film has the pixel without them.
+    void Begin(const Vec2i& p);
+    void End(const Vec2i& p, uint32_t first, FilmPixel* sums) const;
+
+  private:
+    const LightRounds& rounds;
+    Film* film;
+    std::array<double, kMostLightGroups + 1> before = {};  // luminance of each group
 };
 
 }  // namespace lull

@@ -36,8 +36,6 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
     if (!alone && context.light) throw std::invalid_argument("several ranks trace no light paths");
-    if (context.light && context.film->layers.Find<LightGroupLayer>())
-        throw std::invalid_argument("light paths are of no light group");
     if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);

@@ -117,7 +117,7 @@ struct RenderContext {
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
 // callbacks; throws std::invalid_argument for a display on several ranks, and for light paths on
-// these or with light groups.
+// these.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the

@@ -27,8 +27,7 @@ int64_t BytesOfLayers(const LayerOptions&);
 struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
-    FilmOptions
-        film;  // with the half where there are features; no light groups with a BdptIntegrator
+    FilmOptions film;  // with the half where there are features
     // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
     bool firstLook = false;
     GuideOptions guide;

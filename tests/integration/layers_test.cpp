@@ -80,6 +80,10 @@ struct LayersTest : testing::Test {
     }
     // Expects that the light of groups adds up to R, G, B, within rounding and `tolerance` times
     // the brightest value.
+    double MeanOf(const std::string& name, const char* channel) {
+        const std::vector<float> values = ReadExr(directory.File(name)).Find(channel)->values;
+        return std::accumulate(values.begin(), values.end(), 0.) / double(values.size());
+    }
     void ExpectSum(const std::string& file, const std::vector<std::string>& groups,
                    float tolerance = 1e-6f) {
         const ExrImage image = ReadExr(directory.File(file));
@@ -162,6 +166,22 @@ TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
 }
 
+// The sums of AOVs are in the checkpoint: some can be left out afterwards, and none added.
+TEST_F(LayersTest, AreThoseOfTheCheckpoint) {
+    const std::string render = "--stop dammertz:0.001 --pass 20 ";
+    Render(render + "--cap 40 --aov depth,noise -o whole.exr");
+    const std::string parts =
+        "LULL render scene.pbrt --quiet --checkpoint c.h5 -o parts.exr " + render;
+    ExpectSuccess(RunShell(directory, parts + "--cap 20 --aov depth,noise --keep-checkpoint"));
+    ExpectFailure(directory, parts.substr(5) + "--cap 40 --resume --aov albedo",
+                  {"c.h5", "without the albedo and normal", "go on with the AOVs"});
+    ExpectSuccess(RunShell(directory, parts + "--cap 40 --resume --aov noise"));
+    const ExrImage whole = ReadExr(directory.File("whole.exr")),
+                   part = ReadExr(directory.File("parts.exr"));
+    EXPECT_EQ(part.channels.size(), 5u);
+    for (const ExrChannel& c : part.channels) EXPECT_EQ(whole.Find(c.name)->values, c.values);
+}
+
 TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     directory.Write("scene.pbrt", SceneText(kLamps));
     const std::string groups = "--light-groups bulb,key ";
@@ -180,6 +200,16 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     ExpectSum("b.exr", {"environment", "key", "bulb"});
     Render("--spp 40 --guide on --integrator path -o c.exr " + groups);
     ExpectSum("c.exr", {"bulb", "key", "rest"});
+    // Light paths belong to the group of the light that they start from.
+    Render("--spp 40 --integrator bdpt -o e.exr");
+    Render("--spp 40 --integrator bdpt --aov noise -o f.exr " + groups);
+    ExpectSum("f.exr", {"bulb", "key", "rest"});
+    EXPECT_EQ(ReadExr(directory.File("f.exr")).Find("G")->values,
+              ReadExr(directory.File("e.exr")).Find("G")->values);
+    for (const char* group : {"light.bulb.G", "light.key.G", "light.rest.G"})
+        EXPECT_NEAR(MeanOf("f.exr", group) / MeanOf("a.exr", group), 1, 0.05) << group;
+    Render("--spp 40 --integrator bdpt --denoise -o g.exr " + groups);
+    ExpectSum("g.exr", {"bulb", "key", "rest"});
     Render("--spp 40 --exr-half -o d.exr " + groups);
     ExpectSum("d.exr", {"bulb", "key", "rest"}, 2e-3f);
     EXPECT_TRUE(Contains(OpenExr(directory.File("d.exr")).Channels(), "light.key.G:half"));
@@ -225,8 +255,6 @@ TEST_F(LayersTest, OfLightGroupsAreRefusedWhereTheyCannotBe) {
     ExpectFailure(directory, render + "key,lamp",
                   {"--light-groups", "\"lamp\"", "there are: environment, key, delta, bulb, area"});
     ExpectFailure(directory, render + "rest", {"--light-groups", "\"rest\"", "leave it out"});
-    ExpectFailure(directory, render + "key --integrator bdpt",
-                  {"--light-groups", "bdpt", "--integrator path"});
 }
 
 TEST_F(LayersTest, LetTheBackgroundOut) {
