@@ -4,6 +4,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
+#include "renderer/film/splat_plane.h"
 #include "renderer/render/session.h"
 
 namespace lull {
@@ -27,7 +28,9 @@ LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Descr
     } catch (const Error& e) {
         throw Error(std::string("--light-groups: ") + e.what());
     }
-    CheckMemory(region.Area() * BytesOfLayers(layers),
+    const int64_t splats =
+        IsBidirectional(scene.integrator) ? groups.Count() * int64_t(sizeof(SplatPixel)) : 0;
+    CheckMemory(region.Area() * (BytesOfLayers(layers) + splats),
                 fmt::format("{} light groups of {}x{} pixels", groups.Count(), region.Width(),
                             region.Height()),
                 "name fewer, or render in parts with --crop");

@@ -74,10 +74,6 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) con
 
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
-    if (ranks && ranks->Count() > 1 && IsBidirectional(scene->integrator))
-        throw UsageError(
-            "several ranks cannot share a render by \"bdpt\"; render on one machine, or with "
-            "--integrator path");
     if (settings.scene.integrator == IntegratorKind::Bdpt &&
         settings.estimator == Estimator::PbrtV3)
         throw UsageError(

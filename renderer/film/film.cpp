@@ -52,6 +52,7 @@ Film::Film(const PixelRect& region, const FilmOptions& options)
       tiles({{0, 0}, {CountOf(columns), CountOf(rows)}}),
       sums(region) {
     if (options.withHalf) halfSums.emplace(region);
+    if (options.withSpreads) ForgetSpreads();
 }
 
 int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {

@@ -8,6 +8,7 @@
 
 #include "renderer/film/film_pixel.h"
 #include "renderer/film/layers.h"
+#include "renderer/film/sample_spread.h"
 
 namespace lull {
 
@@ -32,8 +33,9 @@ struct TileGrid {
 };
 
 struct FilmOptions {
-    TileGrid grid = {};    // by default every pixel is a tile of its own
-    bool withHalf = true;  // keeps the sums of the half; false: they are zero and never read
+    TileGrid grid = {};        // by default every pixel is a tile of its own
+    bool withHalf = true;      // keeps the sums of the half; false: they are zero and never read
+    bool withSpreads = false;  // keeps those of tiles, for light paths
     LayerOptions layers = {};
 };
 
@@ -81,11 +83,20 @@ class Film {
     }
     size_t TileCount() const { return tiles.Pixels().size(); }
 
+    // Returns where the samples of a tile are summed up; null: they are not.
+    SampleSpread* SpreadOf(const PixelRect& tile) {
+        return spreads ? &spreads->At(TileOf(tile.min)) : nullptr;
+    }
+    // Return those of all tiles, which are kept, by their numbers; and begin again.
+    const std::vector<SampleSpread>& Spreads() const { return spreads->Pixels(); }
+    void ForgetSpreads() { spreads.emplace(tiles.Region()); }
+
     // Calls visit(name, plane, part) for each plane that a film, which may be const, consists of;
     // `part` is a rectangle of whole tiles, `pixels`, in the coordinates of the plane.
     template <typename AnyFilm, typename Visit>
     static void ForEachPlane(AnyFilm& film, const PixelRect& pixels, const Visit& visit) {
         visit("tiles", film.tiles, film.TilesIn(pixels));
+        if (film.spreads) visit("spreads", *film.spreads, film.TilesIn(pixels));
         visit("sums", film.sums, pixels);
         if (film.halfSums) visit("sums of the half", *film.halfSums, pixels);
         film.layers.ForEach([&]<typename Kind>(Kind& kind) {
@@ -117,6 +128,7 @@ class Film {
 
     std::vector<int> columns, rows;  // tile of each column and row of pixels
     PixelPlane<TileSamples> tiles;
+    std::optional<PixelPlane<SampleSpread>> spreads;
     Sums sums;
     std::optional<Sums> halfSums;
     FirstLook firstLook;  // no colours: none

@@ -105,7 +105,7 @@ void Executor::BeginLight() {
 bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
     if (context.light && !IsCancelled() && schedule.IsRoundOver()) {
-        context.light->Learn(*context.film);
+        context.light->Learn(context.film);
         BeginLight();
         return true;
     }
@@ -142,8 +142,7 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
     SampleSpread* spread = context.learner ? context.learner->SpreadOf(*film, tile.pixels)
-                           : context.light ? context.light->SpreadOf(*film, tile.pixels)
-                                           : nullptr;
+                                           : film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
         if (!context.light) return RenderTile(take, tile, sampler, film, spread, nullptr);
         RoundLight light(*context.light, film);

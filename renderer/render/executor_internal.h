@@ -60,6 +60,7 @@ class Executor {
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
+    std::atomic<bool> isLit = true;  // the light of the round, if there is any, has been traced
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
@@ -70,7 +71,6 @@ class Executor {
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
-    bool isLit = true;  // the light of the round, if there is any, has been traced
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -12,7 +13,7 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
     if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
-    if (context.light) schedule.roundEnd = 0;  // until there is light
+    if (context.light) schedule.roundEnd = context.light->End();
     return schedule;
 }
 

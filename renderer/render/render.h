@@ -102,7 +102,7 @@ struct RenderContext {
     // nothing is learned.
     GuideLearner* learner = nullptr;
     // Traces light paths in rounds; the source takes its shares of samples (light_rounds.h). Not
-    // with a learner, nor on several ranks. Null: none.
+    // with a learner. The film keeps spreads. Null: none.
     LightRounds* light = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
@@ -116,8 +116,7 @@ struct RenderContext {
 // Renders the film's region. The pixels are the same bits for any number of threads and ranks
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
-// callbacks; throws std::invalid_argument for a display on several ranks, and for light paths on
-// these.
+// callbacks; throws std::invalid_argument for a display on several ranks.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the

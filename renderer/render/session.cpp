@@ -22,6 +22,11 @@ void Tell(const std::function<void(const std::string&)>& listener,
     if (listener) listener(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
+FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
+    options.withSpreads = IsBidirectional(scene.integrator);
+    return options;
+}
+
 }  // namespace
 
 int64_t BytesOfLayers(const LayerOptions& layers) {
@@ -33,7 +38,10 @@ int64_t BytesOfLayers(const LayerOptions& layers) {
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
-    : scene(scene), region(region), options(std::move(given)), film(region, options.film) {
+    : scene(scene),
+      region(region),
+      options(std::move(given)),
+      film(region, FilmFor(scene, options.film)) {
     context.film = &film;
     if (IsBidirectional(scene.integrator)) {
         light =

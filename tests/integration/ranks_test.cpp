@@ -138,6 +138,32 @@ TEST_F(RanksTest, ShareLightGroups) {
         EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
 }
 
+// Each rank traces a part of the light paths, and what they bring is learned from all.
+TEST_F(RanksTest, ShareLightPaths) {
+    directory.Write("scene.pbrt", SceneText(std::string("Integrator \"bdpt\"\n") + kSphere +
+                                            "LightSource \"point\" \"point from\" [2 1 -2]\n"));
+    const std::string render =
+        std::string(kRender) + "--integrator bdpt --aov noise --light-groups environment ";
+    const std::string whole = render + "--stop lnoise:0.3 --cap 200 ";
+    ExpectSuccess(Run(whole + "-o one.exr"));
+    for (const int ranks : {2, 3}) {
+        ExpectSuccess(Run(Ranks(ranks) + whole + "-o some.exr"));
+        ExpectSame("one", "some");
+        const ExrImage one = ReadExr(directory.File("one.exr")),
+                       some = ReadExr(directory.File("some.exr"));
+        ASSERT_TRUE(one.Find("light.rest.G"));
+        for (const ExrChannel& channel : one.channels)
+            EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
+    }
+    // Each goes on with what others have begun.
+    const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
+    const Outcome interrupted =
+        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
+    ExpectSuccess(Run(Ranks(3) + parts));
+    ExpectSame("one", "parts");
+}
+
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, DenoiseTheSame) {
     const std::string render =

@@ -70,6 +70,25 @@ std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned) {
     return std::move(writer.bytes);
 }
 
+std::vector<std::byte> Pack(const LightRound& round) {
+    StateWriter writer = Begin(RankWord::Round);
+    writer.Put(round);
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackTraced(bool isWhole) {
+    StateWriter writer = Begin(RankWord::Traced);
+    writer.Put(uint8_t(isWhole));
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackSplats(int plane, const SplatPlane& splats) {
+    StateWriter writer = Begin(RankWord::Splats);
+    writer.Put(int32_t(plane));
+    splats.Put(splats.Region(), &writer);
+    return std::move(writer.bytes);
+}
+
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
                                   const Film& film) {
     StateWriter writer = Begin(RankWord::Pixels);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/film/film.h"
-#include "renderer/render/schedule.h"
+#include "renderer/render/light_rounds.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
 
@@ -13,6 +13,8 @@ enum class RankWord : uint8_t {
     Start,    // StartMessage; then come the sums of tiles that the rank did not own
     Begin,    // all of them have been sent
     Guide,    // the learned state, before Start
+    Round,    // LightRound: trace your part of its light, with no tile under way
+    Lit,      // it has come, by Splats: begin the passes of the round
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
@@ -24,8 +26,10 @@ enum class RankWord : uint8_t {
     Quiet,  // all parts have been sent
     Collected,
     Interrupted,  // a signal has come
+    Traced,       // all Splats of its part have been sent; whether it is whole
     // Both ways.
     Pixels,  // sums of a block's tiles, of layers as well
+    Splats,  // light of a round, of one of its planes
     Ping,    // to be answered at once by
     Alive
 };
@@ -62,6 +66,9 @@ std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
 std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
+std::vector<std::byte> Pack(const LightRound&);
+std::vector<std::byte> PackTraced(bool isWhole);
+std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
 // Read the rest of a message after its word. Throw std::runtime_error for other bytes.
