@@ -22,7 +22,8 @@ TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
     }
     for (const char* name : {"comparison.css", "comparison.js", "bench.js", "study.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
-        EXPECT_EQ(page.find(EmbeddedFile(name)), std::string::npos) << name << " is the laboratory's";
+        EXPECT_EQ(page.find(EmbeddedFile(name)), std::string::npos)
+            << name << " is the laboratory's";
     }
     EXPECT_EQ(EmbeddedFile("no such file"), "");
     EXPECT_TRUE(
