@@ -15,7 +15,6 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/help_groups.h"
 #include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
@@ -26,11 +25,41 @@ namespace {
 // The subcommands that several ranks can share.
 constexpr std::array kSharedCommands = {"render", "compare", "bench", "record"};
 
-// Former names of subcommands, which no help lists.
-constexpr std::pair<std::string_view, const char*> kFormerNames[] = {{"dataset", "record"},
-                                                                     {"judge", "study"}};
+// Lists the options of a command that has common ones: by --help these, and those that no other
+// command has, by --help-all all of them by subject.
+class BriefHelp : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name,
+                          CLI::AppFormatMode mode) const override {
+        const auto optionsOf = [&](const std::string& group) {
+            return app->get_options([group](const CLI::Option* option) {
+                return option->nonpositional() && option->get_group() == group;
+            });
+        };
+        const auto common = optionsOf(kCommonOptions), own = optionsOf("Options");
+        if (common.empty() || mode != CLI::AppFormatMode::Normal)
+            return Formatter::make_help(app, name, mode);
+        std::string text = make_description(app) + make_usage(app, name) + make_positionals(app);
+        if (!own.empty()) text += make_group("Options", false, own);
+        return text + make_group(kCommonOptions, false, common) +
+               fmt::format("\nlull {} --help-all lists all options.\n\n", app->get_name()) +
+               make_footer(app);
+    }
+};
 
-ExitCode Run(Job* job, const Command& command) {
+void SetHelp(CLI::App* command) {
+    const bool hasGroups = !command
+                                ->get_options([](const CLI::Option* option) {
+                                    return option->get_group() == kCommonOptions;
+                                })
+                                .empty();
+    const char* group = hasGroups ? "Advanced" : "Options";
+    command->set_help_flag("-h,--help", "Print the common options and exit")->group(group);
+    command->set_help_all_flag("--help-all", "Print all options and exit")->group(group);
+    command->formatter(std::make_shared<BriefHelp>());
+}
+
+ExitCode Run(MpiJob* job, const Command& command) {
     std::string message;
     ExitCode code = kFailed;
     try {
@@ -117,7 +146,7 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
            (nearest.empty() ? help : "; did you mean " + nearest + "?");
 }
 
-ExitCode Main(Job* job, int argc, char** argv) {
+ExitCode Main(MpiJob* job, int argc, char** argv) {
     CLI::App app(
         "Path tracer for pbrt-v3 and glTF 2.0 that stops each block of the image once no noise is "
         "visible.",
@@ -129,21 +158,19 @@ ExitCode Main(Job* job, int argc, char** argv) {
         "lull COMMAND --help lists the options of a command.");
 
     Command command;
-    AddRenderCommand(app, &command, job);
-    AddDenoiseCommand(app, &command);
-    AddInfoCommand(app, &command);
-    AddDatasetCommand(app, &command, job);
-    AddTrainCommand(app, &command);
-    AddEvaluateCommand(app, &command);
-    AddEntropyCommand(app, &command);
-    AddSelftestCommand(app, &command);
-    AddCompareCommand(app, &command, job);
-    AddBenchCommand(app, &command, job);
-    AddJudgeCommand(app, &command);
-    for (CLI::App* each : app.get_subcommands({})) GroupOptions(each);
+    render::AddCommand(app, &command, job);
+    denoise::AddCommand(app, &command);
+    info::AddCommand(app, &command);
+    record::AddCommand(app, &command, job);
+    train::AddCommand(app, &command);
+    evaluate::AddCommand(app, &command);
+    entropy::AddCommand(app, &command);
+    selftest::AddCommand(app, &command);
+    compare::AddCommand(app, &command, job);
+    bench::AddCommand(app, &command, job);
+    study::AddCommand(app, &command);
+    for (CLI::App* each : app.get_subcommands({})) SetHelp(each);
     std::vector<const char*> words(argv, argv + argc);
-    for (const auto& [former, name] : kFormerNames)
-        if (argc > 1 && former == words[1]) words[1] = name;
     if (const std::string problem = argc > 1 ? ProblemOfCommand(app, words[1]) : "";
         !problem.empty())
         return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
@@ -168,9 +195,9 @@ ExitCode Main(Job* job, int argc, char** argv) {
 }
 
 ExitCode Main(int argc, char** argv) {
-    std::unique_ptr<Job> job;
+    std::unique_ptr<MpiJob> job;
     try {
-        job = std::make_unique<Job>();
+        job = std::make_unique<MpiJob>();
     } catch (const Error& e) {
         Say("lull: error: {}\n", e.what());
         return kFailed;

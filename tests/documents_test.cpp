@@ -1,4 +1,5 @@
-// Checks that links in documents lead to files and headings that exist.
+// Checks that links in documents lead to files and headings that exist, and that recipes list the
+// files that name their example.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,6 +90,73 @@ TEST(Documents, LinkToFilesAndHeadingsThatExist) {
                 << path << " links to " << link;
         }
     EXPECT_GT(count, 100u);
+}
+
+std::string ReadText(const fs::path& path) {
+    std::ifstream in(path);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Returns whether a text has a word in it, not as a part of a longer one.
+bool HasWord(const std::string& text, const std::string& word) {
+    const auto isLetter = [&](size_t i) {
+        return i < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
+    };
+    for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at)
+        if ((at == 0 || !isLetter(at - 1)) && !isLetter(at + word.size())) return true;
+    return false;
+}
+
+// Returns the C++ files of the program that have the word in them, from the root of the project.
+std::set<std::string> FilesNaming(const std::string& word) {
+    const fs::path root = fs::canonical(LULL_ROOT);
+    std::set<std::string> files;
+    for (const char* folder : {"renderer", "stopping"})
+        for (fs::recursive_directory_iterator at(root / folder), end; at != end; ++at) {
+            const fs::path extension = at->path().extension();
+            if ((extension == ".h" || extension == ".cpp") && HasWord(ReadText(at->path()), word))
+                files.insert(fs::relative(at->path(), root));
+        }
+    return files;
+}
+
+// Returns the C++ files of the program that a section names: `a/b.h`, or `.cpp` after that.
+std::set<std::string> FilesOf(const std::string& section) {
+    static const std::regex code("`([^`]*)`");
+    std::set<std::string> files;
+    fs::path last;
+    for (std::sregex_iterator at(section.begin(), section.end(), code), end; at != end; ++at) {
+        const std::string text = (*at)[1];
+        if (text.starts_with("renderer/") || text.starts_with("stopping/"))
+            last = text;
+        else if (text == ".cpp" && !last.empty())
+            last.replace_extension(text);
+        else
+            continue;
+        if (last.extension() == ".h" || last.extension() == ".cpp") files.insert(last);
+    }
+    return files;
+}
+
+TEST(Recipes, ListAllFilesThatNameTheirExample) {
+    const std::string text = ReadText(fs::path(LULL_ROOT) / "CONTRIBUTING.md");
+    static const std::regex heading("### Add [^(\n]*\\(`(\\w+)`\\)\n");
+    int recipes = 0;
+    for (std::sregex_iterator at(text.begin(), text.end(), heading), end; at != end; ++at) {
+        const std::string word = (*at)[1];
+        const size_t begin = size_t(at->position()) + 4;
+        const std::set<std::string> listed =
+            FilesOf(text.substr(begin, text.find("\n##", begin) - begin));
+        for (const std::string& file : listed)
+            EXPECT_TRUE(fs::exists(fs::path(LULL_ROOT) / file)) << word << ": " << file;
+        const std::set<std::string> naming = FilesNaming(word);
+        EXPECT_FALSE(naming.empty()) << word;
+        for (const std::string& file : naming)
+            EXPECT_TRUE(listed.contains(file)) << word << " is named in " << file;
+        ++recipes;
+    }
+    EXPECT_GE(recipes, 6);
 }
 
 }  // namespace

@@ -24,16 +24,18 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
                    }
                },
                "Write these AOVs of the first hits to the EXR")
+            ->group("Output")
             ->delimiter(',')
             ->allow_extra_args(false)
             ->type_name("albedo|normal|depth|position|object|material|alpha|cryptomatte|noise,...");
     app.add_flag("--aov-through-specular", wanted->throughSpecular,
                  "Take AOVs from the reflected or refracted surface, not from mirrors and glass")
+        ->group("Output")
         ->needs(aov);
 }
 
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region) {
-    CheckMemory(region.Area() * BytesOfLayers(wanted, features),
+void CheckLayersFit(const LayerOptions& layers, const PixelRect& region) {
+    CheckMemory(region.Area() * BytesOfLayers(layers),
                 fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
                 "render it in parts with --crop, or smaller with --resolution");
 }

@@ -3,14 +3,14 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/film/aov_channels.h"
+#include "renderer/film/film.h"
 
 namespace lull {
 
 // Adds --aov and --aov-through-specular.
 void AddAovOptions(CLI::App& app, AovSet* wanted);
 
-// Throws Error where the memory cannot hold these layers, or a denoiser's `features`.
-void CheckLayersFit(const AovSet& wanted, bool features, const PixelRect& region);
+// Throws Error where the memory cannot hold these layers.
+void CheckLayersFit(const LayerOptions&, const PixelRect& region);
 
 }  // namespace lull

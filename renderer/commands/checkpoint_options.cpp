@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "renderer/base/error.h"
+#include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
@@ -33,6 +34,7 @@ CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options) {
     return app
         .add_option("--checkpoint-interval", options->interval,
                     "Save the checkpoint every S seconds")
+        ->group("Interruption")
         ->check(Between(0.1, 1e6))
         ->type_name("S")
         ->capture_default_str();
@@ -41,9 +43,11 @@ CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options) {
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options) {
     auto* file =
         app.add_option("--checkpoint", options->file, "Save the state of the render, to resume it")
+            ->group(kCommonOptions)
             ->type_name("F.h5");
     AddCheckpointInterval(app, options)->needs(file);
     app.add_flag("--resume", options->resume, "Resume from the checkpoint, if it exists")
+        ->group(kCommonOptions)
         ->needs(file);
 }
 

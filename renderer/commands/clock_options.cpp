@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "renderer/base/seconds_since.h"
+#include "renderer/commands/command.h"
 #include "renderer/render/time_limit.h"
 
 namespace lull {
@@ -35,9 +36,11 @@ std::string ClockOptions::Text() const {
 void AddClockOptions(CLI::App& app, ClockOptions* options) {
     auto* time = app.add_option("--time", options->time,
                                 "End after this wall-clock time, e.g. 90s, 10m or 1h30m")
+                     ->group(kCommonOptions)
                      ->check(CheckBy([](const std::string& text) { ParseDuration(text); }))
                      ->type_name("TIME");
     app.add_option("--until", options->until, "End at this local time")
+        ->group("Interruption")
         ->check(CheckBy([](const std::string& text) { NextTimeOfDay(text, 0); }))
         ->type_name("HH:MM")
         ->excludes(time);

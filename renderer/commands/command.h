@@ -17,22 +17,47 @@ class UsageError : public Error {
     using Error::Error;
 };
 
-class Job;
+class MpiJob;
+
+// The group of options that --help shows of a command with many; the others are by subject.
+inline constexpr const char* kCommonOptions = "Common options";
 
 // Does the work of a subcommand and returns the exit code. Throws on errors.
 using Command = std::function<ExitCode()>;
 
-// Those that several ranks can share get the job.
-void AddRenderCommand(CLI::App& app, Command* command, Job* job);
-void AddDatasetCommand(CLI::App& app, Command* command, Job* job);
-void AddCompareCommand(CLI::App& app, Command* command, Job* job);
-void AddBenchCommand(CLI::App& app, Command* command, Job* job);
-void AddInfoCommand(CLI::App& app, Command* command);
-void AddTrainCommand(CLI::App& app, Command* command);
-void AddEvaluateCommand(CLI::App& app, Command* command);
-void AddEntropyCommand(CLI::App& app, Command* command);
-void AddSelftestCommand(CLI::App& app, Command* command);
-void AddJudgeCommand(CLI::App& app, Command* command);
-void AddDenoiseCommand(CLI::App& app, Command* command);
+// Each is in a namespace of its own. Those that several ranks can share get the job.
+namespace render {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job);
+}
+namespace record {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job);
+}
+namespace compare {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job);
+}
+namespace bench {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job);
+}
+namespace info {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace train {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace evaluate {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace entropy {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace selftest {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace study {
+void AddCommand(CLI::App& app, Command* command);
+}
+namespace denoise {
+void AddCommand(CLI::App& app, Command* command);
+}
 
 }  // namespace lull

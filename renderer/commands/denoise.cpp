@@ -16,7 +16,7 @@
 #include "renderer/results/denoiser_channels.h"
 #include "renderer/results/image_files.h"
 
-namespace lull {
+namespace lull::denoise {
 
 namespace {
 
@@ -130,7 +130,7 @@ ExitCode RunDenoise(Options options) {
 
 }  // namespace
 
-void AddDenoiseCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* denoise =
         app.add_subcommand("denoise", "Denoises an image and estimates the remaining error.");
     auto options = std::make_shared<Options>();
@@ -153,4 +153,4 @@ void AddDenoiseCommand(CLI::App& app, Command* command) {
     denoise->callback([=] { *command = [=] { return RunDenoise(*options); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::denoise

@@ -11,12 +11,15 @@
 namespace lull {
 
 void AddGuideOptions(CLI::App& app, GuideOptions* options) {
-    auto* guide = AddChoiceOption(
-        app, "--guide", &options->mode,
-        "Guide paths by learned incident light; auto: where it saves time, and sample\n"
-        "lights as each place sees them");
+    auto* guide =
+        AddChoiceOption(
+            app, "--guide", &options->mode,
+            "Guide paths by learned incident light; auto: where it saves time, and sample\n"
+            "lights as each place sees them")
+            ->group("Guiding");
     app.add_option("--guide-memory", options->megabytes,
                    "Limit the memory of the guiding distribution, in MB")
+        ->group("Guiding")
         ->check(Between(2, 1 << 16))
         ->type_name("MB")
         ->needs(guide)

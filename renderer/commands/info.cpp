@@ -13,7 +13,7 @@
 #include "renderer/render/progress.h"
 #include "renderer/results/report.h"
 
-namespace lull {
+namespace lull::info {
 
 namespace {
 
@@ -157,7 +157,7 @@ ExitCode RunInfo(const SceneOptions& options) {
 
 }  // namespace
 
-void AddInfoCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* info = app.add_subcommand("info", "Describes a scene as it would be rendered.");
     auto options = std::make_shared<SceneOptions>();
     AddSceneOptions(*info, options.get());
@@ -165,4 +165,4 @@ void AddInfoCommand(CLI::App& app, Command* command) {
     info->callback([=] { *command = [=] { return RunInfo(*options); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::info

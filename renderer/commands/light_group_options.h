@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/film/light_group_film.h"
+#include "renderer/film/layer.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {
@@ -12,8 +12,8 @@ namespace lull {
 void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
 
 // Returns the groups of these names, none without any, as MakeLightGroups() does. Throws Error also
-// where paths start from lights, and where the memory cannot hold the layers of the region.
+// where the memory cannot hold the layers of the region with them.
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description&,
-                              const Scene&, const LightGroupOptions&, const PixelRect& region);
+                              const Scene&, LayerOptions, const PixelRect& region);
 
 }  // namespace lull

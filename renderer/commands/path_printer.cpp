@@ -76,8 +76,10 @@ void AddPathOptions(CLI::App& app, PathOfSample* options) {
                    options->pixel = p;
                },
                "Print one path through this pixel, vertex by vertex, instead of rendering")
+            ->group("Advanced")
             ->type_name("x,y");
     app.add_option("--sample", options->sample, "Choose the sample of --pixel, from 0")
+        ->group("Advanced")
         ->needs(pixel)
         ->check(Between(0, (1 << 24) - 1))
         ->type_name("K")

@@ -20,22 +20,28 @@ struct EnumNames<ToneMap> {
 
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     AddChoiceOption(app, "--tone-map", &options->format.toneMap,
-                    "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white");
+                    "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white")
+        ->group("Image");
     CLI::Option* toneMap = app.get_option("--tone-map");
     app.add_option("--ocio", options->ocio,
                    "Map the PNG by a view of this OpenColorIO configuration [with --view: $OCIO]")
+        ->group("Image")
         ->type_name("CONFIG.ocio")
         ->excludes(toneMap);
     app.add_option("--view", options->view, "Choose OpenColorIO's view [that of the configuration]")
+        ->group("Image")
         ->type_name("NAME")
         ->excludes(toneMap);
     app.add_option("--png-bits", options->format.pngBits, "Set the bits per channel of the PNG")
+        ->group("Output")
         ->check(OneOf(std::set{8, 16}))
         ->type_name("8|16")
         ->capture_default_str();
     app.add_flag("--exr-half", options->format.exrHalf,
-                 "Write colours and normals of the EXR with 16 bits, up to 65504");
+                 "Write colours and normals of the EXR with 16 bits, up to 65504")
+        ->group("Output");
     app.add_option("--display", options->display, "Show the render live in tev at this address")
+        ->group("Output")
         ->check([](const std::string& text) -> std::string {
             try {
                 ParseDisplayAddress(text);
@@ -46,6 +52,7 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         })
         ->type_name("HOST:PORT");
     app.add_option("--preview", options->preview, "Write the current image every SECONDS")
+        ->group("Output")
         ->check(Between(0.1, 1e6))
         ->type_name("SECONDS");
 }

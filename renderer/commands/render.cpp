@@ -23,13 +23,13 @@
 #include "renderer/results/denoiser_channels.h"
 #include "stopping/base/input_file.h"
 
-namespace lull {
+namespace lull::render {
 
 namespace {
 
 // A render that is ready: all that could be wrong is checked.
 struct PreparedRender {
-    PreparedRender(const RenderRequest& request, Job* ranks)
+    PreparedRender(const RenderRequest& request, MpiJob* ranks)
         : request(request),
           clock(StartClock(request.clock)),
           render(request.render, ranks, false) {}
@@ -39,7 +39,6 @@ struct PreparedRender {
     RenderJob render;
     Rule rule;
     FilmOptions film;
-    LightGroups lightGroups;
     RenderFiles files;
     std::unique_ptr<Display> display;  // null: none
     std::vector<BlockHistory> histories;
@@ -89,7 +88,7 @@ FilmOptions CheckedFilm(const PreparedRender& p) {
     const RenderSettings& settings = p.render.settings;
     const FilmOptions film{
         .grid = GridOf(settings.schedule),
-        .withHalf = p.clock || p.request.HasPage() || p.request.CollectsFeatures() ||
+        .withHalf = p.clock || p.request.HasPage() || p.request.WantedLayers().features ||
                     !settings.checkpoint.file.empty() || LooksAtHalf(p.rule, settings.schedule)};
     CheckFilmFits(p.render.input.region, film);
     return film;
@@ -165,7 +164,7 @@ bool IsFinished(const PreparedRender& p) {
 }
 
 // Checks all that can be wrong before the work begins.
-std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks) {
+std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
     auto p = std::make_unique<PreparedRender>(request, ranks);
     RenderJob& render = p->render;
     const PixelRect& region = render.input.region;
@@ -176,12 +175,13 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, Job* ranks
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
-    CheckLayersFit(request.aovs, request.CollectsFeatures(), region);
+    p->film.layers = request.WantedLayers();
+    CheckLayersFit(p->film.layers, region);
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
                              region, ranks->Count(), TalkOf(render.settings));
     render.Compile();
-    p->lightGroups = ChooseLightGroups(request.lightGroups, render.input.description, *render.scene,
-                                       request.Lights(), region);
+    p->film.layers.groups = ChooseLightGroups(request.lightGroups, render.input.description,
+                                              *render.scene, p->film.layers, region);
     CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
     p->histories.resize(MakeBlocks(region, render.settings.schedule).size());
@@ -222,10 +222,6 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
     how.film = p->film;
-    how.aovs = p->request.aovs;
-    how.features = p->request.CollectsFeatures();
-    how.lightGroups = p->lightGroups;
-    how.lights = p->request.Lights();
     how.guide = p->request.guide;
     how.clock = p->clock;
     // An interruption or a preview finds the whole image, whatever its sample counts.
@@ -261,14 +257,14 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     const Film& film = session->TheFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
-        denoised = DenoiseImage(PictureOf(film, *session->Features(), film.Region()), film.Region(),
-                                {}, {.isQuick = true});
+        denoised =
+            DenoiseImage(PictureOf(film, film.Region()), film.Region(), {}, {.isQuick = true});
         DoubtBlocks(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance}, film,
-               denoised ? &*denoised : nullptr, session->Mattes(), result, {},
-               p.request.pictures.format, &written);
+    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
+               {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures.format},
+               &written);
     written.Check();
 } catch (const Error& e) {
     TalkOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
@@ -305,13 +301,13 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     DenoiserResults made;
     NoisyPicture picture;
     GroupedPicture lights;
-    const bool hasGroups = p.request.denoise && session->Lights();
-    if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, *session->Features(), region);
+    const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
+    if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (hasGroups)
-        lights = PictureOf(film, *session->Features(), *session->Lights(), region);
+        lights = GroupedPictureOf(film, region);
     else if (p.request.denoise)
-        picture = FeaturesOf(film, *session->Features(), region);
-    session->DropFeatures();  // what follows needs the memory
+        picture = FeaturesOf(film, region);
+    film.layers.ForgetFeatures();  // what follows needs the memory
     if (p.request.denoise && !hasGroups) picture.colour = ColoursOf(film, region);
     film.DropHalf();
     if (!p.request.denoise) return made;
@@ -339,18 +335,17 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
     const bool isFrame = p.request.frameNumber > 0 && !settings.checkpoint.file.empty();
-    const ResultFiles written = WriteFiles(
-        p.files, {{*p.render.scene, p.render.provenance},
-                  session->TheFilm(),
-                  result,
-                  p.histories,
-                  p.render.input.warnings,
-                  {p.request.aovs, session->Aovs(), session->Mattes(), session->Lights()},
-                  denoised.image ? &*denoised.image : nullptr,
-                  denoised.halves,
-                  p.render.input.description,
-                  p.request.pictures.format,
-                  isFrame && !result.cancelled ? SettingsOf(p) : ""});
+    const ResultFiles written =
+        WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
+                             session->TheFilm(),
+                             result,
+                             p.histories,
+                             p.render.input.warnings,
+                             denoised.image ? &*denoised.image : nullptr,
+                             denoised.halves,
+                             p.render.input.description,
+                             p.request.pictures.format,
+                             isFrame && !result.cancelled ? SettingsOf(p) : ""});
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;
@@ -363,7 +358,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 }
 
 // Prints the path of a sample instead.
-ExitCode RunPath(const RenderRequest& request, Job* ranks) {
+ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
     PrintPath(request.path, render.settings, render.provenance.sampler, render.input.description,
@@ -372,7 +367,7 @@ ExitCode RunPath(const RenderRequest& request, Job* ranks) {
 }
 
 // Renders one image, unless it is a frame that is finished.
-ExitCode RunImage(const RenderRequest& request, Job* ranks, const std::string& note = "") {
+ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string& note = "") {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
     const CheckpointOptions& checkpoint = request.render.checkpoint;
     if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
@@ -386,7 +381,7 @@ ExitCode RunImage(const RenderRequest& request, Job* ranks, const std::string& n
 
 // Renders all frames, each with a checkpoint of its own. To be resumed are those without all of
 // their files, and those whose checkpoint has been left.
-ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
+ExitCode RunSequence(const RenderRequest& request, MpiJob* ranks) {
     if (ranks->Count() > 1)
         throw UsageError("--frames: needs one process; give each rank frames of its own");
     const int count = request.sequence->Count();
@@ -405,7 +400,7 @@ ExitCode RunSequence(const RenderRequest& request, Job* ranks) {
     return kDone;
 }
 
-ExitCode RunRender(RenderRequest request, Job* ranks) {
+ExitCode RunRender(RenderRequest request, MpiJob* ranks) {
     CheckRequest(request);
     if (request.path.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
     SetWording(request.render, ranks);
@@ -416,7 +411,7 @@ ExitCode RunRender(RenderRequest request, Job* ranks) {
 
 }  // namespace
 
-void AddRenderCommand(CLI::App& app, Command* command, Job* ranks) {
+void AddCommand(CLI::App& app, Command* command, MpiJob* ranks) {
     CLI::App* render =
         app.add_subcommand("render",
                            "Renders a scene, 20 samples per pixel a pass, until each\n"
@@ -426,4 +421,4 @@ void AddRenderCommand(CLI::App& app, Command* command, Job* ranks) {
     render->callback([=] { *command = [=] { return RunRender(*request, ranks); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::render

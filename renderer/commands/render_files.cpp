@@ -6,8 +6,8 @@
 #include "renderer/pages/html_page.h"
 #include "renderer/render/provenance.h"
 #include "renderer/results/block_files.h"
-#include "renderer/results/light_layers.h"
 #include "renderer/results/report.h"
+#include "renderer/scene/scene_names.h"
 
 namespace lull {
 
@@ -50,16 +50,16 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     const Provenance& provenance = origin.provenance;
     const Film& film = render.film;
     const RenderResult& result = render.result;
-    ExtraLayers extra = MakeExtraLayers(render.layers, film, render.description, origin.scene);
-    if (render.layers.lights)
-        AddLightLayers(*render.layers.lights, film, render.denoised,
-                       render.pictures.isTransparent ? render.layers.mattes : nullptr, &extra);
-    extra.channels.insert(extra.channels.end(), render.halves.begin(), render.halves.end());
-    if (!render.settings.empty()) extra.attributes[kSettingsAttribute] = render.settings;
+    LayerChannels layers =
+        ChannelsOf({film, render.denoised, render.pictures.isTransparent,
+                    [&](uint32_t n) { return NameOfObject(n, render.description, origin.scene); },
+                    [&](uint32_t n) { return NameOfMaterial(n, render.description); }});
+    layers.channels.insert(layers.channels.end(), render.halves.begin(), render.halves.end());
+    if (!render.settings.empty()) layers.attributes[kSettingsAttribute] = render.settings;
     ResultFiles results;
     const int64_t clamped =
-        WriteImage({files.exr, files.png}, origin, film, render.denoised, render.layers.mattes,
-                   result, std::move(extra), render.pictures, &results);
+        WriteImage({files.exr, files.png}, origin,
+                   {film, render.denoised, result, std::move(layers), render.pictures}, &results);
     if (clamped > 0)
         render.warnings.Add({}, "values clamped to 65504",
                             fmt::format("{} in the EXR, as 16 bits hold no more; leave out "

@@ -34,8 +34,7 @@ struct FinishedRender {
     const Film& film;
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;
-    Warnings& warnings;  // for the report; clamped values are added
-    CollectedLayers layers;
+    Warnings& warnings;                     // for the report; clamped values are added
     const DenoisedImage* denoised;          // null: the image is the means of the film
     const std::vector<ExrChannel>& halves;  // inputs of `lull denoise`
     const Description& description;

@@ -17,7 +17,7 @@ namespace lull {
 namespace {
 
 // Lets all ranks share a render, of which a warning says so if one does not answer.
-void ShareAmongRanks(Job* ranks, SessionOptions* options) {
+void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
     options->render.peers = ranks->ThePeers();
     options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
@@ -37,7 +37,7 @@ void ShareAmongRanks(Job* ranks, SessionOptions* options) {
 
 }  // namespace
 
-RenderJob::RenderJob(const RenderSettings& given, Job* ranks, bool withHalf)
+RenderJob::RenderJob(const RenderSettings& given, MpiJob* ranks, bool withHalf)
     : settings(given),
       ranks(ranks),
       input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = withHalf},
@@ -74,10 +74,6 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) con
 
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
-    if (ranks && ranks->Count() > 1 && IsBidirectional(scene->integrator))
-        throw UsageError(
-            "several ranks cannot share a render by \"bdpt\"; render on one machine, or with "
-            "--integrator path");
     if (settings.scene.integrator == IntegratorKind::Bdpt &&
         settings.estimator == Estimator::PbrtV3)
         throw UsageError(
@@ -99,7 +95,7 @@ SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
 }
 
 RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
-    if (denoiser) denoiser->Show(&session->TheFilm(), session->Features(), session->Lights());
+    if (denoiser) denoiser->Show(&session->TheFilm());
     session->Resume();
     CatchInterrupts();
     return session->Run(render);
@@ -118,7 +114,7 @@ void RenderJob::RemoveCheckpoint() const {
     if (!checkpoint.file.empty() && !checkpoint.isKept) std::filesystem::remove(checkpoint.file);
 }
 
-void SetWording(const RenderSettings& settings, Job* ranks) {
+void SetWording(const RenderSettings& settings, MpiJob* ranks) {
     if (!settings.jsonProgress) return;
     ranks->SetWording([](const std::string& kind, const std::string& message) {
         return JsonEvent(kind, message);
@@ -126,7 +122,7 @@ void SetWording(const RenderSettings& settings, Job* ranks) {
 }
 
 SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sampler,
-                                  bool adaptive, Job* ranks) {
+                                  bool adaptive, MpiJob* ranks) {
     SessionOptions options;
     RenderOptions& render = options.render;
     render.schedule = settings.schedule;

@@ -26,7 +26,7 @@ class RenderJob {
     // Loads the scene. The job of ranks, which share the render and of which the first prints and
     // has to do with files, must outlive it; null: there are none. Throws Error, also where the
     // memory cannot hold the film, with its half or without.
-    RenderJob(const RenderSettings&, Job* ranks, bool withHalf = true);
+    RenderJob(const RenderSettings&, MpiJob* ranks, bool withHalf = true);
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;
 
@@ -60,7 +60,7 @@ class RenderJob {
     void RemoveCheckpoint() const;
 
     RenderSettings settings;
-    Job* const ranks;
+    MpiJob* const ranks;
     SceneInput input;
     std::unique_ptr<const Scene> scene;  // null before Compile()
     Provenance provenance;
@@ -71,9 +71,9 @@ class RenderJob {
 };
 
 // Lets errors and warnings be JSON where all there is to say is; to be called first of all.
-void SetWording(const RenderSettings&, Job* ranks);
+void SetWording(const RenderSettings&, MpiJob* ranks);
 
 // RenderJob::MakeSessionOptions() without a checkpoint; the ranks may be null.
-SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, bool adaptive, Job* ranks);
+SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, bool adaptive, MpiJob* ranks);
 
 }  // namespace lull

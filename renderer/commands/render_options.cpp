@@ -14,7 +14,7 @@
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 
-namespace lull {
+namespace lull::render {
 
 namespace {
 
@@ -46,8 +46,10 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 
 void AddDenoiserOptions(CLI::App& app, RenderRequest* o) {
     app.add_flag("--denoise", o->denoise,
-                 "Denoise, and stop blocks once the denoised image is clean");
-    app.add_flag("--denoise-layers", o->denoiseLayers, "Write the AOVs that `lull denoise` needs");
+                 "Denoise, and stop blocks once the denoised image is clean")
+        ->group(kCommonOptions);
+    app.add_flag("--denoise-layers", o->denoiseLayers, "Write the AOVs that `lull denoise` needs")
+        ->group("Denoising");
 }
 
 void AddCheckpoints(CLI::App& app, CheckpointOptions* checkpoint) {
@@ -55,6 +57,7 @@ void AddCheckpoints(CLI::App& app, CheckpointOptions* checkpoint) {
     checkpoint->mayDiffer = MayDiffer::Stops;
     app.add_flag("--keep-checkpoint", checkpoint->isKept,
                  "Keep the checkpoint at the end, for a larger --cap or another rule")
+        ->group("Interruption")
         ->needs(app.get_option("--checkpoint"));
 }
 
@@ -68,6 +71,7 @@ std::string RenderRequest::Rule() const {
 void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddRenderSettings(app, &o->render);
     app.add_option("-o,--output", o->output, "Write OUT.exr and OUT.png [the name in the scene]")
+        ->group(kCommonOptions)
         ->check([](const std::string& file) {
             return HasImageExtension(file) ? "" : file + " ends neither in .exr nor in .png";
         })
@@ -75,13 +79,16 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     auto* stop =
         app.add_option("--stop", o->stop,
                        "Choose the stopping rule, listed below [learned; --denoise: denoised]")
+            ->group(kCommonOptions)
             ->type_name("RULE");
-    AddCautionOption(app, &o->render.caution);
+    AddCautionOption(app, &o->render.caution)->group("Stopping");
     app.add_option("--spp", o->spp, "Render all blocks with N spp, as --stop fixed:N")
+        ->group(kCommonOptions)
         ->check(Between(1, 1 << 24))
         ->type_name("N")
         ->excludes(stop);
     app.add_option("--report", o->report, "Write every decision, as a page or as JSON")
+        ->group(kCommonOptions)
         ->check([](const std::string& file) {
             const bool isKnown = file.ends_with(".html") || file.ends_with(".json");
             return isKnown ? "" : file + " ends neither in .html nor in .json";
@@ -93,7 +100,8 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddLightGroupOption(app, &o->lightGroups);
     AddPictureOptions(app, &o->pictures);
     app.add_flag("--transparent", o->pictures.format.isTransparent,
-                 "Remove the directly visible background; the PNG gets alpha");
+                 "Remove the directly visible background; the PNG gets alpha")
+        ->group("Image");
     AddPathOptions(app, &o->path);
     AddClockOptions(app, &o->clock);
     AddSequenceOptions(app, &o->sequence);
@@ -121,4 +129,4 @@ void CheckRequest(const RenderRequest& request) {
                         isSpp ? "spp" : "cap", spp, kLeastDenoisedSpp));
 }
 
-}  // namespace lull
+}  // namespace lull::render

@@ -7,7 +7,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/sequence_options.h"
 
-namespace lull {
+namespace lull::render {
 
 struct RenderRequest {
     RenderSettings render;
@@ -28,11 +28,13 @@ struct RenderRequest {
     std::string Rule() const;
     // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
-    LightGroupOptions Lights() const {
-        return {.forDenoiser = denoise, .withBackground = pictures.format.isTransparent};
+    // Returns the layers, with no light groups yet.
+    LayerOptions WantedLayers() const {
+        return {.aovs = aovs,
+                .features = denoise || denoiseLayers,
+                .groupNoise = denoise,
+                .groupBackground = pictures.format.isTransparent};
     }
-    // Returns whether the inputs of the denoiser are collected.
-    bool CollectsFeatures() const { return denoise || denoiseLayers; }
 };
 
 void AddRenderOptions(CLI::App& app, RenderRequest* request);
@@ -40,4 +42,4 @@ void AddRenderOptions(CLI::App& app, RenderRequest* request);
 // Throws UsageError for options that do not fit together.
 void CheckRequest(const RenderRequest&);
 
-}  // namespace lull
+}  // namespace lull::render

@@ -17,12 +17,14 @@ namespace lull {
 
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
     AddChoiceOption(app, "--estimator", estimator,
-                    "Estimate light with least noise, or with the noise of pbrt-v3");
+                    "Estimate light with least noise, or with the noise of pbrt-v3")
+        ->group("Advanced");
 }
 
-void AddCautionOption(CLI::App& app, double* caution) {
+CLI::Option* AddCautionOption(CLI::App& app, double* caution) {
     const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
-    app.add_option("--caution", *caution, "Divide the noise threshold of " + rules + " by X")
+    return app
+        .add_option("--caution", *caution, "Divide the noise threshold of " + rules + " by X")
         ->check(Between(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();
@@ -31,27 +33,34 @@ void AddCautionOption(CLI::App& app, double* caution) {
 void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Stop every block at N spp at the latest [10000]")
+        ->group(kCommonOptions)
         ->check(Between(1, 1 << 24))
         ->type_name("N");
     app.add_option("--pass", s->schedule.passLength, "Decide every N spp")
+        ->group("Stopping")
         ->check(Between(1, 1 << 20))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--block", s->schedule.blockSize, "Set the side of the blocks, in pixels")
+        ->group("Stopping")
         ->check(Between(1, 1 << 16))
         ->type_name("N")
         ->capture_default_str();
 
     if (withSampler)
-        AddChoiceOption(app, "--sampler", &s->sampler, "Choose the sampler [the scene's]");
+        AddChoiceOption(app, "--sampler", &s->sampler, "Choose the sampler [the scene's]")
+            ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")
+        ->group("Sampling")
         ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the names of files");
+    app.add_flag("--quiet", s->quiet, "Print only warnings, errors and the names of files")
+        ->group("Output");
     app.add_flag("--json-progress", s->jsonProgress,
-                 "Print events as JSON, one object per line, on stderr");
+                 "Print events as JSON, one object per line, on stderr")
+        ->group("Output");
 }
 
 std::unique_ptr<const Scene> CompileScene(const RenderSettings& settings, SceneInput* input) {
@@ -63,10 +72,16 @@ std::unique_ptr<const Scene> CompileScene(const RenderSettings& settings, SceneI
     return scene;
 }
 
+bool IsRule(const std::string& rule, std::string_view name) {
+    const RuleEntry* entry = FindRule(rule);
+    return entry && entry->name == name;
+}
+
 int FixedSpp(const std::string& rule) {
+    if (!IsRule(rule, "fixed")) return 0;
+    const std::string argument = ArgumentOf(rule);
     int spp = 0;
-    if (rule.starts_with("fixed:"))
-        std::from_chars(rule.data() + 6, rule.data() + rule.size(), spp);
+    std::from_chars(argument.data(), argument.data() + argument.size(), spp);
     return spp;
 }
 
@@ -77,7 +92,7 @@ std::string ModelFolder() {
 
 Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
               const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
-    if (rule.starts_with(kDenoisedRuleName) && measures.empty())
+    if (IsRule(rule, kDenoisedRuleName) && measures.empty())
         throw Error(option + " " + rule +
                     ": needs --denoise of lull render; lull compare and lull bench add a denoised "
                     "image with --denoise");

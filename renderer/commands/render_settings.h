@@ -27,13 +27,15 @@ void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler
 void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 
 // Adds --caution.
-void AddCautionOption(CLI::App& app, double* caution);
+CLI::Option* AddCautionOption(CLI::App& app, double* caution);
 
 // Compiles the scene for a render, prints how often there was each of its warnings, and has it lie
 // in memory where it is quick to read. With pbrt-v3's estimator lights are chosen by pbrt-v3's
 // tables, however many there are. Throws Error.
 std::unique_ptr<const Scene> CompileScene(const RenderSettings&, SceneInput*);
 
+// Returns whether a text NAME[:ARGUMENT] is of the rule of this name.
+bool IsRule(const std::string& rule, std::string_view name);
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 

@@ -8,6 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
@@ -83,6 +84,7 @@ void AddFilmOptions(CLI::App& app, FilmOverrides* film) {
            "--resolution",
            Checked(ParseResolution, &film->resolution, "a size in pixels such as 800x600"),
            "Set the size of the image, in pixels [the scene's; glTF: 800 high]")
+        ->group(kCommonOptions)
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--crop",
@@ -90,32 +92,39 @@ void AddFilmOptions(CLI::App& app, FilmOverrides* film) {
                    "x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and the same for y, or in pixels with px "
                    "after them"),
            "Render a part: fractions from the upper left, or pixels, ending in px")
+        ->group("Image")
         ->type_name("x0,x1,y0,y1[px]");
 }
 
 void AddCompileOptions(CLI::App& app, CompileOptions* options) {
     app.add_option("--max-depth", options->maxDepth, "Limit paths to N bounces [the scene's]")
+        ->group("Sampling")
         ->check(Between(0, 1000000))
         ->type_name("N");
     app.add_option("--threads", options->threads, "Render on N threads; 0: one per core")
+        ->group(kCommonOptions)
         ->check(Between(0, 4096))
         ->type_name("N")
         ->capture_default_str();
     AddChoiceOption(app, "--filtering", &options->filtering,
-                    "Filter image textures bilinearly, or as pbrt-v3, which takes memory");
+                    "Filter image textures bilinearly, or as pbrt-v3, which takes memory")
+        ->group("Advanced");
 }
 
 void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("--exposure", options->exposure,
                    "Multiply the radiance by 2^EV, in the EXR as well [0]")
+        ->group("Image")
         ->check(Between(-100., 100.))
         ->type_name("EV");
     auto* environment =
         app.add_option("--environment", options->environment,
                        "Replace the environment map by this latitude-longitude image")
+            ->group("Scene")
             ->type_name("FILE.exr|.hdr");
     app.add_option("--environment-rotation", options->environmentRotation,
                    "Rotate the environment map, in degrees, counterclockwise from above [0]")
+        ->group("Scene")
         ->needs(environment)
         ->check(Between(-360., 360.))
         ->type_name("DEG");
@@ -123,14 +132,17 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
 
 void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
     auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animations at this time")
+                      ->group("Scene")
                       ->check(Between(0., 1e9))
                       ->type_name("SECONDS");
     app.add_option("--animation", view->animation,
                    "glTF: choose one animation, by name or number from 0 [all]")
+        ->group("Scene")
         ->needs(frame)
         ->type_name("NAME|N");
     app.add_option("--shutter", view->shutter,
                    "glTF: open the shutter at --frame for this time [0]")
+        ->group("Scene")
         ->needs(frame)
         ->check(Between(0., 1e9))
         ->type_name("SECONDS");
@@ -139,20 +151,24 @@ void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
 void AddGltfOptions(CLI::App& app, GltfOptions* view) {
     auto* camera = app.add_option("--camera", view->camera,
                                   "glTF: choose the camera, by name or number from 0 [0]")
+                       ->group("Scene")
                        ->type_name("NAME|N");
     app.add_option_function<std::string>(
            "--orbit",
            Checked(ParseOrbit, &view->orbit,
                    "azimuth,elevation in degrees, the elevation from -90 to 90"),
            "glTF: view the whole scene, from degrees [without a camera: 30,15]")
+        ->group("Scene")
         ->excludes(camera)
         ->type_name("azimuth,elevation");
     AddAnimationOptions(app, view);
     app.add_option("--variant", view->variant,
                    "glTF: choose the material variant, by name or number; see lull info")
+        ->group("Scene")
         ->type_name("NAME|N");
     app.add_flag("--solid-glass", view->solidGlass,
-                 "glTF: treat transmissive surfaces without a volume as solid");
+                 "glTF: treat transmissive surfaces without a volume as solid")
+        ->group("Scene");
 }
 
 }  // namespace
@@ -162,12 +178,14 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->required();
     AddFilmOptions(app, &options->compile.film);
     AddChoiceOption(app, "--integrator", &options->integrator,
-                    "Find light by paths from the camera, or from lights too [the scene's]");
+                    "Find light by paths from the camera, or from lights too [the scene's]")
+        ->group("Sampling");
     AddCompileOptions(app, &options->compile);
     app.add_flag("--substitute", options->substitute,
-                 "Replace missing and unsupported parts of the scene, with warnings");
-    app.add_flag("--verbose", options->isVerbose,
-                 "Print warnings without effect on the image, too");
+                 "Replace missing and unsupported parts of the scene, with warnings")
+        ->group("Scene");
+    app.add_flag("--verbose", options->isVerbose, "Print warnings without effect on the image, too")
+        ->group("Scene");
     AddEnvironmentOptions(app, options);
     AddGltfOptions(app, &options->view);
 }

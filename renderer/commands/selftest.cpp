@@ -16,7 +16,7 @@
 #include "tests/hard_cases/hard_case.h"
 #include "tests/hard_cases/heavy_tails.h"
 
-namespace lull {
+namespace lull::selftest {
 
 namespace {
 
@@ -137,7 +137,7 @@ ExitCode RunSelftest(const SelftestOptions& options) {
 
 }  // namespace
 
-void AddSelftestCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* selftest = app.add_subcommand("selftest", "Checks this build against known answers.");
     auto options = std::make_shared<SelftestOptions>();
     selftest->add_option("--only", options->only, "Run only the checks with TEXT in their name")
@@ -163,4 +163,4 @@ void AddSelftestCommand(CLI::App& app, Command* command) {
     selftest->callback([=] { *command = [=] { return RunSelftest(*options); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::selftest

@@ -50,6 +50,7 @@ void AddSequenceOptions(CLI::App& app, std::optional<Sequence>* sequence) {
                                               "<= FROM <= TO and at most 99999 frames");
            },
            "glTF: render the frames from FROM to TO seconds, as OUT.0001.exr, ...")
+        ->group("Scene")
         ->type_name("FROM:TO:FPS")
         ->excludes(frame);
     for (const char* name : {"--animation", "--shutter"}) app.get_option(name)->remove_needs(frame);

@@ -46,11 +46,13 @@ Rgb FilmPixel::HalfMean() const {
 }
 
 Film::Film(const PixelRect& region, const FilmOptions& options)
-    : columns(TilesAlong(region.Width(), options.grid)),
+    : layers(region, options.layers),
+      columns(TilesAlong(region.Width(), options.grid)),
       rows(TilesAlong(region.Height(), options.grid)),
       tiles({{0, 0}, {CountOf(columns), CountOf(rows)}}),
       sums(region) {
     if (options.withHalf) halfSums.emplace(region);
+    if (options.withSpreads) ForgetSpreads();
 }
 
 int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
@@ -58,7 +60,7 @@ int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
     const auto tilesAlong = [&](int size) {
         return int64_t(CountOf(TilesAlong(size, options.grid)));
     };
-    return region.Area() * (options.withHalf ? 2 * sum : sum) +
+    return region.Area() * ((options.withHalf ? 2 * sum : sum) + Layers::Bytes(options.layers)) +
            tilesAlong(region.Width()) * tilesAlong(region.Height()) * int64_t(sizeof(TileSamples));
 }
 
@@ -136,6 +138,29 @@ int64_t Film::RejectedCount() const {
     int64_t n = 0;
     for (const TileSamples& tile : tiles.Pixels()) n += tile.rejected;
     return n;
+}
+
+void PutPlanes(const Film& film, const PixelRect& pixels, StateWriter* writer) {
+    Film::ForEachPlane(film, pixels, [&](const char*, const auto& plane, const PixelRect& part) {
+        plane.Put(part, writer);
+    });
+}
+
+void GetPlanes(StateReader* reader, const PixelRect& pixels, Film* film) {
+    Film::ForEachPlane(*film, pixels, [&](const char*, auto& plane, const PixelRect& part) {
+        plane.Get(part, reader);
+    });
+}
+
+std::map<std::string, std::string> PlanesOf(const Film& film) {
+    std::map<std::string, std::string> planes = {{"sums", ""}};
+    if (film.HasHalf()) planes["sums of the half"] = "";
+    film.layers.ForEach([&]<typename Kind>(const Kind& kind) {
+        Kind::ForEachPlane(kind, [&](const char* name, const auto&) {
+            planes[name] = Kind::Identity(film.layers.Options());
+        });
+    });
+    return planes;
 }
 
 }  // namespace lull

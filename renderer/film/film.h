@@ -1,45 +1,16 @@
-// Sums up the samples of every pixel.
+// Sums up the samples of every pixel: their colours and, in layers, what else is wanted of them.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "renderer/film/pixel_plane.h"
+#include "renderer/film/film_pixel.h"
+#include "renderer/film/layers.h"
+#include "renderer/film/sample_spread.h"
 
 namespace lull {
-
-// Returns whether sample `index` belongs to the half on which noise is estimated: the bits at its
-// odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
-// and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
-inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
-
-// Returns how many of the samples 0 .. count - 1 are in the half.
-uint32_t HalfCount(uint32_t count);
-
-// The sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
-// added to the running sums one by one, so that the sums are the same bits however the samples are
-// cut into passes.
-struct FilmPixel {
-    std::array<double, 3> sum = {}, halfSum = {};
-    uint32_t count = 0;
-    uint32_t rejected = 0;  // samples that were NaN, infinite or negative, and count as black
-
-    // Adds the sample of index `count`. The radiance must be finite.
-    void Add(const Rgb& radiance, bool wasRejected) {
-        const bool inHalf = InHalf(count);
-        for (int c = 0; c < 3; ++c) {
-            sum[c] += double(radiance[c]);
-            if (inHalf) halfSum[c] += double(radiance[c]);
-        }
-        ++count;
-        rejected += wasRejected;
-    }
-    // Return the mean of all samples, or of those in the half; without any, black, or the mean of
-    // all.
-    Rgb Mean() const;
-    Rgb HalfMean() const;
-};
 
 // A coarse picture of a region: one colour for each square of spacing x spacing pixels, row by row,
 // finite.
@@ -62,15 +33,17 @@ struct TileGrid {
 };
 
 struct FilmOptions {
-    TileGrid grid = {};    // by default every pixel is a tile of its own
-    bool withHalf = true;  // keeps the sums of the half; false: they are zero and never read
+    TileGrid grid = {};        // by default every pixel is a tile of its own
+    bool withHalf = true;      // keeps the sums of the half; false: they are zero and never read
+    bool withSpreads = false;  // keeps those of tiles, for light paths
+    LayerOptions layers = {};
 };
 
 class FilmTile;
 
 // The pixels of the crop window, addressed by full-image coordinates: 24 bytes a pixel, 24
-// more with the half, and 8 a tile. Different tiles can be changed by different threads at the same
-// time.
+// more with the half, those of its layers, and 8 a tile. Different tiles can be changed by
+// different threads at the same time.
 class Film {
   public:
     explicit Film(const PixelRect& region, const FilmOptions& options = {});
@@ -110,14 +83,29 @@ class Film {
     }
     size_t TileCount() const { return tiles.Pixels().size(); }
 
+    // Returns where the samples of a tile are summed up; null: they are not.
+    SampleSpread* SpreadOf(const PixelRect& tile) {
+        return spreads ? &spreads->At(TileOf(tile.min)) : nullptr;
+    }
+    // Return those of all tiles, which are kept, by their numbers; and begin again.
+    const std::vector<SampleSpread>& Spreads() const { return spreads->Pixels(); }
+    void ForgetSpreads() { spreads.emplace(tiles.Region()); }
+
     // Calls visit(name, plane, part) for each plane that a film, which may be const, consists of;
     // `part` is a rectangle of whole tiles, `pixels`, in the coordinates of the plane.
     template <typename AnyFilm, typename Visit>
     static void ForEachPlane(AnyFilm& film, const PixelRect& pixels, const Visit& visit) {
         visit("tiles", film.tiles, film.TilesIn(pixels));
+        if (film.spreads) visit("spreads", *film.spreads, film.TilesIn(pixels));
         visit("sums", film.sums, pixels);
-        if (film.halfSums) visit("half_sums", *film.halfSums, pixels);
+        if (film.halfSums) visit("sums of the half", *film.halfSums, pixels);
+        film.layers.ForEach([&]<typename Kind>(Kind& kind) {
+            Kind::ForEachPlane(kind,
+                               [&](const char* name, auto& plane) { visit(name, plane, pixels); });
+        });
     }
+
+    Layers layers;
 
   private:
     friend class FilmTile;
@@ -140,10 +128,19 @@ class Film {
 
     std::vector<int> columns, rows;  // tile of each column and row of pixels
     PixelPlane<TileSamples> tiles;
+    std::optional<PixelPlane<SampleSpread>> spreads;
     Sums sums;
     std::optional<Sums> halfSums;
     FirstLook firstLook;  // no colours: none
 };
+
+// Append the pixels of whole tiles, and set them from bytes appended for the same planes.
+// GetPlanes() throws std::runtime_error where the bytes end too early.
+void PutPlanes(const Film&, const PixelRect& pixels, StateWriter*);
+void GetPlanes(StateReader*, const PixelRect& pixels, Film*);
+
+// Returns the names of all planes of the film, each with the identity of its layer.
+std::map<std::string, std::string> PlanesOf(const Film&);
 
 // Takes the pixels of a tile further, in any order. When it ends, the tile has as many samples as
 // the pixels that were set, which are all.

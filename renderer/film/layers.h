@@ -1,63 +1,99 @@
-// Data of the samples that a render collects in addition to the film.
+// What a render sums up in addition to the colours of the film: a closed set of kinds. Each has
+//
+//   static bool IsWanted(const LayerOptions&)
+//   static int64_t Bytes(const LayerOptions&)
+//       the memory that a pixel takes, where it is wanted
+//   Kind(const PixelRect& region, const LayerOptions&)
+//   static bool NeedsFirstHits(const LayerOptions&)
+//       whether Add() reads LayerSample::hit
+//   void Add(const Vec2i&, const LayerSample&)
+//       called in the order of the samples, by several threads for different pixels
+//   static void ForEachPlane(self, visit)
+//       calls visit(name, plane) for each PixelPlane that it consists of, whose name no other kind
+//       has: what checkpoints save, ranks send and clocks undo
+//   static std::string Identity(const LayerOptions&)
+//       in words, what else decides the sums: a render continues only where it is the same
+//   void AddSplats(const Vec2i&, const PixelSplats&)
+//       if light paths add to it
+//
+// Its channels in an EXR are made by ChannelsOf() (results/layer_channels.h). The loops over kinds
+// are resolved at compile time; those that are not wanted cost a comparison a sample.
 #pragma once
 
-#include "renderer/film/aov_film.h"
-#include "renderer/film/feature_film.h"
-#include "renderer/film/film.h"
-#include "renderer/film/light_group_film.h"
-#include "renderer/film/matte_film.h"
-#include "renderer/transport/first_hit.h"
+#include <optional>
+#include <tuple>
+
+#include "renderer/film/first_hit_layer.h"
+#include "renderer/film/light_group_layer.h"
+#include "renderer/film/matte_layer.h"
+#include "renderer/film/square_layer.h"
 
 namespace lull {
 
-struct Layers {
-    // Of the film's region; null: not collected.
-    AovFilm* aovs = nullptr;
-    FeatureFilm* features = nullptr;  // for the denoiser
-    MatteFilm* mattes = nullptr;
-    LightGroupFilm* lights = nullptr;
+class Layers {
+  public:
+    // No layers.
+    Layers() = default;
+    Layers(const PixelRect& region, const LayerOptions& wanted) : options(wanted) {
+        std::apply([&](auto&... kind) { (..., Make(region, &kind)); }, kinds);
+    }
+    // Returns the memory that a pixel takes.
+    static int64_t Bytes(const LayerOptions& wanted) {
+        const auto bytesOf = [&]<typename Kind>(const std::optional<Kind>&) {
+            return Kind::IsWanted(wanted) ? Kind::Bytes(wanted) : 0;
+        };
+        return std::apply([&](const auto&... kind) { return (... + bytesOf(kind)); }, Kinds());
+    }
 
-    explicit operator bool() const { return aovs || features || mattes || lights; }
-    // Returns whether they are of this region.
-    bool AreOf(const PixelRect& region) const {
-        return (!aovs || aovs->Region() == region) && (!features || features->Region() == region) &&
-               (!mattes || mattes->alpha.Region() == region) &&
-               (!lights || lights->Region() == region);
+    const LayerOptions& Options() const { return options; }
+    // Return a kind; null: it is not there.
+    template <typename Kind>
+    const Kind* Find() const {
+        const auto& kind = std::get<std::optional<Kind>>(kinds);
+        return kind ? &*kind : nullptr;
     }
-    // Adds sample `index` of a pixel, whose path met this first. `groups` has its light by groups,
-    // where there are `lights`.
-    void Add(const Vec2i& pixel, uint32_t index, const FirstHit& hit, const Rgb& radiance,
-             const GroupRadiance* groups = nullptr) const {
-        if (aovs) aovs->At(pixel).Add(hit, radiance);
-        if (features) features->At(pixel).Add(hit, radiance, InHalf(index));
-        if (mattes) mattes->Add(pixel, hit, radiance);
-        if (lights) lights->Add(pixel, InHalf(index), *groups, hit);
+    template <typename Kind>
+    Kind* Find() {
+        return const_cast<Kind*>(std::as_const(*this).Find<Kind>());
     }
-    // Returns whether any of them needs the samples' first hits; noise does not.
+    // Call visit(kind) for each kind that is there.
+    template <typename Visit>
+    void ForEach(const Visit& visit) const {
+        std::apply([&](const auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
+    }
+    template <typename Visit>
+    void ForEach(const Visit& visit) {
+        std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
+    }
+
+    bool IsEmpty() const {
+        return std::apply([](const auto&... kind) { return (... && !kind); }, kinds);
+    }
     bool NeedFirstHits() const {
-        return features || mattes || (aovs && aovs->Wanted().FirstHits());
+        bool needed = false;
+        ForEach([&]<typename Kind>(const Kind&) { needed |= Kind::NeedsFirstHits(options); });
+        return needed;
     }
+    void Add(const Vec2i& p, const LayerSample& sample) {
+        ForEach([&](auto& kind) { kind.Add(p, sample); });
+    }
+    // Frees what the denoiser alone reads.
+    void ForgetFeatures() {
+        if (auto* hits = Find<FirstHitLayer>()) hits->ForgetFeatures(options);
+        if (!options.aovs.noise) std::get<std::optional<SquareLayer>>(kinds).reset();
+    }
+
+  private:
+    using Kinds = std::tuple<std::optional<FirstHitLayer>, std::optional<SquareLayer>,
+                             std::optional<MatteLayer>, std::optional<LightGroupLayer>>;
+
+    template <typename Kind>
+    void Make(const PixelRect& region, std::optional<Kind>* kind) {
+        if (Kind::IsWanted(options)) kind->emplace(region, options);
+    }
+
+    LayerOptions options;
+    Kinds kinds;
 };
-
-// Calls visit(name, plane, part) for each plane of a film, which may be const, and of the layers;
-// `part` is a rectangle of whole tiles, `pixels`, in the coordinates of the plane.
-template <typename AnyFilm, typename Visit>
-void ForEachPlane(AnyFilm& film, const Layers& layers, const PixelRect& pixels,
-                  const Visit& visit) {
-    Film::ForEachPlane(film, pixels, visit);
-    if (layers.aovs) visit("aovs", *layers.aovs, pixels);
-    if (layers.features) visit("features", *layers.features, pixels);
-    if (layers.lights)
-        layers.lights->ForEachPlane(
-            [&](const char* name, auto& plane) { visit(name, plane, pixels); });
-    if (!layers.mattes) return;
-    visit("alpha", layers.mattes->alpha, pixels);
-    if (layers.mattes->crypto) visit("crypto", *layers.mattes->crypto, pixels);
-}
-
-// Append the pixels of whole tiles, and set them from bytes appended for the same planes.
-// GetPlanes() throws std::runtime_error where the bytes end too early.
-void PutPlanes(const Film&, const Layers&, const PixelRect& pixels, StateWriter*);
-void GetPlanes(StateReader*, const PixelRect& pixels, Film*, const Layers&);
 
 }  // namespace lull

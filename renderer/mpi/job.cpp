@@ -49,7 +49,7 @@ std::string HostName() {
 
 }  // namespace
 
-Job::Job() {
+MpiJob::MpiJob() {
     const int launched = LaunchedProcesses();
     if (launched == 1) return;
     if (!hasMpi)
@@ -68,23 +68,23 @@ Job::Job() {
 }
 
 // A rank that has left is not waited for again.
-Job::~Job() {
+MpiJob::~MpiJob() {
     peers.reset();
     EndMpi(kLeastPatience);
 }
 
-double Job::Patience() const {
+double MpiJob::Patience() const {
     const std::chrono::duration<double> busy = std::chrono::steady_clock::now() - start;
     const double patience =
         clock ? std::clamp(clock() / 10, kLeastPatience, kMostPatience) : kMostPatience;
     return std::max(patience, busy.count());
 }
 
-Agreement Job::AgreeWithOthers(bool failed, uint64_t value) {
+Agreement MpiJob::AgreeWithOthers(bool failed, uint64_t value) {
     return Agree(peers.get(), ++rounds, failed, value, Patience());
 }
 
-void Job::Begin(const std::string& what) {
+void MpiJob::Begin(const std::string& what) {
     if (count == 1) return;
     if (givenUp >= 0) {
         phase = Phase::Working;
@@ -104,12 +104,12 @@ void Job::Begin(const std::string& what) {
                     all.different));
 }
 
-void Job::End() {
+void MpiJob::End() {
     phase = Phase::After;
     start = std::chrono::steady_clock::now();
 }
 
-void Job::Leave(int exitCode) {
+void MpiJob::Leave(int exitCode) {
     std::fflush(nullptr);  // an abort would not
     if (givenUp < 0) {
         peers.reset();
@@ -118,12 +118,12 @@ void Job::Leave(int exitCode) {
     AbortMpi(exitCode);
 }
 
-void Job::Warn(const std::string& message) const {
+void MpiJob::Warn(const std::string& message) const {
     const std::string line = wording("warning", message);
     if (write(errorOutput, line.data(), line.size()) < 0) return;
 }
 
-void Job::Fail(const std::string& message) {
+void MpiJob::Fail(const std::string& message) {
     bool isFirst = true;
     if (count > 1 && phase == Phase::Before) {
         const Agreement all = AgreeWithOthers(true, 0);

@@ -16,11 +16,11 @@ struct OtherRankFailed {};
 
 // Starts MPI if this is one of several processes, and only then. The output of all ranks but the
 // first is discarded. There can be only one; used by the main thread.
-class Job {
+class MpiJob {
   public:
     // Throws Error if there are several processes but this program was built without MPI.
-    Job();
-    ~Job();
+    MpiJob();
+    ~MpiJob();
 
     int Rank() const { return rank; }
     int Count() const { return count; }

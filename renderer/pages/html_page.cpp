@@ -94,10 +94,6 @@ std::string FillPage(std::string_view frame, const std::map<std::string, std::st
     return page;
 }
 
-std::string MakePage(const Json& data) {
-    return FillPage("page.html", {{"data", JsonForScript(data)}});
-}
-
 std::vector<Rgb> PixelsOf(const RgbImage& image) {
     std::vector<Rgb> pixels;
     pixels.reserve(image.values.size() / 3);
@@ -190,7 +186,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
              {"label", "error that is left (yellow: 2 in lightness, of 0 to 100)"},
              {"src", ErrorUri(*denoised)}});
     }
-    return MakePage(page);
+    return FillPage("page.html", {{"data", JsonForScript(page)}});
 }
 
 }  // namespace lull

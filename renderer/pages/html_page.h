@@ -15,9 +15,6 @@ std::string JsonForScript(const Json&);
 
 std::string Base64(std::span<const std::byte>);
 
-// Returns the page for `data`, whose form page.js describes.
-std::string MakePage(const Json& data);
-
 // Return pictures as data URIs: an image as a display shows it; values in [0, 1] in false colours.
 // Images larger than PagePictureScale() allows are averaged down.
 std::string PictureUri(const RgbImage&);

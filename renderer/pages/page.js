@@ -1,17 +1,19 @@
 "use strict";
-// Fills the page with the data of a render, a comparison or a bench:
-//   kind, title, cap, width, height, notes [text], warnings {kind: count}, provenance {}
+// Fills in the parts of a page that all reports have, with its data:
+//   title, cap, width, height, notes [text], warnings {kind: count}, provenance {}
 //   blocks [{x, y, width, height, end?, decisions? {threshold, spp [], value [], votes []},
 //            curves? {spp [], entropy [], noise []}}], in pixels of the image, row by row
-//   images [{name, label, rule, src, flipSrc?, visibleDifferenceSrc?, visibleBlocks?, figures?, seams?, cost?,
-//            saved?,          blocks [{spp, seconds, ruleSeconds, estimated, and figures}]}]
-//   viewing {name, pixelsPerDegree, threshold}: for visible differences, with the visibility threshold
-//   reference: the name of the image that the others are compared with
-//   totals (render); againstHuman, estimates, verifications (compare)
-//   bench {samplers [], points [{rule, setting, sampler, spp, seconds, sharesReference, and
-//   figures}]}
+//   images [{name, label, rule, src, blocks [{spp, seconds, ruleSeconds, estimated}]}]
+//   reference: the name of the image that the others are compared with, if any
 
 const data = JSON.parse(byId("data").textContent);
+
+// What a kind of page adds to them:
+//   sppName(image), sppHead(image): names of sample counts, for overlays and columns
+//   layers?, overlays? [{name, label, numbers}], overlay?: the first, isDivided?: of the viewer
+//   summarise(): fills its summary
+//   blockRows?(i, images, add, rows), blockColumns?(image, head, cells), lastColumns?(head, cells): of the tables of blocks
+let page = {};
 
 function chooseBlock(i) {
   view.block = i;
@@ -26,19 +28,21 @@ function hardestBlock(data) {
   return Math.max(0, spp.indexOf(Math.max(...spp)));
 }
 
-document.title = `${data.title} \u2013 lull ${data.kind}`;
-byId("title").textContent = data.title;
-const p = data.provenance;
-byId("sentence").textContent = saySentence(data);
-byId("subtitle").textContent = [{render: "A render", compare: "A comparison", bench: "A bench"}[data.kind] + " by lull" + (p ? " " + p.version : ""),
-  `${data.width}\u00d7${data.height} pixels`, data.kind === "render" ? `stops by ${p.criterion}` : "", data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
-  p ? `sampler ${[].concat(p.sampler).join(", ")}` : ""].filter(t => t).join(" \u00b7 ");
-document.body.classList.add(data.kind);
-startBench(data);
-startViewer(data);
-showTotals(data);
-showSummary(data);
-showBlocksTable(data);
-showProvenance(data);
-if (data.blocks.length && layers.length) chooseBlock(hardestBlock(data));
-dispatchEvent(new Event("resize"));  // now that the page has its height, and so its width
+// `kind` is in words, `facts` and those of the sentence are texts.
+function startPage(kind, sentence, facts, parts) {
+  page = parts;
+  const p = data.provenance;
+  document.title = `${data.title} \u2013 lull ${kind}`;
+  byId("title").textContent = data.title;
+  byId("sentence").textContent = sentence;
+  byId("subtitle").textContent = [`A ${kind === "compare" ? "comparison" : kind} by lull` + (p ? " " + p.version : ""),
+    `${data.width}\u00d7${data.height} pixels`, ...facts, data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
+    p ? `sampler ${[].concat(p.sampler).join(", ")}` : ""].filter(t => t).join(" \u00b7 ");
+  document.body.classList.add(kind);
+  startViewer(data);
+  page.summarise();
+  showBlocksTable(data);
+  showProvenance(data);
+  if (data.blocks.length && layers.length) chooseBlock(hardestBlock(data));
+  dispatchEvent(new Event("resize"));  // now that the page has its height, and so its width
+}

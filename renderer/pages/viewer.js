@@ -11,25 +11,10 @@ let flickering = 0;  // the timer of pictures that take turns
 // flashes a second and more would be a danger to some.
 const flickerMs = 500;
 
-function makeLayers(data) {
-  for (const image of data.images) if (image.src) layers.push({label: image.label, src: image.src});
-  for (const image of data.images)
-    if (image.flipSrc) layers.push({label: "FLIP error of " + image.name, src: image.flipSrc, ends: ["0", "FLIP: visible difference, 0 to 1", "1"]});
-  for (const image of data.images)
-    if (image.visibleDifferenceSrc) layers.push({label: "Visible difference of " + image.name, src: image.visibleDifferenceSrc,
-      ends: ["0", `visible difference; visibility threshold ${show(data.viewing.threshold)} in the middle`, "\u221e"]});
-}
-
 // The numbers that an overlay colours: values, their places in [0, 1], colours and words for them.
 function overlayNumbers(data) {
-  if (view.overlay === "human") {
-    // How much longer the rule went on than people asked for: colours by the ratio, a factor of
-    // four at the ends.
-    const [a, h] = ["automatic", "human"].map(name => data.images.find(i => i.name === name).blocks);
-    return {values: a.map((b, i) => b.spp - h[i].spp), places: a.map((b, i) => 0.5 + Math.log2(b.spp / h[i].spp) / 4),
-      colour: diverging, ends: ["4 times earlier", "automatic against human: difference in samples per pixel", "4 times later"],
-      show: v => (v > 0 ? "+" : v < 0 ? "\u2212" : "\u00b1") + Math.abs(v)};
-  }
+  const own = (page.overlays || []).find(o => o.name === view.overlay);
+  if (own) return own.numbers;
   const image = data.images.find(i => "spp:" + i.name === view.overlay);
   if (!image) return null;
   const values = image.blocks.map(b => b.spp);
@@ -37,7 +22,7 @@ function overlayNumbers(data) {
   const high = Math.max(data.cap, ...values);
   const onScale = v => high > low ? Math.log(Math.max(v, low) / low) / Math.log(high / low) : 1;
   return {values, places: values.map(onScale), colour: viridis, show: showCount,
-    ends: [showCount(low), data.kind === "render" ? "samples per pixel (logarithmic)" : `samples per pixel of ${image.name} (logarithmic)`, showCount(high)]};
+    ends: [showCount(low), `${page.sppName(image)} (logarithmic)`, showCount(high)]};
 }
 
 function drawOverlay(data, svg) {
@@ -185,7 +170,8 @@ function makeChoice(label, options, value, set) {
 }
 
 function startViewer(data) {
-  makeLayers(data);
+  for (const image of data.images) if (image.src) layers.push({label: image.label, src: image.src});
+  layers.push(...(page.layers || []));
   if (!layers.length) return;
   byId("viewer").hidden = false;
   if (layers.length === 1) view.b = 0;
@@ -194,11 +180,10 @@ function startViewer(data) {
   const update = () => { showStages(data); };
   const pictures = layers.map((l, i) => [i, l.label]);
   const overlays = [["grid", "grid"], ["none", "nothing"],
-    ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, data.kind === "render" ? "samples per pixel" : "spp of " + i.name]),
-    ...(data.againstHuman ? [["human", "difference to human"]] : [])];
-  // A render's page shows its picture first.
-  if (data.kind === "render") view.overlay = "none";
-  if (data.kind === "compare" && layers.length > 1) {
+    ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, page.sppName(i)]),
+    ...(page.overlays || []).map(o => [o.name, o.label])];
+  if (page.overlay) view.overlay = page.overlay;
+  if (page.isDivided && layers.length > 1) {
     view.mode = "divide";
     view.b = data.images.filter(i => i.src).length - 1;
   }

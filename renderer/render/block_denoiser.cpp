@@ -8,10 +8,9 @@ DenoiserResult BlockDenoiser::Run(const PixelRect& pixels) const {
     const PixelRect whole{{0, 0}, {pixels.Width(), pixels.Height()}};
     // The picture in the end is a little better than that which is judged.
     const DenoiserOptions options{.isQuick = true, .withDeviation = false};
-    if (lights)
-        return RunDenoiser(PictureOf(*film, *featureFilm, *lights, pixels), {&whole, 1}, options)
-            .sum;
-    return RunDenoiser(PictureOf(*film, *featureFilm, pixels), {&whole, 1}, options);
+    if (film->layers.Find<LightGroupLayer>())
+        return RunDenoiser(GroupedPictureOf(*film, pixels), {&whole, 1}, options).sum;
+    return RunDenoiser(PictureOf(*film, pixels), {&whole, 1}, options);
 }
 
 VisibleError BlockDenoiser::MeasureBlock(int block) const {

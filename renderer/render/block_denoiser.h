@@ -5,8 +5,7 @@
 #include <span>
 
 #include "renderer/denoise/denoiser.h"
-#include "renderer/film/feature_film.h"
-#include "renderer/film/light_group_film.h"
+#include "renderer/film/film.h"
 #include "renderer/render/schedule.h"
 #include "stopping/rules/rule.h"
 
@@ -18,13 +17,9 @@ class BlockDenoiser {
   public:
     explicit BlockDenoiser(std::vector<Block> blocks) : blocks(std::move(blocks)) {}
 
-    // Sets whose pixels they are; all must be there while it is asked. With light groups, each is
-    // denoised, and the largest error counts (RunDenoiser()); null: none.
-    void Show(const Film* pixels, const FeatureFilm* features, const LightGroupFilm* groups) {
-        film = pixels;
-        featureFilm = features;
-        lights = groups;
-    }
+    // Sets whose pixels they are, which have features; it must be there while it is asked. With
+    // light groups, each is denoised, and the largest error counts (RunDenoiser()).
+    void Show(const Film* pixels) { film = pixels; }
 
     // Shows denoised blocks to a callback: their pixels, and R, G, B of each, row by row.
     void ShowPictures(std::function<void(const PixelRect&, std::span<const float> rgb)> show) {
@@ -39,8 +34,6 @@ class BlockDenoiser {
 
     std::vector<Block> blocks;
     const Film* film = nullptr;
-    const FeatureFilm* featureFilm = nullptr;
-    const LightGroupFilm* lights = nullptr;
     std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 

@@ -17,7 +17,9 @@ namespace lull {
 
 namespace {
 
-constexpr std::string_view kFormat = "lull checkpoint 2", kOlderFormat = "lull checkpoint 1";
+constexpr std::string_view kFormat = "lull checkpoint 3";
+constexpr std::array<std::string_view, 2> kOlderFormats = {"lull checkpoint 1",
+                                                           "lull checkpoint 2"};
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
@@ -74,25 +76,20 @@ std::vector<std::byte> BytesOf(const Hdf5Group& group, const std::string& name) 
     return group.Array<std::byte>(name, group.Shape(name));
 }
 
-void WritePlanes(Hdf5Group group, const PixelRect& rect, const Film& film, const Layers& layers) {
-    ForEachPlane(film, layers, rect,
-                 [&](const char* name, const auto& plane, const PixelRect& part) {
-                     StateWriter writer;
-                     plane.Put(part, &writer);
-                     AddBytes(group, name, writer.bytes);
-                 });
+void WritePlanes(Hdf5Group group, const PixelRect& rect, const Film& film) {
+    Film::ForEachPlane(film, rect, [&](const char* name, const auto& plane, const PixelRect& part) {
+        StateWriter writer;
+        plane.Put(part, &writer);
+        AddBytes(group, name, writer.bytes);
+    });
 }
 
-void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film, const Layers& layers) {
+void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film) {
     const PixelRect& all = film->Region();
     if ((rect.min.array() < all.min.array()).any() || (rect.max.array() > all.max.array()).any() ||
         (rect.min.array() >= rect.max.array()).any())
         throw Error("it has pixels outside the image");
-    if (film->HasHalf() && !group.HasArray("half_sums"))
-        throw Error(
-            "it was written without the sums of the half of the samples, which are needed here; "
-            "start again");
-    ForEachPlane(*film, layers, rect, [&](const char* name, auto& plane, const PixelRect& part) {
+    Film::ForEachPlane(*film, rect, [&](const char* name, auto& plane, const PixelRect& part) {
         const auto bytes = group.Array<std::byte>(name, std::array{plane.Bytes(part)});
         StateReader reader(bytes);
         plane.Get(part, &reader);
@@ -102,7 +99,7 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film, const
 
 void CheckFormat(const Hdf5Group& root) {
     const std::string format = root.HasAttribute("format") ? root.String("format") : "";
-    if (format == kOlderFormat)
+    if (std::ranges::find(kOlderFormats, format) != kOlderFormats.end())
         throw Error(
             "it was written by an older lull; go on with that one, or remove the file to start "
             "again");
@@ -149,6 +146,22 @@ void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, Ma
                 key, ValueIn(found, key), ValueIn(wanted, key)));
 }
 
+// Throws Error naming the first plane of the film that is not there, or is of something else.
+void CheckPlanes(const RenderIdentity& found, const Film& film) {
+    for (const auto& [name, identity] : PlanesOf(film)) {
+        const auto at = found.find(name);
+        if (at == found.end())
+            throw Error(fmt::format(
+                "it was written without the {}, needed here; go on with the AOVs, light groups and "
+                "denoiser that it was begun with, or remove the file to start again",
+                name));
+        if (at->second != identity)
+            throw Error(fmt::format(
+                "its {} is {}, and here {}; go on with the same, or remove the file to start again",
+                name, at->second, identity));
+    }
+}
+
 // Lets blocks go on that stopped by another rule, or at a smaller cap.
 void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderState* state) {
     const int cap = CapIn(wanted);
@@ -174,11 +187,12 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
 }  // namespace
 
 void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
-                     const RenderState& state, const Film& film, const Layers& layers,
+                     const RenderState& state, const Film& film,
                      std::span<const std::byte> guide) try {
     Hdf5Group root = Hdf5Group::CreateInMemory();
     root.SetString("format", std::string(kFormat));
     root.SetStrings("identity", Lines(identity));
+    root.SetStrings("planes", Lines(PlanesOf(film)));
     root.AddArray<double>("seconds", std::array<int64_t, 1>{1}, std::array{state.seconds});
     if (!guide.empty()) AddBytes(root, "guide", guide);
     for (size_t i = 0; i < state.blocks.size(); ++i) {
@@ -186,7 +200,7 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
         AddBytes(group, "books", PackBooks(state.blocks[i]));
         AddBytes(group, "criterion", state.criteria[i]);
         const PixelRect& rect = state.blocks[i].block.pixels;
-        if (MostSamples(rect, film) > 0) WritePlanes(group.MakeGroup("pixels"), rect, film, layers);
+        if (MostSamples(rect, film) > 0) WritePlanes(group.MakeGroup("pixels"), rect, film);
     }
     const std::span<const std::byte> content = root.Content();
     const std::string seal = SealOf(content);
@@ -201,13 +215,13 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
 }
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
-                           const Layers& layers, std::vector<std::byte>* guide,
-                           MayDiffer mayDiffer) try {
+                           std::vector<std::byte>* guide, MayDiffer mayDiffer) try {
     CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
     CheckFormat(root);
     const RenderIdentity found = ParseIdentity(root.Strings("identity"));
     CheckIdentity(found, identity, mayDiffer);
+    CheckPlanes(ParseIdentity(root.Strings("planes")), *film);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
     if (guide && root.HasArray("guide")) *guide = BytesOf(root, "guide");
@@ -216,7 +230,7 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
         state.blocks.push_back(UnpackBooks(BytesOf(group, "books")));
         state.criteria.push_back(BytesOf(group, "criterion"));
         if (group.HasGroup("pixels"))
-            ReadPlanes(group.Group("pixels"), state.blocks.back().block.pixels, film, layers);
+            ReadPlanes(group.Group("pixels"), state.blocks.back().block.pixels, film);
     }
     if (mayDiffer == MayDiffer::Stops) GoOnTo(identity, found, &state);
     return state;

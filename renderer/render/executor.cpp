@@ -16,10 +16,10 @@ namespace {
 // Takes the samples of a tile, all of a pixel before the next: neighbouring rays find the same part
 // of the scene in the caches, and the pixel's sums stay in registers. Pixels that an interrupted
 // render has taken further already keep what they have. Adds them to `spread`, if there is one, and
-// ends a pixel by finish(pixel, first sample, sums). Returns how many were taken.
-template <typename Take, typename Finish>
+// the light of light paths, if there is any. Returns how many were taken.
+template <typename Take>
 int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
-                   SampleSpread* spread, const Finish& finish) {
+                   SampleSpread* spread, RoundLight* light) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -27,6 +27,7 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             const Vec2i pixel(x, y);
             FilmPixel sums = pixels.At(pixel);
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
+            if (light && end > first) light->Begin(pixel);
             double sum = 0, squares = 0;  // of luminance
             for (uint32_t k = first; k < end; ++k) {
                 const PathSample sample = take(sampler, pixel, k);
@@ -40,7 +41,7 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
                 spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
-            if (end > first) finish(pixel, first, &sums);
+            if (light && end > first) light->End(pixel, first, &sums);
             pixels.Set(pixel, sums);
             if (spread && end > first) {
                 spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
@@ -48,11 +49,6 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             }
         }
     return samples;
-}
-
-// Returns the luminance of all samples together.
-double LuminanceOf(const FilmPixel& pixel) {
-    return 0.212671 * pixel.sum[0] + 0.715160 * pixel.sum[1] + 0.072169 * pixel.sum[2];
 }
 
 }  // namespace
@@ -64,7 +60,7 @@ bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptio
 }
 
 Executor::Executor(const RenderContext& context, const RenderOptions& options,
-                   std::span<const BlockStart> starts, TileShare share, RankHooks given)
+                   std::span<const BlockStart> starts, RankTiles share, RankHooks given)
     : schedule(context, options, starts, std::move(share)),
       ledger(context, options, schedule.Unlocked().Blocks().size()),
       criteria(context, options, schedule.Unlocked().Blocks()),
@@ -113,7 +109,7 @@ bool Executor::EndRound() {
     GuideLearner* learner = context.learner;
     if (context.light && schedule.Unlocked().NoPassUnderWay()) {
         // Also in the end: whoever goes on from the checkpoint has to know what was learned.
-        context.light->Learn(*context.film);
+        context.light->Learn(context.film);
         if (IsCancelled() || !schedule.IsRoundOver()) return false;
         BeginLight();
         return true;
@@ -151,31 +147,28 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
     SampleSpread* spread = context.learner ? context.learner->SpreadOf(*film, tile.pixels)
-                           : context.light ? context.light->SpreadOf(*film, tile.pixels)
-                                           : nullptr;
+                                           : film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
-        if (!context.light) return RenderTile(take, tile, sampler, film, spread, [](auto&&...) {});
-        return RenderTile(take, tile, sampler, film, spread,
-                          [&](const Vec2i& pixel, uint32_t first, FilmPixel* sums) {
-                              const double camera =
-                                  LuminanceOf(*sums) - LuminanceOf(film->At(pixel));
-                              context.light->AddTo(pixel, first, camera, sums, context.layers);
-                          });
+        if (!context.light) return RenderTile(take, tile, sampler, film, spread, nullptr);
+        RoundLight light(*context.light, film);
+        return RenderTile(take, tile, sampler, film, spread, &light);
     };
-    if (!context.layers) {
+    if (film->layers.IsEmpty()) {
         const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
             return context.source(s, pixel, index, {});
         };
         return render(alone);
     }
+    const LightGroups& wanted = film->layers.Options().groups;
     std::optional<GroupRadiance> groups;
-    if (context.layers.lights) groups.emplace(context.layers.lights->Groups());
-    const auto withLayers = [&, asks = context.layers.NeedFirstHits()](
-                                Sampler& s, const Vec2i& pixel, uint32_t index) {
-        FirstHit firstHit;
-        const SampleDetail detail{asks ? &firstHit : nullptr, groups ? &*groups : nullptr};
+    if (wanted.Count() > 0) groups.emplace(wanted);
+    const auto withLayers = [&, asks = film->layers.NeedFirstHits()](Sampler& s, const Vec2i& pixel,
+                                                                     uint32_t index) {
+        LayerSample summed{.index = index, .groups = groups ? &*groups : nullptr};
+        const SampleDetail detail{asks ? &summed.hit : nullptr, groups ? &*groups : nullptr};
         const PathSample sample = context.source(s, pixel, index, detail);
-        context.layers.Add(pixel, index, firstHit, sample.radiance, detail.groups);
+        summed.radiance = sample.radiance;
+        film->layers.Add(pixel, summed);
         return sample;
     };
     return render(withLayers);

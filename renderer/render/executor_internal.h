@@ -25,7 +25,7 @@ class Executor {
     // `starts` is where blocks are, which an interrupted render has left or another rank has said.
     // Context and options must outlive it.
     Executor(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
-             TileShare = {}, RankHooks = {});
+             RankTiles = {}, RankHooks = {});
 
     // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();
@@ -60,6 +60,7 @@ class Executor {
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
+    std::atomic<bool> isLit = true;  // the light of the round, if there is any, has been traced
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
@@ -70,8 +71,7 @@ class Executor {
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
-    bool isLit = true;         // the light of the round, if there is any, has been traced
-    bool isLastRound = false;  // and the cap cuts it short: the checkpoint is of before
+    bool isLastRound = false;  // the cap cuts it short: the checkpoint is of before
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

@@ -22,17 +22,16 @@ float VarianceOfMean(double squares, double mean, double count) {
 // its samples' luminance, and Look() its colour where it has no samples.
 struct WholeLight {
     const Film& film;
-    const FeatureFilm* features = nullptr;  // null: without squares
 
     FilmPixel At(const Vec2i& p) const { return film.At(p); }
-    double SquaresAt(const Vec2i& p) const { return double(features->At(p).squares); }
+    double SquaresAt(const Vec2i& p) const { return film.layers.Find<SquareLayer>()->At(p); }
     Rgb Look(const Vec2i& p) const { return film.MeanAt(p); }
 };
 
 // The same of a group of lights; the first look belongs to the last one.
 struct GroupLight {
     const Film& film;
-    const LightGroupFilm& lights;
+    const LightGroupLayer& lights;
     int group;
 
     FilmPixel At(const Vec2i& p) const { return lights.At(group, p, film.At(p).count); }
@@ -131,24 +130,22 @@ Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
 
 }  // namespace
 
-NoisyPicture PictureOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
-    NoisyPicture picture = FeaturesOf(film, features, rect);
+NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
+    NoisyPicture picture = FeaturesOf(film, rect);
     picture.colour = ColoursOf(film, rect);
     return picture;
 }
 
-NoisyPicture FeaturesOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
+NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect) {
     const auto read = [&](int y0, int y1) {
-        return FeatureHalvesOf(film, features,
-                               {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
+        return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
     };
-    return {
-        {}, FilterFeatures(rect.Width(), rect.Height(), read), VarianceOf(film, features, rect)};
+    return {{}, FilterFeatures(rect.Width(), rect.Height(), read), VarianceOf(film, rect)};
 }
 
-GroupedPicture PictureOf(const Film& film, const FeatureFilm& features,
-                         const LightGroupFilm& lights, const PixelRect& rect) {
-    NoisyPicture all = FeaturesOf(film, features, rect);
+GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
+    NoisyPicture all = FeaturesOf(film, rect);
+    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
     const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
         const GroupLight own{film, lights, group};
         return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
@@ -160,19 +157,19 @@ Halves ColoursOf(const Film& film, const PixelRect& rect) {
     return ColoursOfLight(WholeLight{film}, rect);
 }
 
-Halves FeatureHalvesOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
+Halves FeatureHalvesOf(const Film& film, const PixelRect& rect) {
+    const FirstHitLayer& hits = *film.layers.Find<FirstHitLayer>();
     Halves halves = MakeHalves(rect.Width(), rect.Height(), kFeatures);
     ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
-        const FeaturePixel& feature = features.At(p);
+        const auto& [a, b] = hits.FeaturesAt(p).halves;
         for (int f = 0; f < kFeatures; ++f)
-            split.Put(feature.sums[0][size_t(f)], feature.sums[1][size_t(f)], f, p - rect.min,
-                      &halves);
+            split.Put(a[size_t(f)], b[size_t(f)], f, p - rect.min, &halves);
     });
     return halves;
 }
 
-Planes VarianceOf(const Film& film, const FeatureFilm& features, const PixelRect& rect) {
-    return VarianceOfLight(WholeLight{film, &features}, rect);
+Planes VarianceOf(const Film& film, const PixelRect& rect) {
+    return VarianceOfLight(WholeLight{film}, rect);
 }
 
 }  // namespace lull

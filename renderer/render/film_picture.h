@@ -2,33 +2,31 @@
 #pragma once
 
 #include "renderer/denoise/denoiser.h"
-#include "renderer/film/feature_film.h"
 #include "renderer/film/film.h"
-#include "renderer/film/light_group_film.h"
 
 namespace lull {
 
 // Samples a pixel needs for both halves to have as many.
 inline constexpr uint32_t kLeastDenoisedSpp = 4;
 
-// Returns the pixels of a rectangle inside both films, which have the same samples; the film keeps
-// its half. Where a pixel has less than kLeastDenoisedSpp samples, one half of its colours is their
-// mean, and the other that of its neighbours; the denoiser's estimate of the error is too rough
-// there to be used. Where it has none, both are the film's first look.
-NoisyPicture PictureOf(const Film&, const FeatureFilm&, const PixelRect&);
+// Returns the pixels of a rectangle inside the film, which keeps its half and features. Where a
+// pixel has less than kLeastDenoisedSpp samples, one half of its colours is their mean, and the
+// other that of its neighbours; the denoiser's estimate of the error is too rough there to be used.
+// Where it has none, both are the film's first look.
+NoisyPicture PictureOf(const Film&, const PixelRect&);
 
-// The same for the light of groups, which keep what tells their noise. The picture reads the film
-// and the groups, which have to be there; the first look belongs to the last group.
-GroupedPicture PictureOf(const Film&, const FeatureFilm&, const LightGroupFilm&, const PixelRect&);
+// The same for the light of groups, which keep what tells their noise. The picture reads the film,
+// which has to be there; the first look belongs to the last group.
+GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 
-// Return its parts, so that a film that one of them is made of can be freed before the other is
+// Return its parts, so that what one of them is made of can be freed before the other is
 // made: all but the colours, and these.
-NoisyPicture FeaturesOf(const Film&, const FeatureFilm&, const PixelRect&);
+NoisyPicture FeaturesOf(const Film&, const PixelRect&);
 Halves ColoursOf(const Film&, const PixelRect&);
 
 // Return the features of both halves of the samples, not filtered, and the variance of the mean
 // luminance.
-Halves FeatureHalvesOf(const Film&, const FeatureFilm&, const PixelRect&);
-Planes VarianceOf(const Film&, const FeatureFilm&, const PixelRect&);
+Halves FeatureHalvesOf(const Film&, const PixelRect&);
+Planes VarianceOf(const Film&, const PixelRect&);
 
 }  // namespace lull

@@ -9,7 +9,7 @@ double MeanLuminance(const Film& film) {
     double sum = 0;
     const std::vector<float> means = film.MeanImage();
     for (size_t i = 0; i < means.size(); i += 3)
-        sum += double(Luminance({means[i], means[i + 1], means[i + 2]}));
+        sum += double(Luminance(Rgb(means[i], means[i + 1], means[i + 2])));
     return sum / double(std::max<int64_t>(1, film.Region().Area()));
 }
 

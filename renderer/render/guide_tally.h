@@ -11,15 +11,6 @@ namespace lull {
 // Returns the mean luminance of the image so far.
 double MeanLuminance(const Film&);
 
-// Sums up samples of a tile.
-struct SampleSpread {
-    double squares = 0;    // of luminance, about the means of its pixels
-    int64_t freedom = 0;   // how many of these are independent
-    int64_t vertices = 0;  // of paths, without the camera
-    int64_t samples = 0;
-    double connected = 0;  // squares of the luminance that connections have found
-};
-
 // Guided relative to unguided samples.
 struct GuideComparison {
     double variance = 1;  // of a sample: the square of the ratio of noise, see below

@@ -36,21 +36,19 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
       kind(kind),
       seed(seed),
       learned(kFirst),
-      shares(learned),
-      spreads(film.TileCount()),
       unit(FindUnit()),
-      plane(region, unit) {}
+      groups(film.layers.Options().groups) {}
 
 // Returns about the mean of what light paths bring, from a few of them.
 double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;
-    if (LightPathCount(scene, shares) == 0) return 1;
+    if (LightPathCount(scene, learned) == 0) return 1;
     Sampler sampler(kind, seed);
     double sum = 0;
     int count = 0;
     for (uint32_t i = 0; i < kMost && count < kEnough; ++i)
-        TraceLightPath(scene, shares, sampler, 0, i, [&](const Splat& splat) {
+        TraceLightPath(scene, learned, sampler, 0, i, [&](const Splat& splat) {
             const double y = double(Luminance(splat.radiance));
             if (!(y > 0)) return;
             sum += y;
@@ -62,30 +60,36 @@ double LightRounds::FindUnit() const {
 
 // Blocks that have stopped in the round were active when it began.
 void LightRounds::Begin(const Schedule& schedule) {
-    first = schedule.LeastSpp();
-    end = PassEndAfter(first, schedule.Options());
+    const int first = schedule.LeastSpp();
     ScheduleOptions uncapped = schedule.Options();
     uncapped.cap = std::numeric_limits<int>::max();
-    isCutShort = !schedule.Done() && PassEndAfter(first, uncapped) != end;
+    isCutShort = !schedule.Done() &&
+                 PassEndAfter(first, uncapped) != PassEndAfter(first, schedule.Options());
     int64_t active = 0;
     for (const Block& block : schedule.Blocks())
         if (!block.stopped || block.spp > first) active += block.pixels.Area();
     const double part = double(active) / double(std::max<int64_t>(1, region.Area()));
-    shares = learned;
-    shares.lightPaths = std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
-    plane = LightPlane(region, unit);
+    LightRound next{first, PassEndAfter(first, schedule.Options()), learned};
+    next.shares.lightPaths =
+        std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
+    Begin(next);
 }
 
-bool LightRounds::Trace(const std::function<bool()>& isCancelled) {
-    const auto paths = uint32_t(LightPathCount(scene, shares));
+void LightRounds::Begin(const LightRound& begun) {
+    round = begun;
+    planes.assign(size_t(1 + groups.Count()), SplatPlane(region, unit));
+}
+
+bool LightRounds::Trace(const std::function<bool()>& isCancelled, int part, int parts) {
+    const auto paths = uint32_t(LightPathCount(scene, round.shares));
     const auto chunks = int((paths + kChunk - 1) / kChunk);
     std::atomic<bool> isWhole = true;
-    ForEachIndex(end - first, [&](int sample) {
+    ForEachIndex(round.end - round.first, [&](int sample) {
         ForEachIndex(chunks, [&](int chunk) {
             if (isCancelled && isCancelled()) isWhole = false;
-            if (!isWhole) return;
+            if (!isWhole || (int64_t(sample) * chunks + chunk) % parts != part) return;
             const uint32_t begin = uint32_t(chunk) * kChunk;
-            TraceSome(uint32_t(first + sample), begin, std::min(begin + kChunk, paths));
+            TraceSome(uint32_t(round.first + sample), begin, std::min(begin + kChunk, paths));
         });
     });
     return isWhole;
@@ -99,7 +103,7 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
     const std::function<void(const Splat&)> splat = [&](const Splat& s) {
         if (s.rejected) {
             const Vec2i p = s.film.array().floor().cast<int>().matrix();
-            plane.Reject(p.cwiseMax(region.min).cwiseMin(region.max - Vec2i(1, 1)));
+            planes[0].Reject(p.cwiseMax(region.min).cwiseMin(region.max - Vec2i(1, 1)));
             return;
         }
         const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
@@ -109,44 +113,70 @@ void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
         for (int y = from.y(); y <= to.y(); ++y)
             for (int x = from.x(); x <= to.x(); ++x) {
                 const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
-                if (weight != 0) plane.Add({x, y}, s.radiance * weight, inHalf);
+                if (weight == 0) continue;
+                planes[0].Add({x, y}, s.radiance * weight, inHalf);
+                if (groups.Count() > 0)
+                    planes[1 + size_t(groups.ofLight[size_t(s.light)])].Add(
+                        {x, y}, s.radiance * weight, inHalf);
             }
     };
     for (uint32_t i = begin; i < stop; ++i)
-        TraceLightPath(scene, shares, sampler, sample, i, splat);
+        TraceLightPath(scene, round.shares, sampler, sample, i, splat);
 }
 
-void LightRounds::AddTo(const Vec2i& p, uint32_t from, double camera, FilmPixel* sums,
-                        const Layers& layers) const {
-    const LightPlane::Sums light = plane.SumsAt(p);
+SplatLight LightRounds::LightOf(const SplatPlane& light, const Vec2i& p, uint32_t from) const {
+    const SplatPlane::Sums all = light.SumsAt(p);
     // Passes of a render that goes on with another rule may begin within a round.
-    const double samples = double(end) - double(from), share = samples / double(end - first);
+    const double samples = double(round.end) - double(from);
+    const double length = double(round.end - round.first), share = samples / length;
+    SplatLight part{
+        .squares = all.squares * share, .each = Luminance(all.sum) / length, .samples = samples};
     for (size_t c = 0; c < 3; ++c) {
-        sums->sum[c] += light.sum[c] * share;
-        sums->halfSum[c] += light.halfSum[c] * share;
+        part.sum[c] = all.sum[c] * share;
+        part.halfSum[c] = all.halfSum[c] * share;
     }
-    sums->rejected += uint32_t(plane.At(p).rejected);
-    if (!layers.aovs && !layers.features) return;
-    // Each sample gets its share of the light, and the variance of its sum is that of a Poisson
-    // process.
-    const double each =
-        (0.212671 * light.sum[0] + 0.715160 * light.sum[1] + 0.072169 * light.sum[2]) /
-        double(end - first);
-    const double squares = light.squares * share + 2 * each * camera + samples * each * each;
-    if (layers.aovs) layers.aovs->At(p).squares += squares;
-    if (layers.features) layers.features->At(p).squares += float(squares);
+    return part;
 }
 
-void LightRounds::Learn(const Film& film) {
+void RoundLight::Begin(const Vec2i& p) {
+    if (const auto* groups = film->layers.Find<LightGroupLayer>())
+        for (int i = 0; i < groups->Count(); ++i)
+            before[size_t(i)] = Luminance(groups->At(i, p, 0).sum);
+}
+
+void RoundLight::End(const Vec2i& p, uint32_t first, FilmPixel* sums) const {
+    PixelSplats splats{rounds.LightOf(rounds.planes[0], p, first)};
+    splats.all.camera = Luminance(sums->sum) - Luminance(film->At(p).sum);
+    std::array<SplatLight, kMostLightGroups + 1> ofGroups;
+    if (const auto* groups = film->layers.Find<LightGroupLayer>()) {
+        for (size_t i = 0; i < size_t(groups->Count()); ++i) {
+            ofGroups[i] = rounds.LightOf(rounds.planes[1 + i], p, first);
+            ofGroups[i].camera = Luminance(groups->At(int(i), p, 0).sum) - before[i];
+        }
+        splats.groups = {ofGroups.data(), size_t(groups->Count())};
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        sums->sum[c] += splats.all.sum[c];
+        sums->halfSum[c] += splats.all.halfSum[c];
+    }
+    sums->rejected += uint32_t(rounds.planes[0].At(p).rejected);
+    film->layers.ForEach([&](auto& layer) {
+        if constexpr (requires { layer.AddSplats(p, splats); }) layer.AddSplats(p, splats);
+    });
+}
+
+void LightRounds::Learn(Film* film) {
+    const std::vector<SampleSpread> spreads = film->Spreads();
+    film->ForgetSpreads();
     // Sums over tiles, by the square of their brightness.
     std::vector<double> light(spreads.size(), 0), brightness(spreads.size(), 0);
     std::vector<int> pixels(spreads.size(), 0);
     double mean = 0;
     for (int y = region.min.y(); y < region.max.y(); ++y)
         for (int x = region.min.x(); x < region.max.x(); ++x) {
-            const size_t tile = film.TileAt({x, y});
-            const double l = double(Luminance(film.MeanAt({x, y})));
-            light[tile] += plane.SumsAt({x, y}).squares;
+            const size_t tile = film->TileAt({x, y});
+            const double l = double(Luminance(film->MeanAt({x, y})));
+            light[tile] += planes[0].SumsAt({x, y}).squares;
             brightness[tile] += l;
             ++pixels[tile];
             mean += l / double(region.Area());
@@ -162,26 +192,25 @@ void LightRounds::Learn(const Film& film) {
         ofConnections += weight * spread.connected / samples;
         ofPaths += weight * light[i] / samples;
     }
-    spreads.assign(spreads.size(), {});
     if (!(ofCamera > 0)) return;
     const double rest = std::max(ofCamera - ofConnections, 0.1 * ofCamera);
-    learned.connections = Moved(learned.connections, ofConnections * double(shares.connections),
-                                kCostOfConnections, rest, kLeastConnections);
-    learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(shares.lightPaths), kCostOfPath,
-                               ofCamera, kLeastPaths);
+    learned.connections =
+        Moved(learned.connections, ofConnections * double(round.shares.connections),
+              kCostOfConnections, rest, kLeastConnections);
+    learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(round.shares.lightPaths),
+                               kCostOfPath, ofCamera, kLeastPaths);
 }
 
 std::vector<std::byte> LightRounds::Save() const {
     StateWriter writer;
     writer.Put(learned);
-    writer.PutAll(std::span(spreads));
     return std::move(writer.bytes);
 }
 
 void LightRounds::Take(std::span<const std::byte> bytes) {
     StateReader reader(bytes);
     learned = reader.Get<BdptShares>();
-    reader.GetAll(std::span(spreads));
+    reader.Finish();
 }
 
 }  // namespace lull

@@ -16,63 +16,87 @@
 #include <functional>
 #include <span>
 
-#include "renderer/film/layers.h"
-#include "renderer/film/light_plane.h"
-#include "renderer/render/guide_tally.h"
+#include "renderer/film/film.h"
+#include "renderer/film/splat_plane.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/bdpt.h"
 
 namespace lull {
 
+// The samples of all pixels from `first` to `end`, and those that the strategies take.
+struct LightRound {
+    int first = 0, end = 0;
+    BdptShares shares;
+};
+
 class LightRounds {
   public:
     // The scene, whose integrator is BdptIntegrator, must outlive it; of the film it is the region
-    // and the number of tiles.
+    // and the light groups.
     LightRounds(const Scene&, const Film&, SamplerKind, uint64_t seed);
     LightRounds(const LightRounds&) = delete;
     LightRounds& operator=(const LightRounds&) = delete;
 
-    // Returns the samples that the strategies of this round take.
-    const BdptShares& Shares() const { return shares; }
-    // Returns the spp at which the round ends, and whether it is the cap that ends it there.
-    int End() const { return end; }
+    const LightRound& Round() const { return round; }
+    // Returns the spp at which the round ends, 0 where none has begun, and whether it is the cap
+    // that ends it there.
+    int End() const { return round.end; }
     bool IsCutShort() const { return isCutShort; }
 
     // Begins the round that the active blocks are in, or come to next. Light paths are the fewer,
     // the fewer pixels are left that wait for them.
     void Begin(const Schedule&);
-    // Traces its light, on all threads of the task arena. Returns false if `isCancelled` ended it.
-    bool Trace(const std::function<bool()>& isCancelled);
+    // Begins this one, of which no light has been traced.
+    void Begin(const LightRound&);
+    // Traces one of `parts` of its light, on all threads of the task arena. Returns false if
+    // `isCancelled` ended it.
+    bool Trace(const std::function<bool()>& isCancelled, int part = 0, int parts = 1);
+    // The light that has been traced, to be merged where others trace the other parts: all of it
+    // and that of each light group.
+    std::vector<SplatPlane>& Planes() { return planes; }
 
-    // Returns where the samples of a tile are summed up.
-    SampleSpread* SpreadOf(const Film& film, const PixelRect& tile) {
-        return &spreads[film.TileAt(tile.min)];
-    }
-    // Adds the round's light to a pixel that has its samples from `first` on to the end; `camera`
-    // is the sum of their luminance.
-    void AddTo(const Vec2i& p, uint32_t first, double camera, FilmPixel*, const Layers&) const;
-    // At the end of a round: chooses the shares of those to come.
-    void Learn(const Film&);
+    // At the end of a round: chooses the shares of those to come by the spreads of the film, which
+    // it forgets.
+    void Learn(Film*);
 
     // Return what has to be kept to go on with the round, and take it. Take() throws
-    // std::runtime_error for bytes of another image.
+    // std::runtime_error for other bytes.
     std::vector<std::byte> Save() const;
     void Take(std::span<const std::byte>);
 
   private:
+    friend class RoundLight;
     double FindUnit() const;
+    // Returns light of a plane that belongs to a pixel's samples from `from` on.
+    SplatLight LightOf(const SplatPlane&, const Vec2i& p, uint32_t from) const;
     void TraceSome(uint32_t sample, uint32_t begin, uint32_t end);
 
     const Scene& scene;
     const PixelRect region;
     SamplerKind kind;
     uint64_t seed;
-    BdptShares learned, shares;         // for all pixels, and of this round
-    std::vector<SampleSpread> spreads;  // of the round, by tile
-    int first = 0, end = 0;
+    BdptShares learned;  // for all pixels
+    LightRound round;
     bool isCutShort = false;
     double unit = 1;
-    LightPlane plane;
+    const LightGroups groups;
+    std::vector<SplatPlane> planes;
+};
+
+// Adds the light of a round to the pixels of a film, for one thread.
+class RoundLight {
+  public:
+    RoundLight(const LightRounds& rounds, Film* film) : rounds(rounds), film(film) {}
+
+    // To be called before the first and after the last sample of a pixel in the round. These are
+    // the samples from `first` on, and in the layers; the film has the pixel without them.
+    void Begin(const Vec2i& p);
+    void End(const Vec2i& p, uint32_t first, FilmPixel* sums) const;
+
+  private:
+    const LightRounds& rounds;
+    Film* film;
+    std::array<double, kMostLightGroups + 1> before = {};  // luminance of each group
 };
 
 }  // namespace lull

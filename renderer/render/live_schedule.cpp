@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -12,14 +13,14 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
     if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
-    if (context.light) schedule.roundEnd = 0;  // until there is light
+    if (context.light) schedule.roundEnd = context.light->End();
     return schedule;
 }
 
 }  // namespace
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
-                           std::span<const BlockStart> starts, TileShare given)
+                           std::span<const BlockStart> starts, RankTiles given)
     : context(context),
       options(options),
       share(std::move(given)),
@@ -28,7 +29,7 @@ LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& op
     ShowStops();
 }
 
-void LiveSchedule::Restart(std::span<const BlockStart> starts, TileShare given) {
+void LiveSchedule::Restart(std::span<const BlockStart> starts, RankTiles given) {
     std::lock_guard lock(mutex);
     share = std::move(given);
     schedule = Schedule(context.film->Region(), ScheduleFor(context, options), starts, share);
@@ -42,7 +43,7 @@ std::optional<Tile> LiveSchedule::Next() {
     std::lock_guard lock(mutex);
     const std::optional<Tile> tile = schedule.Next();
     if (tile && hasClock && !undo.Has(tile->block))
-        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film, context.layers);
+        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film);
     return tile;
 }
 
@@ -86,7 +87,7 @@ void LiveSchedule::BeginRound(int end) {
     schedule.BeginRound(end);
 }
 
-std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film, context.layers); }
+std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film); }
 
 std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
     return TilesOf(BlockAt(block).pixels, block, options.schedule.tileSize, {rank, share.deal});

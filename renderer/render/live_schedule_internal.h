@@ -21,7 +21,7 @@ class LiveSchedule {
     // Begins where blocks are, `starts`; empty: from nothing. Context and options
     // must outlive it.
     LiveSchedule(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
-                 TileShare);
+                 RankTiles);
 
     // Gives out a tile; nothing if none is ready, or if the time is up. There are never more tasks
     // than tiles, but when time has been called.
@@ -52,14 +52,14 @@ class LiveSchedule {
     // With no task at work: restarts from the given state of blocks, so that passes under way are
     // given out again, in which complete pixels keep their samples; and restores the samples before
     // passes for which the time did not suffice. Undo() returns their blocks.
-    void Restart(std::span<const BlockStart> starts, TileShare);
+    void Restart(std::span<const BlockStart> starts, RankTiles);
     std::vector<int> Undo();
 
     // Return the schedule without a lock: with no task at work, or for constant parts: positions of
     // blocks and, after the last tile of a pass and before the decision, that block.
     const Schedule& Unlocked() const { return schedule; }
     const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
-    const TileShare& Share() const { return share; }
+    const RankTiles& Share() const { return share; }
     // Returns the tiles of a block that a rank has.
     std::vector<PixelRect> TilesOfRank(int block, int rank) const;
 
@@ -68,7 +68,7 @@ class LiveSchedule {
 
     const RenderContext& context;
     const RenderOptions& options;
-    TileShare share;
+    RankTiles share;
     const bool hasClock;
 
     std::mutex mutex;  // guards the members below

@@ -1,7 +1,7 @@
 // Lets several processes share a render.
 //
 // Each rank has the same scene and the same options. The tiles of every block are dealt out
-// (TileShare in schedule.h), so that the last live block still has all ranks; a pixel's samples are
+// (RankTiles in schedule.h), so that the last live block still has all ranks; a pixel's samples are
 // summed by the rank that owns it and by nobody else, in the order of their indices. Hence the
 // image is the same bits for any number of ranks.
 //
@@ -27,6 +27,10 @@
 //
 // While a guide is learned from the image's samples, rank 0 has all tiles; then it sends its
 // state to the others by Guide, and deals the tiles out to all.
+//
+// Where light is traced in rounds, all pixels go to rank 0 at the end of one, which learns from
+// them, and says Round. Each rank traces a part of the light, and has that of all others by Splats
+// before the passes of the round begin.
 //
 // Rank 0 pings ranks that are silent. A rank that does not answer for long is given up: its tiles
 // go to the others, which repeat its samples from the sums that rank 0 has.

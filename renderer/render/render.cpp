@@ -33,13 +33,8 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
     if (context.interrupted && !Fits(*context.interrupted, region, options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = ThreadCount(options.threads);
-    if (!context.layers.AreOf(region))
-        throw std::invalid_argument("the layers are of another region");
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
-    if (!alone && context.light) throw std::invalid_argument("several ranks trace no light paths");
-    if (context.light && context.layers.lights)
-        throw std::invalid_argument("light paths are of no light group");
     if (!alone) return RenderWithPeers(context, options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
@@ -70,7 +65,7 @@ SampleSource SamplesOf(const Scene& scene, const LightRounds& light, bool throug
                                 const SampleDetail& detail) {
         PathOptions options = Estimator::Combined;
         options.throughSpecular = throughSpecular;
-        options.shares = light.Shares();
+        options.shares = light.Round().shares;
         return RenderSample(scene, options, sampler, pixel, index, detail);
     };
 }

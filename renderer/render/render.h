@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "renderer/film/display.h"
-#include "renderer/film/layers.h"
+#include "renderer/film/film.h"
 #include "renderer/render/render_events.h"
 #include "renderer/render/schedule.h"
 #include "renderer/transport/integrator.h"
@@ -95,16 +95,14 @@ struct Checkpointing {
 struct RenderContext {
     SampleSource source = {};
     Film* film = nullptr;
-    // Data collected in addition to the film, from the same samples, which keep their bits.
-    Layers layers = {};
-    // Where an interrupted render left film, layers and state; null: from the start. A block whose
+    // Where an interrupted render left film and state; null: from the start. A block whose
     // `stopped` is set in a state without samples is left out.
     const RenderState* interrupted = nullptr;
     // Learns from the samples, in rounds; the source samples by its guide (guide_learning.h). Null:
     // nothing is learned.
     GuideLearner* learner = nullptr;
     // Traces light paths in rounds; the source takes its shares of samples (light_rounds.h). Not
-    // with a learner, nor on several ranks. Null: none.
+    // with a learner. The film keeps spreads. Null: none.
     LightRounds* light = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
@@ -118,8 +116,7 @@ struct RenderContext {
 // Renders the film's region. The pixels are the same bits for any number of threads and ranks
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
-// callbacks; throws std::invalid_argument for layers of another region, for a display on several
-// ranks, and for light paths on these or with light groups.
+// callbacks; throws std::invalid_argument for a display on several ranks.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the

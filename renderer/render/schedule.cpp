@@ -54,7 +54,7 @@ bool IsPassEnd(int spp, const ScheduleOptions& options) {
 }
 
 std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
-                               const TileShare& share) {
+                               const RankTiles& share) {
     std::vector<PixelRect> tiles;
     for (int i = 0; i < CountTiles(block, tileSize); ++i)
         if (share.Has(index, i)) tiles.push_back(TileAt(block, tileSize, i));
@@ -62,7 +62,7 @@ std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
 }
 
 Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
-                   std::span<const BlockStart> starts, const TileShare& share)
+                   std::span<const BlockStart> starts, const RankTiles& share)
     : options(options), share(share), blocks(MakeBlocks(region, options)), progress(blocks.size()) {
     for (size_t i = 0; i < blocks.size(); ++i)
         for (int t = 0; t < CountTiles(blocks[i].pixels, options.tileSize); ++t)

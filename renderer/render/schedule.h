@@ -65,7 +65,7 @@ struct Block {
 
 // Which tiles of each block are one's own, where several machines share the work: `deal` names
 // the ranks that get one after the other, over and over, beginning at another place in each block.
-struct TileShare {
+struct RankTiles {
     int rank = 0;
     std::vector<int> deal = {0};
 
@@ -77,7 +77,7 @@ struct TileShare {
 
 // Returns the tiles of block `index` that are in the share, row by row.
 std::vector<PixelRect> TilesOf(const PixelRect& block, int index, int tileSize,
-                               const TileShare& = {});
+                               const RankTiles& = {});
 
 // Where a block is when a schedule begins.
 struct BlockStart {
@@ -115,7 +115,7 @@ class Schedule {
     // was, or to leave blocks out.
     // Only tiles of the share are given out and waited for.
     Schedule(const PixelRect& region, const ScheduleOptions&,
-             std::span<const BlockStart> starts = {}, const TileShare& share = {});
+             std::span<const BlockStart> starts = {}, const RankTiles& share = {});
 
     std::span<const Block> Blocks() const { return blocks; }
     const ScheduleOptions& Options() const { return options; }
@@ -185,7 +185,7 @@ class Schedule {
     void CatchUp(int follower);
 
     ScheduleOptions options;
-    TileShare share;
+    RankTiles share;
     std::vector<Block> blocks;
     std::vector<Progress> progress;
     std::set<std::pair<int, int>> ready;                  // (spp, block) with tiles to give out

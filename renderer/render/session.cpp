@@ -22,41 +22,27 @@ void Tell(const std::function<void(const std::string&)>& listener,
     if (listener) listener(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-}  // namespace
-
-int64_t BytesOfLayers(const AovSet& wanted, bool features) {
-    const size_t mattes =
-        wanted.Mattes() ? MatteFilm::BytesOfPixel(wanted.cryptomatte) + 25 * sizeof(float) : 0;
-    return int64_t((wanted.Sums() ? sizeof(AovPixel) + 2 * 13 * sizeof(float) : 0) + mattes +
-                   (features ? sizeof(FeaturePixel) + kDenoiserBytes : 0));
+FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
+    options.withSpreads = IsBidirectional(scene.integrator);
+    return options;
 }
 
-int64_t BytesOfLights(int groups, const LightGroupOptions& options) {
-    return groups * (LightGroupFilm::BytesOfPixel(options) + 2 * 3 * int64_t(sizeof(float)));
+}  // namespace
+
+int64_t BytesOfLayers(const LayerOptions& layers) {
+    const AovSet& aovs = layers.aovs;
+    const size_t channels = (aovs.Hits() || aovs.noise ? 2 * 13 : 0) + (aovs.Mattes() ? 25 : 0) +
+                            size_t(layers.groups.Count()) * 2 * 3;
+    return Layers::Bytes(layers) + int64_t(channels * sizeof(float)) +
+           (layers.features ? kDenoiserBytes : 0);
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)
-    : scene(scene), region(region), options(std::move(given)), film(region, options.film) {
+    : scene(scene),
+      region(region),
+      options(std::move(given)),
+      film(region, FilmFor(scene, options.film)) {
     context.film = &film;
-    if (options.aovs.Any()) options.identity["aov"] = TextOf(options.aovs);
-    if (options.aovs.Sums()) {
-        aovs.emplace(region, options.aovs);
-        context.layers.aovs = &*aovs;
-    }
-    if (options.aovs.Mattes()) {
-        mattes.emplace(region, options.aovs.cryptomatte);
-        context.layers.mattes = &*mattes;
-    }
-    if (options.features) {
-        features.emplace(region);
-        context.layers.features = &*features;
-        options.identity["features"] = "yes";
-    }
-    if (options.lightGroups.Count() > 0) {
-        lights.emplace(region, options.lightGroups, options.lights);
-        context.layers.lights = &*lights;
-        options.identity["light groups"] = TextOf(options.lightGroups);
-    }
     if (IsBidirectional(scene.integrator)) {
         light =
             std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
@@ -77,11 +63,6 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
 
 Session::~Session() = default;
 
-void Session::DropFeatures() {
-    features.reset();
-    context.layers.features = nullptr;
-}
-
 bool Session::Leads() const { return !options.render.peers || options.render.peers->Rank() == 0; }
 
 void Session::Resume() {
@@ -93,8 +74,8 @@ void Session::Resume() {
         return;
     }
     std::vector<std::byte> guide;
-    interrupted = ReadCheckpoint(checkpoint.file, options.identity, &film, context.layers, &guide,
-                                 checkpoint.mayDiffer);
+    interrupted =
+        ReadCheckpoint(checkpoint.file, options.identity, &film, &guide, checkpoint.mayDiffer);
     context.interrupted = &*interrupted;
     if (learner || light) try {
             learner ? learner->Take(guide, film) : light->Take(guide);
@@ -128,7 +109,7 @@ RenderResult Session::Run(const RenderFunction& render) {
     const bool looks = options.firstLook && (!peers || peers->Count() == 1);
     if (looks) TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
     if (display && (interrupted || looks)) display->Show(region, film);
-    if (options.agree) options.agree(TextOf(options.identity) + (film.HasHalf() ? "half" : ""));
+    if (options.agree) options.agree(TextOf(options.identity) + TextOf(PlanesOf(film)));
     RenderResult result = render(context, options.render);
     if (options.guide.mode != GuideMode::Off)
         Tell(events.onLearning, "{}", TextOf(Guidance(), options.guide.mode));
@@ -141,16 +122,15 @@ void Session::SetClock() {
     if (!options.clock) return;
     double reserve = SecondsToWrite(region.Area());
     const int threads = ThreadCount(options.render.threads);
-    const int pictures = std::max(1, options.lightGroups.Count());
-    if (options.features) reserve += pictures * SecondsToDenoise(region.Area(), threads);
+    const int pictures = std::max(1, options.film.layers.groups.Count());
+    if (options.film.layers.features)
+        reserve += pictures * SecondsToDenoise(region.Area(), threads);
     context.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
 }
 
 void Session::SetSource() {
-    // A denoiser does best with features seen in mirrors and through glass; layers, which are of
-    // the same hits, take precedence.
     PathOptions paths = options.estimator;
-    paths.throughSpecular = options.aovs.Any() ? options.aovs.throughSpecular : options.features;
+    paths.throughSpecular = options.film.layers.ThroughSpecular();
     context.source = learner ? SamplesOf(scene, *learner, paths.throughSpecular)
                      : light ? SamplesOf(scene, *light, paths.throughSpecular)
                              : SamplesOf(scene, paths);
@@ -169,7 +149,7 @@ void Session::KeepCheckpoints() {
 // Warns of a checkpoint that could not be written, and returns the warning; "" if it was. The
 // warning `said` is not repeated: a disk stays full for more than one attempt.
 std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
-    WriteCheckpoint(options.checkpoint.file, options.identity, state, film, context.layers,
+    WriteCheckpoint(options.checkpoint.file, options.identity, state, film,
                     learner ? learner->Save()
                     : light ? light->Save()
                             : std::vector<std::byte>());

@@ -1,4 +1,4 @@
-// Runs a render as a user configures it: Render() with its film, layers, checkpoints, path guiding,
+// Runs a render as a user configures it: Render() with its film, checkpoints, path guiding,
 // clock, viewer and other ranks. Messages go to callbacks.
 //
 //     Session session(scene, region, options);
@@ -21,25 +21,18 @@ struct CheckpointOptions {
     MayDiffer mayDiffer = MayDiffer::Nothing;
 };
 
-// Returns the bytes a pixel of such layers, and features, in addition to the film, with the
-// channels made of them in the end, and those of a number of light groups.
-int64_t BytesOfLayers(const AovSet& wanted, bool features);
-int64_t BytesOfLights(int groups, const LightGroupOptions&);
+// Returns the bytes a pixel of such layers, with what is made of them in the end.
+int64_t BytesOfLayers(const LayerOptions&);
 
 struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
-    FilmOptions film;
-    AovSet aovs;              // AOVs to collect
-    bool features = false;    // inputs of the denoiser; the film has to keep its half buffer
-    LightGroups lightGroups;  // groups whose light is told apart; not with a BdptIntegrator
-    LightGroupOptions lights;
+    FilmOptions film;  // with the half where there are features
     // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
     bool firstLook = false;
     GuideOptions guide;
     CheckpointOptions checkpoint;
-    // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them;
-    // the session adds its layers.
+    // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them.
     RenderIdentity identity;
     // Returns the seconds until the files of the image are due. Can be empty.
     std::function<double()> clock;
@@ -70,12 +63,6 @@ class Session {
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& TheFilm() { return film; }
-    const AovFilm* Aovs() const { return aovs ? &*aovs : nullptr; }                  // null: none
-    const FeatureFilm* Features() const { return features ? &*features : nullptr; }  // null: none
-    const MatteFilm* Mattes() const { return mattes ? &*mattes : nullptr; }          // null: none
-    const LightGroupFilm* Lights() const { return lights ? &*lights : nullptr; }     // null: none
-    // Frees them, once the render is done, to free memory.
-    void DropFeatures();
     // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;
     // Return the image and its provenance.
@@ -92,10 +79,6 @@ class Session {
     const PixelRect region;
     SessionOptions options;
     Film film;
-    std::optional<AovFilm> aovs;
-    std::optional<FeatureFilm> features;
-    std::optional<MatteFilm> mattes;
-    std::optional<LightGroupFilm> lights;
     std::optional<RenderState> interrupted;
     std::optional<GuideLearner> learner;
     std::unique_ptr<LightRounds> light;

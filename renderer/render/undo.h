@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "renderer/film/layers.h"
+#include "renderer/film/film.h"
 
 namespace lull {
 
@@ -12,13 +12,12 @@ namespace lull {
 class PassUndo {
   public:
     bool Has(int block) const { return kept.contains(block); }
-    // Copies the pixels of the block that are in these tiles, of the layers as well if there are
-    // any.
-    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&, const Layers&);
+    // Copies the pixels of the block that are in these tiles.
+    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&);
     // The pass has come to its end.
     void Forget(int block) { kept.erase(block); }
     // Puts all that is kept back. Returns the blocks.
-    std::vector<int> UndoAll(Film*, const Layers&);
+    std::vector<int> UndoAll(Film*);
 
   private:
     struct Pixels {

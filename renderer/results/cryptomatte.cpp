@@ -62,12 +62,12 @@ uint32_t CryptomatteId(std::string_view name) {
     return exponent == 0 || exponent == 255 ? hash ^ 1u << 23 : hash;
 }
 
-ExtraLayers MakeCryptomatte(const std::string& layer, const MatteFilm& film,
-                            std::array<MatteShare, kMatteShares> CryptoPixel::*shares,
-                            const std::function<std::string(uint32_t number)>& nameOf) {
+LayerChannels MakeCryptomatte(const std::string& layer, const MatteLayer& mattes,
+                              std::array<MatteShare, kMatteShares> CryptoPixel::*shares,
+                              const std::function<std::string(uint32_t number)>& nameOf) {
     Ids ids;
     nlohmann::json manifest = nlohmann::json::object();
-    for (const CryptoPixel& pixel : film.crypto->Pixels())
+    for (const CryptoPixel& pixel : mattes.Crypto().Pixels())
         for (const MatteShare& share : pixel.*shares) {
             if (share.number == 0 || ids.contains(share.number)) continue;
             const std::string name = Utf8(nameOf(share.number));
@@ -75,14 +75,15 @@ ExtraLayers MakeCryptomatte(const std::string& layer, const MatteFilm& film,
             manifest[name] = fmt::format("{:08x}", ids[share.number]);
         }
 
-    ExtraLayers extra;
+    LayerChannels extra;
     for (int i = 0; i < kLayers; ++i)
         for (const char component : {'R', 'G', 'B', 'A'})
-            extra.channels.push_back({.name = fmt::format("{}{:02}.{}", layer, i, component),
-                                      .values = std::vector<float>(film.alpha.Pixels().size())});
-    for (size_t p = 0; p < film.alpha.Pixels().size(); ++p) {
+            extra.channels.push_back(
+                {.name = fmt::format("{}{:02}.{}", layer, i, component),
+                 .values = std::vector<float>(mattes.Alpha().Pixels().size())});
+    for (size_t p = 0; p < mattes.Alpha().Pixels().size(); ++p) {
         const auto ranks =
-            RanksOf(film.crypto->Pixels()[p].*shares, film.alpha.Pixels()[p].weight, ids);
+            RanksOf(mattes.Crypto().Pixels()[p].*shares, mattes.Alpha().Pixels()[p].weight, ids);
         for (size_t i = 0; i < std::min(ranks.size(), size_t(2 * kLayers)); ++i) {
             extra.channels[2 * i].values[p] = ranks[i].first;
             extra.channels[2 * i + 1].values[p] = ranks[i].second;

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "renderer/film/matte_film.h"
-#include "renderer/results/extra_layers.h"
+#include "renderer/film/matte_layer.h"
+#include "renderer/results/layer_channels.h"
 
 namespace lull {
 
@@ -20,8 +20,8 @@ uint32_t CryptomatteId(std::string_view name);
 // Returns six ranks of ids and coverage as channels LAYER00.R .G .B .A to LAYER02, of a member of
 // the pixels, and the attributes that tell of them with a manifest of the names that occur. Numbers
 // with the same name are one.
-ExtraLayers MakeCryptomatte(const std::string& layer, const MatteFilm&,
-                            std::array<MatteShare, kMatteShares> CryptoPixel::*shares,
-                            const std::function<std::string(uint32_t number)>& nameOf);
+LayerChannels MakeCryptomatte(const std::string& layer, const MatteLayer&,
+                              std::array<MatteShare, kMatteShares> CryptoPixel::*shares,
+                              const std::function<std::string(uint32_t number)>& nameOf);
 
 }  // namespace lull

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "renderer/denoise/denoiser.h"
-#include "renderer/film/feature_film.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/rgb_image.h"
 #include "renderer/render/schedule.h"

@@ -29,13 +29,13 @@ void AddChannels(const std::string& layer, const Planes& planes,
 
 // The values of channels; null where there are none.
 template <size_t N>
-using ChannelsOf = std::array<const float*, N>;
+using FoundChannels = std::array<const float*, N>;
 
 // Returns channels that must be there.
 template <size_t N>
-ChannelsOf<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
-                       const std::array<const char*, N>& names) {
-    ChannelsOf<N> channels;
+FoundChannels<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
+                          const std::array<const char*, N>& names) {
+    FoundChannels<N> channels;
     for (size_t c = 0; c < N; ++c) {
         const ExrChannel* found = image.Find(layer + names[c]);
         if (!found)
@@ -49,18 +49,18 @@ ChannelsOf<N> Channels(const ExrImage& image, const std::string& file, const std
     return channels;
 }
 
-void Copy(const ChannelsOf<kColours>& channels, Planes* to) {
+void Copy(const FoundChannels<kColours>& channels, Planes* to) {
     for (int c = 0; c < kColours; ++c) std::copy_n(channels[size_t(c)], to->Area(), to->Plane(c));
 }
 
 // Reads the features of an image; the last is converted by `disparityOf`.
 Planes ReadFeatures(
-    const ExrImage& image, const ChannelsOf<kFeatures>& a, const ChannelsOf<kFeatures>& b,
+    const ExrImage& image, const FoundChannels<kFeatures>& a, const FoundChannels<kFeatures>& b,
     float (*disparityOf)(float) = [](float d) { return d; }) {
     const size_t width = size_t(image.width);
     return FilterFeatures(image.width, image.height, [&](int y0, int y1) {
         Halves rows = MakeHalves(image.width, y1 - y0, kFeatures);
-        const auto copy = [&](const ChannelsOf<kFeatures>& from, Planes* to) {
+        const auto copy = [&](const FoundChannels<kFeatures>& from, Planes* to) {
             for (int f = 0; f < kFeatures; ++f)
                 if (const float* values = from[size_t(f)])
                     std::copy_n(values + size_t(y0) * width, to->Area(), to->Plane(f));
@@ -75,16 +75,15 @@ Planes ReadFeatures(
 
 }  // namespace
 
-std::vector<ExrChannel> MakeHalfChannels(const Film& film, const FeatureFilm& features,
-                                         const PixelRect& rect) {
+std::vector<ExrChannel> MakeHalfChannels(const Film& film, const PixelRect& rect) {
     std::vector<ExrChannel> channels;
     const auto add = [&](const Halves& halves, const auto& names) {
         AddChannels("halfA.", halves.a, names, &channels);
         AddChannels("halfB.", halves.b, names, &channels);
     };
     add(ColoursOf(film, rect), kColourNames);
-    add(FeatureHalvesOf(film, features, rect), kFeatureNames);
-    channels.push_back({kVarianceName, VarianceOf(film, features, rect).values});
+    add(FeatureHalvesOf(film, rect), kFeatureNames);
+    channels.push_back({kVarianceName, VarianceOf(film, rect).values});
     return channels;
 }
 
@@ -114,7 +113,7 @@ NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const Ex
     NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}};
     Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
     Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);
-    ChannelsOf<kFeatures> featuresOfA = {}, featuresOfB = {};
+    FoundChannels<kFeatures> featuresOfA = {}, featuresOfB = {};
     for (size_t f = 0; f < kFeatures; ++f) {
         const std::string name = f == kFeatures - 1 ? "Z" : kFeatureNames[f];
         if (!a.Find(name) || !b.Find(name)) continue;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/film/feature_film.h"
+#include "renderer/film/film.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {
@@ -13,7 +13,7 @@ namespace lull {
 // Returns the channels of an EXR from which ReadPicture() makes the same picture: halfA.R .G .B,
 // halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), the same with halfB,
 // and variance.Y.
-std::vector<ExrChannel> MakeHalfChannels(const Film&, const FeatureFilm&, const PixelRect&);
+std::vector<ExrChannel> MakeHalfChannels(const Film&, const PixelRect&);
 
 // Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is
 // missing.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "renderer/film/matte_film.h"
 #include "renderer/results/report.h"
 
 namespace lull {
@@ -119,13 +118,13 @@ RowSource MeansOf(const Film& film) {
 }
 
 // Returns the rows without the light of samples that hit nothing, premultiplied by alpha therefore.
-RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& film,
-                            const MatteFilm& mattes) {
-    return [&, rows, isDenoised](int y, std::span<float> row) {
+RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& film) {
+    return [&film, &mattes = *film.layers.Find<MatteLayer>(), rows, isDenoised](
+               int y, std::span<float> row) {
         rows(y, row);
         for (size_t x = 0; x < row.size() / 3; ++x) {
             const Vec2i p = film.Region().min + Vec2i(int(x), y);
-            const AlphaPixel& matte = mattes.alpha.At(p);
+            const AlphaPixel& matte = mattes.AlphaAt(p);
             const FilmPixel pixel = film.At(p);
             for (size_t c = 0; c < 3 && pixel.count > 0; ++c)
                 RemoveBackground(matte.covered, pixel.sum[c] / pixel.count,
@@ -135,12 +134,12 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
 }
 
 // Adds alpha to rows of R, G, B, which are moved apart for it from the last pixel on.
-RowSource WithAlpha(const RowSource& rows, const Film& film, const MatteFilm& mattes) {
-    return [&, rows](int y, std::span<float> row) {
+RowSource WithAlpha(const RowSource& rows, const Film& film) {
+    return [&film, &mattes = *film.layers.Find<MatteLayer>(), rows](int y, std::span<float> row) {
         rows(y, row.first(row.size() / 4 * 3));
         for (size_t x = row.size() / 4; x-- > 0;) {
             for (size_t c = 3; c-- > 0;) row[4 * x + c] = row[3 * x + c];
-            row[4 * x + 3] = mattes.alpha.At(film.Region().min + Vec2i(int(x), y)).Alpha();
+            row[4 * x + 3] = mattes.AlphaAt(film.Region().min + Vec2i(int(x), y)).Alpha();
         }
     };
 }
@@ -173,25 +172,23 @@ RowSource MeansOf(const RgbImage& image) {
     };
 }
 
-int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, const Film& film,
-                   const DenoisedImage* denoised, const MatteFilm* mattes,
-                   const RenderResult& result, ExtraLayers extra, const PictureFormat& format,
+int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Picture picture,
                    ResultFiles* results) {
+    const auto& [film, denoised, result, layers, format] = picture;
     ExrImage exr = MakeExr(origin, film, result);
     if (denoised) {
         std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
                           std::back_inserter(exr.channels));
         exr.attributes["denoised"] = kDenoisedNote;
     }
-    std::ranges::move(extra.channels, std::back_inserter(exr.channels));
-    exr.attributes.insert(extra.attributes.begin(), extra.attributes.end());
+    std::ranges::move(picture.layers.channels, std::back_inserter(exr.channels));
+    exr.attributes.insert(layers.attributes.begin(), layers.attributes.end());
     ApplyTo(&exr, format);
     RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
-    const RgbImage foreground{exr.width, exr.height, std::move(extra.colours)};
+    const RgbImage foreground{exr.width, exr.height, std::move(picture.layers.colours)};
     if (format.isTransparent) {
-        colours = foreground.values.empty()
-                      ? WithoutBackground(colours, denoised != nullptr, film, *mattes)
-                      : MeansOf(foreground);
+        colours = foreground.values.empty() ? WithoutBackground(colours, denoised != nullptr, film)
+                                            : MeansOf(foreground);
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
     int64_t clamped = 0;
@@ -199,7 +196,7 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, const
         clamped = WriteExr(file, exr, colours, SppOf(film));
     });
     results->Write(files.png, [&](const std::string& file) {
-        WritePng(file, format.isTransparent ? WithAlpha(colours, film, *mattes) : colours,
+        WritePng(file, format.isTransparent ? WithAlpha(colours, film) : colours,
                  film.Region().Width(), film.Region().Height(),
                  MakePngFormat(format, origin.scene.film.exposure));
     });

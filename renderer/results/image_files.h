@@ -5,8 +5,7 @@
 #include "renderer/image/png_format.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
-#include "renderer/results/denoised_image.h"
-#include "renderer/results/extra_layers.h"
+#include "renderer/results/layer_channels.h"
 
 namespace lull {
 
@@ -32,13 +31,18 @@ struct PictureOrigin {
     const Provenance& provenance;
 };
 
-// Writes the image of a render, each file whole or not at all: the means of the film or, where
-// there is one, the denoised image, with the means beside it in the EXR, which has `extra` as well.
-// `mattes` are asked for where the format is transparent. Returns how many values were clamped to
-// 16 bits.
-int64_t WriteImage(const PictureFiles&, const PictureOrigin&, const Film&, const DenoisedImage*,
-                   const MatteFilm* mattes, const RenderResult&, ExtraLayers extra,
-                   const PictureFormat&, ResultFiles*);
+// The image of a render: the means of the film or, where there is one, the denoised image, with the
+// means beside it in the EXR. The film has mattes where the format is transparent.
+struct Picture {
+    const Film& film;
+    const DenoisedImage* denoised = nullptr;  // null: there is none
+    const RenderResult& result;
+    LayerChannels layers = {};  // of the EXR
+    const PictureFormat& format;
+};
+
+// Writes it, each file whole or not at all. Returns how many values were clamped to 16 bits.
+int64_t WriteImage(const PictureFiles&, const PictureOrigin&, Picture, ResultFiles*);
 
 // Returns the rows of an image, which must outlive that.
 RowSource MeansOf(const RgbImage&);

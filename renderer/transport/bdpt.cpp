@@ -3,7 +3,7 @@
 #include "renderer/base/color.h"
 #include "renderer/scene/camera_view.h"
 #include "renderer/scene/footprint.h"
-#include "renderer/transport/first_hit_internal.h"
+#include "renderer/transport/group_recorder_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"
 #include "renderer/transport/subpath.h"
@@ -69,8 +69,9 @@ double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const Emitt
     return density / double(ray.density.origin);
 }
 
-// Follows light from a light; calls visit(vertex, hit) with each surface that it comes to, of as
-// many bounces at most, where `place` makes the vertex of the hit.
+// Follows light from a light; calls visit(vertex, hit, light) with each surface that it comes to,
+// of as many bounces at most, where `place` makes the vertex of the hit, and with the light's
+// number.
 template <typename Place, typename Visit>
 void FollowLight(const Context& context, int mostBounces, const Place& place, const Visit& visit) {
     const Scene& scene = context.scene;
@@ -101,7 +102,7 @@ void FollowLight(const Context& context, int mostBounces, const Place& place, co
         if (!(arrival.density > 0)) return;
         SubpathVertex& v = place(hit, stride.beta, arrival);
         if (bounces == 1) v.arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
-        visit(v, hit);
+        visit(v, hit, emitted->light);
         if (bounces == mostBounces) return;
         bool isSpecular, isTransmission;
         if (!Scatter(Origin::Light, v, sampler.Get2D(), &stride, &isSpecular, &isTransmission) ||
@@ -120,8 +121,10 @@ double EmissionWeight(const Stride& stride, double density, double fewer, float 
     return 1 / (1 + Sqr(sampled) + Sqr(fromLight) * fewer);
 }
 
-// Returns the light of the sky that leaves the scene, weighted.
-Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice& choice) {
+// Returns the light of the sky that leaves the scene, weighted; tells the recorder of each light.
+template <typename Recorder>
+Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice& choice,
+                 const Path& path, Recorder& recorder) {
     const Scene& scene = context.scene;
     Rgb sum = Rgb::Zero();
     for (const int i : scene.lights.Infinite()) {
@@ -130,8 +133,11 @@ Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice
         const double across = std::abs(double(stride.n.dot(stride.ray.d)));
         const double fewer = Sqr(across / stride.density) * stride.sum;
         const float direct = stride.connects ? pdf * choice.Pmf(i) : 0;
-        sum += L * float(EmissionWeight(stride, double(stride.pdf), fewer, direct,
-                                        scene.emission->Density(i, Vec3f::Zero(), -stride.ray.d)));
+        const Rgb weighted =
+            L * float(EmissionWeight(stride, double(stride.pdf), fewer, direct,
+                                     scene.emission->Density(i, Vec3f::Zero(), -stride.ray.d)));
+        sum += weighted;
+        recorder.FindLight(path, i, weighted);
     }
     return sum;
 }
@@ -149,11 +155,12 @@ Rgb EmittedLight(const Context& context, const Stride& stride, const SurfaceInte
                                     scene.emission->Density(hit.areaLight, hit.n, hit.wo)));
 }
 
-// Returns the light that sampling a light brings to the vertex.
-Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoice& choice) {
+// Returns the light that sampling a light, whose number `chosen` receives, brings to the vertex.
+Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoice& choice,
+                 int* chosen) {
     const Scene& scene = context.scene;
     float pmf;
-    const int index = choice.Sample(context.sampler.Get1D(), &pmf);
+    const int index = *chosen = choice.Sample(context.sampler.Get1D(), &pmf);
     const Vec2f u = context.sampler.Get2D();
     if (!(pmf > 0)) return Rgb::Zero();
     const auto light = scene.lights.Sample(index, v.hit.p, u);
@@ -216,13 +223,15 @@ class LightSubpath {
             context, mostBounces,
             [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
                 -> SubpathVertex& { return vertices.Add(context.scene, hit, beta, arrival); },
-            [](const SubpathVertex&, const SurfaceInteraction&) {});
+            [&](const SubpathVertex&, const SurfaceInteraction&, int index) { light = index; });
         return vertices;
     }
+    int Light() const { return light; }  // its number, where there are vertices
 
   private:
     const Context& context;
     bool isTraced = false;
+    int light = 0;
     Vertices vertices;
 };
 
@@ -248,11 +257,15 @@ template <typename Recorder>
         stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
     Path path{.ray = start.ray};  // for recorders
     Rgb L = Rgb::Zero();          // without connections
+    const auto find = [&](int light, const Rgb& found) {
+        L += stride.beta * found;
+        if (!IsBlack(found)) recorder.FindLight(path, light, found);
+    };
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
         Hit found;
         if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) {
-            L += stride.beta * LeavingLight(context, stride, choice);
+            L += stride.beta * LeavingLight(context, stride, choice, path, recorder);
             recorder.LeaveScene(path);
             break;
         }
@@ -267,7 +280,7 @@ template <typename Recorder>
                    bounces == 0 ? context.SeenFromCamera() : context.Connected(stride.connects));
         if (!(arrival.density > 0)) break;
         if (hit.areaLight >= 0)
-            L += stride.beta * EmittedLight(context, stride, hit, found, arrival, choice);
+            find(hit.areaLight, EmittedLight(context, stride, hit, found, arrival, choice));
         if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted()) break;
@@ -277,13 +290,18 @@ template <typename Recorder>
         if (isLast) break;
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = SurfaceVertex{v.hit, v.bsdf, found.shape}.Choice(scene.lights);
-            L += v.beta * SampledLight(context, v, choice);
+            int chosen;
+            const Rgb sampled = SampledLight(context, v, choice, &chosen);
+            find(chosen, sampled);
             const int left = maxDepth - bounces - 1;
             if (canConnect && left > 0) {
                 const Vertices& vertices = fromLight.All(left);
                 for (int i = 0; i < std::min(left, vertices.Count()); ++i)
-                    if (vertices[i].Connects())
-                        *connected += v.beta * ConnectedLight(context, v, vertices[i]);
+                    if (vertices[i].Connects()) {
+                        const Rgb found = ConnectedLight(context, v, vertices[i]);
+                        *connected += v.beta * found;
+                        recorder.FindLight(path, fromLight.Light(), found);
+                    }
             }
         }
         bool isSpecular, isTransmission;
@@ -328,9 +346,12 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
         if (luminance > 0) sample.connected = Luminance(connected) / luminance;
         return sample;
     };
-    if (!detail.firstHit) return follow(NoRecorder());
-    return follow(
-        FirstHitRecorder(scene, options, start.ray.d, start.camera.time, detail.firstHit));
+    if (!detail.firstHit && !detail.groups) return follow(NoRecorder());
+    FirstHit unseen;
+    const FirstHitRecorder firstHit(scene, options, start.ray.d, start.camera.time,
+                                    detail.firstHit ? detail.firstHit : &unseen);
+    if (!detail.groups) return follow(firstHit);
+    return follow(GroupRecorder(firstHit, detail.groups));
 }
 
 namespace {
@@ -344,7 +365,8 @@ class Onlooker {
           size(context.scene.film.resolution.cast<float>()),
           reach(context.scene.filter.Radius()) {}
 
-    void Show(const SubpathVertex& v, const SurfaceInteraction& hit) {
+    // The light is number `light`.
+    void Show(const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
         if (!v.Connects()) return;
         const Scene& scene = context.scene;
         CameraSample at;
@@ -355,14 +377,14 @@ class Onlooker {
             (view->film.array() > (size + reach).array()).any())
             return;
         at.film = view->film;
-        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint)) return Add(v, *view);
+        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint)) return Add(v, *view, light);
         SurfaceInteraction seen = hit;
         ComputeFootprint(scene.camera, at, &seen);
-        Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view);
+        Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view, light);
     }
 
   private:
-    void Add(const SubpathVertex& v, const CameraView& view) {
+    void Add(const SubpathVertex& v, const CameraView& view, int light) {
         const Scene& scene = context.scene;
         const Vec3f d = view.lens - v.hit.p;
         const float distance2 = d.squaredNorm();
@@ -380,7 +402,7 @@ class Onlooker {
             L *= scene.film.maxSampleLuminance / luminance;
         L *= scene.film.scale;
         const bool isValid = IsFinite(L) && luminance >= 0;
-        splat({view.film, isValid ? L : Rgb(Rgb::Zero()), !isValid});
+        splat({view.film, isValid ? L : Rgb(Rgb::Zero()), light, !isValid});
     }
 
     const Context& context;
@@ -407,7 +429,9 @@ void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampl
         context, context.integrator.maxDepth,
         [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
             -> SubpathVertex& { return *new (storage) SubpathVertex(scene, hit, beta, arrival); },
-        [&](const SubpathVertex& v, const SurfaceInteraction& hit) { onlooker.Show(v, hit); });
+        [&](const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
+            onlooker.Show(v, hit, light);
+        });
 }
 
 }  // namespace lull

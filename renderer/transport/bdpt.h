@@ -17,6 +17,7 @@ double LightPathCount(const Scene&, const BdptShares&);
 struct Splat {
     Vec2f film;             // pixels
     Rgb radiance;           // film scale applied; pixels are sums of these, times the filter
+    int light;              // of the scene, that it comes from
     bool rejected = false;  // was not finite, or of negative luminance, and is black
 };
 

@@ -73,7 +73,7 @@ struct SampleDetail {
     // The first hit of the path; a path that is at its greatest depth, or ends before it finds
     // something, has none.
     FirstHit* firstHit = nullptr;
-    // The radiance by groups of lights, with the same weights: of a PathIntegrator alone.
+    // The radiance by groups of lights, with the same weights.
     GroupRadiance* groups = nullptr;
 };
 

@@ -136,15 +136,6 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
     EXPECT_EQ(RunLull(directory, "train --help").out, RunLull(directory, "train --help-all").out);
 }
 
-TEST(CommandLine, TakesFormerNamesOfCommandsAndListsThemNowhere) {
-    const TemporaryDirectory directory;
-    EXPECT_TRUE(Contains(ExpectSuccess(directory, "dataset --help").out, "lull record "));
-    EXPECT_TRUE(Contains(ExpectSuccess(directory, "judge --help").out, "lull study "));
-    const std::string help = ExpectSuccess(directory, "--help").out;
-    EXPECT_TRUE(Contains(help, "  record ") && Contains(help, "  study "));
-    EXPECT_FALSE(Contains(help, "dataset") || Contains(help, "judge"));
-}
-
 // Choices are named once, with the default.
 TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;

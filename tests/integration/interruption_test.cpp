@@ -184,7 +184,7 @@ TEST(Interruption, SaysHowToGoOn) {
 TEST(Interruption, RecordingsComeToTheSameBits) {
     const SceneDirectory directory;
     const std::string record =
-        "LULL dataset scene.pbrt --name a --resolution 400x200 --cap 40 --quiet";
+        "LULL record scene.pbrt --name a --resolution 400x200 --cap 40 --quiet";
     ExpectSuccess(RunShell(directory, record + " -o whole.h5"));
     for (int kill = 0; kill < 3; ++kill) {
         const Outcome killed =

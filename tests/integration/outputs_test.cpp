@@ -90,7 +90,7 @@ TEST(Outputs, OfOtherCommandsAreNoInputs) {
         {"evaluate --human human.csv --predicted p.csv --csv human.csv", "--csv", "--human"},
         {"evaluate --human human.csv --predicted p.csv --csv link.csv", "--csv", "--human"},
         {"evaluate --human human.csv --predicted p.csv --csv p.csv", "--csv", "--predicted"},
-        {"dataset scene.pbrt --name a -o mesh.ply --blocks 0", "-o", "a file of the scene"},
+        {"record scene.pbrt --name a -o mesh.ply --blocks 0", "-o", "a file of the scene"},
         {"denoise a.exr -o a.exr", "-o", "IN"},
         {"bench scene.pbrt --cap 40 -o b --report b.csv.html --reference b.csv", "-o",
          "--reference"},
@@ -99,9 +99,9 @@ TEST(Outputs, OfOtherCommandsAreNoInputs) {
         {"compare scene.pbrt --snapshots --cap 40 --block 8 --checkpoint c.reference.exr -o c "
          "--quiet",
          "--checkpoint", "-o"},
-        {"judge scene.pbrt -o s.html --record mesh.ply --cap 100", "--record",
+        {"study scene.pbrt -o s.html --record mesh.ply --cap 100", "--record",
          "a file of the scene"},
-        {"judge --collect p.csv -o p.csv", "-o", "--collect"},
+        {"study --collect p.csv -o p.csv", "-o", "--collect"},
     };
     for (const auto& [arguments, output, other] : kCases)
         ExpectRefused(directory, arguments, output, other);

@@ -32,7 +32,7 @@ struct PictureDirectory : TemporaryDirectory {
 TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
     const PictureDirectory directory;
     const Outcome made =
-        ExpectSuccess(directory, "dataset --images room -o data.h5 --block 50 --threads 1");
+        ExpectSuccess(directory, "record --images room -o data.h5 --block 50 --threads 1");
     EXPECT_EQ(made.out, "data.h5\n");
     EXPECT_TRUE(Contains(made.err, "room: 10 pictures of 20 to 200 spp, 4 of 4 blocks"))
         << made.err;
@@ -42,16 +42,15 @@ TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
     // What a render of the same samples records of its picture, but for halves.
     ExpectSuccess(
         directory,
-        "dataset scene.pbrt --name own -o own.h5 --resolution 100x100 --block 50 --cap 200 "
+        "record scene.pbrt --name own -o own.h5 --resolution 100x100 --block 50 --cap 200 "
         "--quiet --estimator combined");
     const ViewpointRecording own = ReadDataset(directory.File("own.h5")).at(0);
     for (const char* channel : {"h4", "h100", "h1", "attributes26"})
         EXPECT_TRUE(std::ranges::equal(room.blocks.at(2).Values(4, channel),
                                        own.blocks.at(2).Values(4, channel)))
             << channel;
-    EXPECT_TRUE(
-        Contains(ExpectSuccess(directory, "dataset --images room -o data.h5 --block 50").err,
-                 "has all blocks of 'room' already"));
+    EXPECT_TRUE(Contains(ExpectSuccess(directory, "record --images room -o data.h5 --block 50").err,
+                         "has all blocks of 'room' already"));
 
     const std::string rules = " --human human.csv --stop entropy:1 --stop fixed:100 --brief";
     const Outcome fromData = ExpectSuccess(directory, "evaluate data.h5" + rules);

@@ -138,6 +138,32 @@ TEST_F(RanksTest, ShareLightGroups) {
         EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
 }
 
+// Each rank traces a part of the light paths, and what they bring is learned from all.
+TEST_F(RanksTest, ShareLightPaths) {
+    directory.Write("scene.pbrt", SceneText(std::string("Integrator \"bdpt\"\n") + kSphere +
+                                            "LightSource \"point\" \"point from\" [2 1 -2]\n"));
+    const std::string render =
+        std::string(kRender) + "--integrator bdpt --aov noise --light-groups environment ";
+    const std::string whole = render + "--stop lnoise:0.3 --cap 200 ";
+    ExpectSuccess(Run(whole + "-o one.exr"));
+    for (const int ranks : {2, 3}) {
+        ExpectSuccess(Run(Ranks(ranks) + whole + "-o some.exr"));
+        ExpectSame("one", "some");
+        const ExrImage one = ReadExr(directory.File("one.exr")),
+                       some = ReadExr(directory.File("some.exr"));
+        ASSERT_TRUE(one.Find("light.rest.G"));
+        for (const ExrChannel& channel : one.channels)
+            EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
+    }
+    // Each goes on with what others have begun.
+    const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
+    const Outcome interrupted =
+        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
+    ExpectSuccess(Run(Ranks(3) + parts));
+    ExpectSame("one", "parts");
+}
+
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, DenoiseTheSame) {
     const std::string render =
@@ -240,13 +266,13 @@ TEST_F(RanksTest, CompareBenchAndRecord) {
     runBoth("bench" + size + "--block 25 --samplers random,sobol");
     EXPECT_EQ(WithoutSeconds("one.csv"), WithoutSeconds("some.csv"));
 
-    runBoth("dataset --name a" + size + "--blocks 0");
+    runBoth("record --name a" + size + "--blocks 0");
     const std::vector<ViewpointRecording> one = ReadDataset(directory.File("one")),
                                           some = ReadDataset(directory.File("some"));
     ASSERT_EQ(some.at(0).blocks.size(), 1u);
     EXPECT_EQ(some[0].blocks.at(0).spp, one.at(0).blocks.at(0).spp);
     EXPECT_EQ(some[0].blocks.at(0).values, one[0].blocks.at(0).values);
-    ExpectSuccess(Run(Ranks(2) + "LULL dataset --name a" + size + "--blocks 0 -o some"));
+    ExpectSuccess(Run(Ranks(2) + "LULL record --name a" + size + "--blocks 0 -o some"));
 }
 
 TEST_F(RanksTest, SaySharedErrorsOnce) {

@@ -19,7 +19,7 @@ TEST(Writers, OfOneDatasetLoseNothing) {
     directory.Write("scene.pbrt", SceneText(kSphere));
     ExpectSuccess(RunShell(
         directory,
-        "for v in v1 v2 v3; do LULL dataset scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
+        "for v in v1 v2 v3; do LULL record scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
         "--threads 1 --name $v -o d.h5 --quiet & done; wait"));
     EXPECT_EQ(ReadDataset(directory.File("d.h5")).size(), 3u);
     EXPECT_EQ(directory.CountFiles(), 2);
@@ -45,7 +45,7 @@ TEST(Writers, OfOneCheckpointAreOne) {
     ExpectOneWriter(directory, "LULL render scene.pbrt --spp 2 --checkpoint c.h5 -o a.exr --quiet",
                     ".c.h5.lock");
     ExpectOneWriter(directory,
-                    "LULL dataset scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --threads 1 "
+                    "LULL record scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --threads 1 "
                     "--name v -o d.h5 --quiet",
                     ".d.h5.v.checkpoint.lock");
     ExpectOneWriter(directory, "LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet",
@@ -79,7 +79,7 @@ TEST(SpecialFiles, AreNotWaitedFor) {
           "render scene.pbrt --spp 20 --checkpoint f.h5 --resume",
           "render scene.pbrt --stop learned:f.h5", "render scene.pbrt --stop thresholds:f.csv",
           "render scene.pbrt --stop thresholds:/dev/zero", "evaluate f.h5 --human f.csv --rivals",
-          "train f.h5 --human f.csv -o m.h5", "judge --collect f.json -o t.csv"}) {
+          "train f.h5 --human f.csv -o m.h5", "study --collect f.json -o t.csv"}) {
         const Outcome outcome = RunShell(directory, kLimit + std::string(command));
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
         EXPECT_TRUE(Contains(outcome.err, "not a regular file")) << command << "\n" << outcome.err;

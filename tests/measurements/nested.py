@@ -1,5 +1,5 @@
-"""Chooses a model's options inside the folds: each viewpoint is judged by a network whose options were chosen, and which was
-trained, on the others.
+"""Chooses a model's options inside the folds: each scene is judged by a network whose options were chosen, and which was
+trained, on the others. A scene is a viewpoint, or all whose names begin with a text of --together.
 
     python3 nested.py LULL HUMAN.csv DATASET.h5... [--grid "mask 24 40 1e9; noisy-weight 1 1.4 2"] [--keep FOLDER]
 
@@ -47,15 +47,23 @@ def error(rows):
 def nested(o):
     combinations = grid(o.grid)
     name = lambda options: '_'.join(options).replace('--', '')
-    every = {name(c): train(o, 'all_' + name(c), '--cross-validate', *c) for c in combinations}
-    views = [v for v in next(iter(every.values())) if v != 'all']
+    together = lambda left: [f'--together={t}' for t in o.together if not any(v.startswith(t) for v in left)]
+    every = {name(c): train(o, 'all_' + name(c), '--cross-validate', *together([]), *c) for c in combinations}
+    scenes = {}
+    for v in (v for v in next(iter(every.values())) if v != 'all'):
+        scenes.setdefault(next((t for t in o.together if v.startswith(t)), v), []).append(v)
     total = []
-    for v in views:
-        best = min(combinations, key=lambda c: error(train(o, f'not_{v}_{name(c)}', '--without', v, '--cross-validate', *c)))
-        row = train(o, f'left_{v}_{name(best)}', '--leave-out', v, '-o', os.path.join(o.keep, 'model.h5'), *best)[v]
-        total.append(row)
-        print(f"{v}: {' '.join(best)}: {100 * float(row['critical_error_2']):.1f} %, early {100 * float(row['early']):.0f} %, "
-              f"late {100 * float(row['late']):.0f} %", flush=True)
+    for scene, views in scenes.items():
+        without = [f'--without={v}' for v in views]
+        best = min(combinations, key=lambda c: error(train(o, f'not_{scene}_{name(c)}', *without, '--cross-validate',
+                                                           *together(views), *c)))
+        out = [f'--leave-out={v}' for v in views]
+        rows = train(o, f'left_{scene}_{name(best)}', *out, '-o', os.path.join(o.keep, 'model.h5'), *best)
+        for v in views:
+            row = rows[v]
+            total.append(row)
+            print(f"{v}: {' '.join(best)}: {100 * float(row['critical_error_2']):.1f} %, early {100 * float(row['early']):.0f} %, "
+                  f"late {100 * float(row['late']):.0f} %", flush=True)
     mean = lambda key: 100 * sum(float(r[key]) for r in total) / len(total)
     print(f"chosen inside the folds: {mean('critical_error_2'):.1f} %, early {mean('early'):.0f} %, late {mean('late'):.0f} %, "
           f"AUC {mean('auc'):.1f}")
@@ -68,7 +76,8 @@ def nested(o):
 if __name__ == '__main__':
     p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     p.add_argument('lull'), p.add_argument('human'), p.add_argument('data', nargs='+')
-    p.add_argument('--grid', default='mask 40 1e9; noisy-weight 1 1.4; nearness 0.25 0.35 0.5; flare 0 0.02 0.05')
+    p.add_argument('--grid', default='noisy-weight 1 1.4; nearness 0.25 0.35; peak-limit 1.1 1.3')
+    p.add_argument('--together', action='append', default=[])
     p.add_argument('--keep', default='nested')
     o = p.parse_args()
     os.makedirs(o.keep, exist_ok=True)

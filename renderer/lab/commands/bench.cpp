@@ -9,6 +9,7 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/render_job.h"
@@ -20,7 +21,7 @@
 #include "renderer/lab/pages/bench_page.h"
 #include "stopping/rules/denoised.h"
 
-namespace lull {
+namespace lull::bench {
 
 namespace {
 
@@ -71,7 +72,8 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("--rule", o->rules, "Measure this rule, too; can be given again")
         ->take_all()
         ->type_name("RULE");
-    app.add_flag("--denoise", o->denoise, "Measure the rule `denoised` and its images, too");
+    app.add_flag("--denoise", o->denoise, "Measure the rule `denoised` and its images, too")
+        ->group(kCommonOptions);
     AddViewingOption(app, &o->display);
     app.add_option("--reference", o->reference, "Compare with this image")->type_name("R.exr");
     app.add_option("--external", o->external,
@@ -79,8 +81,10 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("E.csv");
     app.add_option("-o,--output", o->output,
                    "Write files whose names begin with OUT, or to DIR/ [the scene's name]")
+        ->group(kCommonOptions)
         ->type_name("OUT|DIR/");
     app.add_option("--report", o->report, "Write a page with images and curves")
+        ->group(kCommonOptions)
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })
@@ -100,7 +104,7 @@ std::vector<ObservedRule> MakeRules(const Options& options, const RenderJob& ren
     for (const std::string& text : texts) {
         const Rule rule = render.ReadRule("--rule", text);
         rules.push_back({text, rule.text, rule.smallestSide, CriteriaOf(rule),
-                         text.starts_with(kDenoisedRuleName)});
+                         IsRule(text, kDenoisedRuleName)});
     }
     return rules;
 }
@@ -130,7 +134,8 @@ std::string CheckpointName(const Options& options, const Variant& variant) {
 
 // All that the renders of the scene have in common.
 struct Bench {
-    Bench(const Options& options, Job* ranks) : options(options), render(options.render, ranks) {}
+    Bench(const Options& options, MpiJob* ranks)
+        : options(options), render(options.render, ranks) {}
 
     Options options;
     RenderJob render;
@@ -157,12 +162,12 @@ void CheckFiles(Bench* bench) {
 }
 
 // Checks all that can be wrong before the work begins.
-std::unique_ptr<Bench> Prepare(const Options& options, Job* ranks) {
+std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     auto bench = std::make_unique<Bench>(options, ranks);
     RenderJob& render = bench->render;
     const PixelRect& region = render.input.region;
     if (options.denoise) {
-        CheckLayersFit({}, true, region);
+        CheckLayersFit({.features = true}, region);
         render.DenoiseBlocks();
     }
     bench->rules = MakeRules(options, render);
@@ -214,7 +219,7 @@ SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
     if (variant.isGuided) how.guide = options.guide;
     how.checkpoint.isKept = true;
     how.identity = IdentityOf(provenance, bench.sceneHash);
-    how.features = options.denoise;
+    how.film.layers.features = options.denoise;
     return how;
 }
 
@@ -292,7 +297,7 @@ void WriteBench(const Bench& bench, const std::vector<std::string>& names) {
     fmt::print("{}\n", options.report);
 }
 
-ExitCode RunBench(Options options, Job* ranks) {
+ExitCode RunBench(Options options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
@@ -317,7 +322,7 @@ ExitCode RunBench(Options options, Job* ranks) {
 
 }  // namespace
 
-void AddBenchCommand(CLI::App& app, Command* command, Job* job) {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
     CLI::App* bench = app.add_subcommand(
         "bench",
         "Plots error against time and samples, for fixed sample counts and stopping rules.");
@@ -326,4 +331,4 @@ void AddBenchCommand(CLI::App& app, Command* command, Job* job) {
     bench->callback([=] { *command = [=] { return RunBench(*options, job); }; });
 }
 
-}  // namespace lull
+}  // namespace lull::bench

@@ -16,7 +16,7 @@
 #include "renderer/results/image_files.h"
 #include "stopping/rules/denoised.h"
 
-namespace lull {
+namespace lull::compare {
 
 namespace {
 
@@ -80,7 +80,7 @@ std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
 
 // A scene that is ready, and the rules to be compared on it.
 struct Compared {
-    Compared(const CompareOptions& options, Job* ranks)
+    Compared(const CompareOptions& options, MpiJob* ranks)
         : options(options), render(options.render, ranks) {}
 
     CompareOptions options;
@@ -107,7 +107,7 @@ void AddOtherRules(Compared* compared) {
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckLayersFit({}, true, region);
+    CheckLayersFit({.features = true}, region);
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));
@@ -115,7 +115,7 @@ void AddOtherRules(Compared* compared) {
 }
 
 // Checks all that can be wrong before the work begins.
-std::unique_ptr<Compared> Prepare(const CompareOptions& options, Job* ranks) {
+std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) {
     auto compared = std::make_unique<Compared>(options, ranks);
     RenderJob& render = compared->render;
     const PixelRect& region = render.input.region;
@@ -146,7 +146,7 @@ SessionOptions MakeOptions(Compared* compared) {
         compared->rules, compared->render.input.region, options.render.schedule,
         {.snapshots = true, .noise = true, .curves = hasPage, .goesOn = options.snapshots},
         &compared->report.histories);
-    how.features = options.denoise;
+    how.film.layers.features = options.denoise;
     how.identity = compared->render.Identity();
     how.identity["human"] = compared->humanChecksum;
     how.identity["snapshots"] = options.snapshots ? "yes" : "no";
@@ -238,7 +238,7 @@ void WriteResults(const RenderResult& result, Compared* compared) {
 }
 
 // The ranks share the render that all images come from; the first does the rest.
-ExitCode CompareRenders(CompareOptions options, Job* ranks) {
+ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
@@ -275,7 +275,7 @@ void WriteComparison(const CompareOptions& options, ComparisonReport report, Res
     results.Check();
 }
 
-void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
     CLI::App* compare = app.add_subcommand(
         "compare", "Compares automatic stopping with human thresholds and with a reference.");
     auto options = std::make_shared<CompareOptions>();
@@ -292,4 +292,4 @@ void AddCompareCommand(CLI::App& app, Command* command, Job* job) {
     });
 }
 
-}  // namespace lull
+}  // namespace lull::compare

@@ -2,10 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/lab/commands/viewing_option.h"
 
-namespace lull {
+namespace lull::compare {
 
 namespace {
 
@@ -59,9 +60,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
             ->type_name("DIR[:NAME]")
             ->excludes(scene);
     auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")
+                     ->group(kCommonOptions)
                      ->type_name("RULE")
                      ->capture_default_str();
-    AddCautionOption(app, &o->render.caution);
+    AddCautionOption(app, &o->render.caution)->group("Stopping");
     app.add_option("--human", o->human, "Compare human thresholds, or an image rendered with them")
         ->type_name("H.csv[:NAME]|H.exr|H.png");
     app.add_option("--automatic", o->automatic,
@@ -77,6 +79,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->needs(scene)
         ->excludes(reference);
     app.add_flag("--denoise", o->denoise, "Add \"denoised\", the image of `lull render --denoise`")
+        ->group(kCommonOptions)
         ->needs(scene);
     AddViewingOption(app, &o->display);
     app.add_option("--verify", o->verify,
@@ -86,8 +89,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->needs(scene)
         ->type_name("N,N,...");
     app.add_option("-o,--output", o->output, "Write files whose names begin with OUT, or to DIR/")
+        ->group(kCommonOptions)
         ->type_name("OUT|DIR/");
     app.add_option("--report", o->report, "Write a page with images and tables")
+        ->group(kCommonOptions)
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
         })
@@ -96,4 +101,4 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     app.footer(kFooter);
 }
 
-}  // namespace lull
+}  // namespace lull::compare

@@ -8,7 +8,7 @@
 #include "renderer/vision/display_model.h"
 #include "stopping/rules/rule_table.h"
 
-namespace lull {
+namespace lull::compare {
 
 struct CompareOptions {
     RenderSettings render;
@@ -30,4 +30,4 @@ ExitCode CompareFolder(CompareOptions options);
 // Throws Error where an image is missing.
 void WriteComparison(const CompareOptions& options, ComparisonReport report, ResultFiles results);
 
-}  // namespace lull
+}  // namespace lull::compare

@@ -10,7 +10,7 @@
 #include "stopping/base/parallel.h"
 #include "stopping/rules/thresholds.h"
 
-namespace lull {
+namespace lull::compare {
 
 namespace {
 
@@ -101,4 +101,4 @@ ExitCode CompareFolder(CompareOptions options) {
     return kDone;
 }
 
-}  // namespace lull
+}  // namespace lull::compare

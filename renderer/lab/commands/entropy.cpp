@@ -14,7 +14,7 @@
 #include "renderer/lab/viewpoints/picture_entropies.h"
 #include "stopping/base/csv.h"
 
-namespace lull {
+namespace lull::entropy {
 
 namespace {
 
@@ -196,7 +196,7 @@ ExitCode RunEntropy(const Options& options) {
 
 }  // namespace
 
-void AddEntropyCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* entropy = app.add_subcommand("entropy", "Computes SVD-entropies of pictures.");
     auto options = std::make_shared<Options>();
     AddOptions(*entropy, options.get());
@@ -209,4 +209,4 @@ void AddEntropyCommand(CLI::App& app, Command* command) {
     });
 }
 
-}  // namespace lull
+}  // namespace lull::entropy

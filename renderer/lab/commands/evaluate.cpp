@@ -30,6 +30,10 @@ struct EnumNames<ChooseBy> {
         {ChooseBy::AbsoluteError, "error"}, {ChooseBy::CriticalError, "critical"}};
 };
 
+}  // namespace lull
+
+namespace lull::evaluate {
+
 namespace {
 
 struct Options {
@@ -338,7 +342,7 @@ void CheckUsage(const Options& options) {
 
 }  // namespace
 
-void AddEvaluateCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* evaluate =
         app.add_subcommand("evaluate", "Compares stopping rules with human thresholds.");
     auto options = std::make_shared<Options>();
@@ -350,4 +354,4 @@ void AddEvaluateCommand(CLI::App& app, Command* command) {
     });
 }
 
-}  // namespace lull
+}  // namespace lull::evaluate

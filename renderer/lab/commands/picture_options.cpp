@@ -18,8 +18,8 @@ void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blo
     AddBlockOption(app, blockSize);
 }
 
-void AddBlockOption(CLI::App& app, int* blockSize) {
-    app.add_option("--block", *blockSize, "Pixels a side of the blocks")
+CLI::Option* AddBlockOption(CLI::App& app, int* blockSize) {
+    return app.add_option("--block", *blockSize, "Pixels a side of the blocks")
         ->check(Between(1, 1 << 16))
         ->type_name("N")
         ->capture_default_str();

@@ -11,7 +11,7 @@ namespace lull {
 
 // Adds --images, which can be given again, and --block unless the command has it already.
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize);
-void AddBlockOption(CLI::App& app, int* blockSize);
+CLI::Option* AddBlockOption(CLI::App& app, int* blockSize);
 
 // Returns the pictures as files that are read.
 std::vector<NamedFile> InputsOf(const PictureFolder& folder);

@@ -17,7 +17,7 @@
 #include "stopping/lab/training/training_run.h"
 #include "stopping/network/model_file.h"
 
-namespace lull {
+namespace lull::train {
 
 namespace {
 
@@ -87,7 +87,7 @@ ExitCode RunTrain(const TrainOptions& options) {
 
 }  // namespace
 
-void AddTrainCommand(CLI::App& app, Command* command) {
+void AddCommand(CLI::App& app, Command* command) {
     CLI::App* train = app.add_subcommand("train", "Trains a stopping rule on human thresholds.");
     auto options = std::make_shared<TrainOptions>();
     AddTrainOptions(*train, options.get());
@@ -105,4 +105,4 @@ void AddTrainCommand(CLI::App& app, Command* command) {
     });
 }
 
-}  // namespace lull
+}  // namespace lull::train

@@ -14,7 +14,7 @@
 #include "renderer/lab/commands/split_option.h"
 #include "stopping/lab/training/training_preset.h"
 
-namespace lull {
+namespace lull::train {
 
 namespace {
 
@@ -326,4 +326,4 @@ ProgressStyle StyleOf(const TrainOptions& options) {
                                    : ProgressStyle::Plain;
 }
 
-}  // namespace lull
+}  // namespace lull::train

@@ -9,7 +9,7 @@
 #include "renderer/render/progress.h"
 #include "stopping/lab/training/training_plan.h"
 
-namespace lull {
+namespace lull::train {
 
 struct TrainOptions {
     TrainingPlan plan;
@@ -36,4 +36,4 @@ ProgressStyle StyleOf(const TrainOptions& options);
 // options.
 void CompleteTrainOptions(TrainOptions* options);
 
-}  // namespace lull
+}  // namespace lull::train

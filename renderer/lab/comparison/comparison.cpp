@@ -43,11 +43,9 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
 }
 
 // Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
-void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film,
-                  FeatureFilm* features = nullptr) {
+void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film) {
     RenderState state;
     RenderContext context{.source = render.context.source, .film = film, .interrupted = &state};
-    context.layers.features = features;
     RenderOptions options;
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
@@ -95,10 +93,9 @@ void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& bloc
     for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
     NoisyPicture picture;
     {
-        Film film(region);
-        FeatureFilm features(region);
-        RenderBlocks(render, spp, &film, &features);
-        picture = PictureOf(film, features, region);
+        Film film(region, {.layers = {.features = true}});
+        RenderBlocks(render, spp, &film);
+        picture = PictureOf(film, region);
     }
     const double start = ProcessSeconds();
     image->image = DenoiseImage(std::move(picture), region, blocks).image;

@@ -57,3 +57,8 @@ function startBench(data) {
     data.bench.points.map(p => [p.rule, String(p.setting ?? ""), p.sampler || "", show(p.spp), show(p.seconds), show(p.rmseLightness), show(p.relMse), show(p.ssim, 5), show(p.flip), show(p.visibleDifference)]));
   byId("bench-table").append(make("div", {class: "scroll"}, withCsv(table, "points")));
 }
+
+function sayBench(data) {
+  const rules = [...new Set(data.bench.points.map(p => p.rule))].filter(r => r !== "fixed");
+  return (rules.length ? `${rules.join(", ")} compared with` : "Error of") + ` fixed sample counts: ${data.bench.points.length} points, against a reference of ${showCount(data.cap)}.`;
+}

@@ -37,7 +37,7 @@ std::string MakeBenchPage(const std::string& title, const Provenance& provenance
         list.push_back(std::move(json));
     }
     page["bench"] = {{"samplers", samplers}, {"points", std::move(list)}};
-    return MakePage(page);
+    return FillPage("comparison.html", {{"data", JsonForScript(page)}});
 }
 
 }  // namespace lull

@@ -188,7 +188,7 @@ std::string MakeComparisonPage(const ComparisonReport& report) {
                 MapUri(OnScale(image.visibleDifference), image.image.width, image.image.height);
     }
     NotePictureScale(report.comparison.region.Width(), report.comparison.region.Height(), &page);
-    return MakePage(page);
+    return FillPage("comparison.html", {{"data", JsonForScript(page)}});
 }
 
 }  // namespace lull

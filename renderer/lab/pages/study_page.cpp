@@ -94,7 +94,7 @@ std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
                  [&](int i) { scripts[size_t(i)] = PicturesScript(study, size_t(i)); });
     std::string pictures;
     for (const std::string& script : scripts) pictures += script;
-    return FillPage("judge.html", {{"study", JsonForScript(DescribeStudy(study, settings))},
+    return FillPage("study.html", {{"study", JsonForScript(DescribeStudy(study, settings))},
                                    {"texts", JsonForScript(Json(AllStudyTexts(settings.texts)))},
                                    {"pictures", std::move(pictures)}});
 }

@@ -1,5 +1,8 @@
 // All ranks but the first: render their tiles, and do as they are told.
+#include <atomic>
+
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 
 namespace lull {
@@ -29,6 +32,7 @@ class Follower {
             channel.Exchange(
                 [this](int, RankWord word, StateReader& reader) { Handle(word, reader); });
             if (isAskedToPause && executor.tasks.IsIdle()) SayQuiet();
+            if (isTraced.exchange(false)) SendSplats();
             if (told || !executor.IsCancelled()) continue;
             channel.Post(0, Pack(RankWord::Interrupted));
             if (channel.Rank() == 1) channel.AskForLife({0});  // one is enough to say so
@@ -46,12 +50,20 @@ class Follower {
             if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
         } else if (word == RankWord::Guide) {
             context.learner->Take(GetGuide(reader), *context.film);
+        } else if (word == RankWord::Round) {
+            TracePart(reader.Get<LightRound>());
+        } else if (word == RankWord::Splats) {
+            SplatPlane& plane = context.light->Planes().at(size_t(reader.Get<int32_t>()));
+            plane.Get(plane.Region(), &reader);
+        } else if (word == RankWord::Lit) {
+            schedule.BeginRound(context.light->End());
+            executor.pausing = false;
+            rank.EnqueueReady();
         } else if (word == RankWord::Start) {
             Begin(GetStart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film,
-                      context.layers);
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film);
         } else if (word == RankWord::TimeUp) {
             schedule.CallTime();
         } else if (word == RankWord::Pause) {
@@ -87,6 +99,23 @@ class Follower {
         touched.assign(needs.size(), false);
     }
 
+    void TracePart(const LightRound& round) {
+        // Those of a round that was interrupted go on.
+        if (context.light->End() > 0) context.film->ForgetSpreads();
+        context.light->Begin(round);
+        rank.Enqueue([this] {
+            isWhole = context.light->Trace([this] { return executor.IsCancelled(); },
+                                           channel.Rank(), channel.Count());
+            isTraced = true;
+        });
+    }
+
+    void SendSplats() {
+        for (size_t i = 0; i < context.light->Planes().size(); ++i)
+            channel.Post(0, PackSplats(int(i), context.light->Planes()[i]));
+        channel.Post(0, PackTraced(isWhole));
+    }
+
     void SendPart(int block) {
         const std::vector<PixelRect> tiles = schedule.TilesOfRank(block, channel.Rank());
         const TileEffort taken = rank.TakeEffort();
@@ -94,7 +123,7 @@ class Follower {
                                taken.seconds, MeansOf(tiles, needs[size_t(block)], *context.film)};
         touched[size_t(block)] = true;
         if (needs[size_t(block)] == ViewNeed::Measured)
-            channel.Post(0, PackPixels(block, tiles, *context.film, context.layers));
+            channel.Post(0, PackPixels(block, tiles, *context.film));
         channel.Post(0, Pack(part));
     }
 
@@ -105,8 +134,7 @@ class Follower {
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
             const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
-            if (!tiles.empty())
-                channel.Post(0, PackPixels(i, tiles, *context.film, context.layers));
+            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *context.film));
         }
         channel.Post(0, Pack(RankWord::Collected));
     }
@@ -121,6 +149,8 @@ class Follower {
     std::vector<char> touched;  // blocks that had a pass since their pixels were sent
     std::vector<int> before;    // the deal before this one
     bool begun = false, isAskedToPause = false, ended = false;
+    std::atomic<bool> isTraced = false;  // its part of the round's light, and not yet sent
+    bool isWhole = false;                // that was not interrupted
 };
 
 }  // namespace

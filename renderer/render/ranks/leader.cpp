@@ -1,9 +1,11 @@
 // Rank 0: asks the criteria, writes checkpoints, deals out tiles, and says when to end.
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <numeric>
 
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -40,10 +42,11 @@ class Leader {
         SendStart({});
         executor.RestartIntervals();
         for (;;) {
-            executor.pausing = false;
+            executor.pausing = hasGivenUp;
             rank.EnqueueReady();
             RunUntilPause();
-            if (schedule.IsRoundOver() && !executor.IsCancelled()) {
+            const bool isLast = context.light && schedule.IsOver();
+            if (schedule.IsRoundOver() && !isLast && !executor.IsCancelled()) {
                 EndRound();
                 continue;
             }
@@ -77,12 +80,67 @@ class Leader {
 
     void EndRound() {
         executor.Quiesce();
+        if (context.light) return EndLightRound();
         executor.EndRound();
         if (IsLearning(context)) return;
         TellGuide();
         deal = FirstDeal(context, options);
         std::erase_if(deal, [&](int other) { return channel.HasGivenUp(other); });
         Deal();
+    }
+
+    // Learns from the samples of all ranks, if a round has ended, and lets each of them trace a
+    // part of the light of the next, of which all of them need the whole.
+    void EndLightRound() {
+        LightRounds& light = *context.light;
+        if (light.End() > 0) {
+            Gather(false);
+            if (executor.IsCancelled()) return;
+            if (std::exchange(hasGivenUp, false)) return TakeOver();
+            light.Learn(film);
+        }
+        light.Begin(schedule.Unlocked());
+        splats.clear();
+        traced.clear();
+        executor.isLit = true;
+        channel.PostToAll(Pack(light.Round()));
+        TracePart(0);
+        Await(traced);
+        for (int other = 1; other < channel.Count(); ++other)
+            if (traced.contains(other))
+                Merge(other);
+            else
+                TracePart(other);  // of one that was given up
+        if (!executor.isLit) return;
+        for (size_t i = 0; i < light.Planes().size(); ++i)
+            channel.PostToAll(PackSplats(int(i), light.Planes()[i]));
+        channel.PostToAll(Pack(RankWord::Lit));
+        schedule.BeginRound(light.End());
+    }
+
+    // Traces a rank's part, and gives signs of life meanwhile.
+    void TracePart(int part) {
+        std::atomic<bool> isDone = false;
+        rank.Enqueue([&] {
+            if (!context.light->Trace([this] { return executor.IsCancelled(); }, part,
+                                      channel.Count()))
+                executor.isLit = false;
+            isDone = true;
+        });
+        while (!isDone) {
+            Exchange();
+            WatchOthers();
+        }
+        executor.Quiesce();
+    }
+
+    // Takes the light that a rank has traced.
+    void Merge(int from) {
+        for (const std::vector<std::byte>& message : splats[from]) {
+            StateReader reader(message);
+            context.light->Planes().at(size_t(reader.Get<int32_t>())).Merge(&reader);
+        }
+        splats.erase(from);
     }
 
     // Sends the learner's state to the others, which have no tiles before that.
@@ -185,7 +243,7 @@ class Leader {
         for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
             for (int i = 0; i < int(blocks.size()); ++i) {
                 const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
-                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film, context.layers));
+                if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film));
             }
         channel.PostToAll(Pack(RankWord::Begin));
     }
@@ -274,7 +332,13 @@ class Leader {
             TakePart(from, GetPart(reader));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
-            GetPixels(reader, schedule.TilesOfRank(block, from), film, context.layers);
+            GetPixels(reader, schedule.TilesOfRank(block, from), film);
+        } else if (word == RankWord::Splats) {
+            std::vector<std::byte>& message = splats[from].emplace_back(reader.Left());
+            reader.GetAll(std::span(message));
+        } else if (word == RankWord::Traced) {
+            executor.isLit = reader.Get<uint8_t>() && executor.isLit;
+            traced.insert(from);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);
         } else if (word == RankWord::Collected) {
@@ -358,12 +422,13 @@ class Leader {
     std::map<int, BlockAnswer> answers;  // to passes that are done again, of these blocks
     RankSpeeds speeds;
 
-    double nextDeal;                 // seconds, before which nobody thinks of it
-    std::vector<int> deal;           // that is to come; empty: none
-    bool hasAsked = false;           // whether the others are there
-    std::set<int> quiet, collected;  // ranks that have said so
-    int64_t samplesGathered = 0;     // at the last checkpoint
-    bool hasGivenUp = false;         // a rank whose tiles are still to be taken over
+    double nextDeal;                         // seconds, before which nobody thinks of it
+    std::vector<int> deal;                   // that is to come; empty: none
+    bool hasAsked = false;                   // whether the others are there
+    std::set<int> quiet, collected, traced;  // ranks that have said so
+    std::map<int, std::vector<std::vector<std::byte>>> splats;  // of the round, by rank
+    int64_t samplesGathered = 0;                                // at the last checkpoint
+    bool hasGivenUp = false;  // a rank whose tiles are still to be taken over
 };
 
 }  // namespace

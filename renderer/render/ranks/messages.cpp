@@ -70,11 +70,30 @@ std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned) {
     return std::move(writer.bytes);
 }
 
-std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film& film,
-                                  const Layers& layers) {
+std::vector<std::byte> Pack(const LightRound& round) {
+    StateWriter writer = Begin(RankWord::Round);
+    writer.Put(round);
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackTraced(bool isWhole) {
+    StateWriter writer = Begin(RankWord::Traced);
+    writer.Put(uint8_t(isWhole));
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackSplats(int plane, const SplatPlane& splats) {
+    StateWriter writer = Begin(RankWord::Splats);
+    writer.Put(int32_t(plane));
+    splats.Put(splats.Region(), &writer);
+    return std::move(writer.bytes);
+}
+
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
+                                  const Film& film) {
     StateWriter writer = Begin(RankWord::Pixels);
     writer.Put(int32_t(block));
-    for (const PixelRect& tile : tiles) PutPlanes(film, layers, tile, &writer);
+    for (const PixelRect& tile : tiles) PutPlanes(film, tile, &writer);
     return std::move(writer.bytes);
 }
 
@@ -119,9 +138,8 @@ int GetBlock(StateReader& reader, size_t blocks) {
     return block;
 }
 
-void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film,
-               const Layers& layers) {
-    for (const PixelRect& tile : tiles) GetPlanes(&reader, tile, film, layers);
+void GetPixels(StateReader& reader, const std::vector<PixelRect>& tiles, Film* film) {
+    for (const PixelRect& tile : tiles) GetPlanes(&reader, tile, film);
     reader.Finish();
 }
 

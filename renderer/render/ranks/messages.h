@@ -1,8 +1,8 @@
 // Serialises the messages of ranks (peers.h).
 #pragma once
 
-#include "renderer/film/layers.h"
-#include "renderer/render/schedule.h"
+#include "renderer/film/film.h"
+#include "renderer/render/light_rounds.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
 
@@ -13,6 +13,8 @@ enum class RankWord : uint8_t {
     Start,    // StartMessage; then come the sums of tiles that the rank did not own
     Begin,    // all of them have been sent
     Guide,    // the learned state, before Start
+    Round,    // LightRound: trace your part of its light, with no tile under way
+    Lit,      // it has come, by Splats: begin the passes of the round
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
@@ -24,15 +26,17 @@ enum class RankWord : uint8_t {
     Quiet,  // all parts have been sent
     Collected,
     Interrupted,  // a signal has come
+    Traced,       // all Splats of its part have been sent; whether it is whole
     // Both ways.
     Pixels,  // sums of a block's tiles, of layers as well
+    Splats,  // light of a round, of one of its planes
     Ping,    // to be answered at once by
     Alive
 };
 
 // Where all blocks are when a rank begins.
 struct StartMessage {
-    std::vector<int> deal;  // of the tiles, see TileShare
+    std::vector<int> deal;  // of the tiles, see RankTiles
     std::vector<BlockStart> blocks;
     std::vector<ViewNeed> needs;  // of criterion and clock after each block's next pass
 };
@@ -62,8 +66,10 @@ std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
 std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
-std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&,
-                                  const Layers&);
+std::vector<std::byte> Pack(const LightRound&);
+std::vector<std::byte> PackTraced(bool isWhole);
+std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
+std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
 // Read the rest of a message after its word. Throw std::runtime_error for other bytes.
 StartMessage GetStart(StateReader&);
@@ -72,8 +78,8 @@ AnswerMessage GetAnswer(StateReader&);
 PartMessage GetPart(StateReader&);
 // Reads the number of a block, below `blocks`.
 int GetBlock(StateReader&, size_t blocks);
-// Reads sums of these tiles into the film and the layers.
-void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*, const Layers&);
+// Reads sums of these tiles into the film.
+void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
 
 // Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where
 // the sums are to be sent.

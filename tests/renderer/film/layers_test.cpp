@@ -1,4 +1,4 @@
-#include "renderer/film/layers.h"
+#include "renderer/film/film.h"
 
 #include <gtest/gtest.h>
 
@@ -9,19 +9,20 @@ namespace {
 
 const PixelRect kRegion = {{3, 5}, {43, 31}};
 
-// A film with all layers.
-struct Planes {
-    Film film;
-    AovFilm aovs{kRegion, {.depth = true}};
-    FeatureFilm features{kRegion};
-    MatteFilm mattes{kRegion, true};
-    LightGroupFilm lights{kRegion, {{"a", "rest"}, {0, 1}}, {true, true}};
+const LayerOptions kAll = {.aovs = {.depth = true, .alpha = true, .cryptomatte = true},
+                           .features = true,
+                           .groups = {{"a", "rest"}, {0, 1}},
+                           .groupNoise = true,
+                           .groupBackground = true};
 
-    explicit Planes(bool withHalf = true)
-        : film(kRegion, {.grid = {.blockSize = 20, .tileSize = 8}, .withHalf = withHalf}) {}
-    Layers TheLayers() {
-        return {.aovs = &aovs, .features = &features, .mattes = &mattes, .lights = &lights};
-    }
+Film MakeFilm(const LayerOptions& layers, bool withHalf = true) {
+    return Film(kRegion,
+                {.grid = {.blockSize = 20, .tileSize = 8}, .withHalf = withHalf, .layers = layers});
+}
+
+struct Planes {
+    Film film = MakeFilm(kAll);
+
     // Adds a sample to each pixel of a tile, different in all of them.
     void AddTo(const PixelRect& pixels) {
         FilmTile tile = film.Tile(pixels);
@@ -35,19 +36,19 @@ struct Planes {
                                       .material = uint32_t(y),
                                       .found = true,
                                       .weight = 1};
-                GroupRadiance groups(lights.Groups());
+                GroupRadiance groups(kAll.groups);
                 groups.Clear();
                 groups.Add(0, radiance / 4);
                 groups.Add(1, radiance / 2);
                 groups.Add(1, radiance / 4);
-                TheLayers().Add({x, y}, pixel.count, hit, radiance, &groups);
+                film.layers.Add({x, y}, {pixel.count, radiance, hit, &groups});
                 pixel.Add(radiance, x % 3 == 0);
                 tile.Set({x, y}, pixel);
             }
     }
     std::vector<std::byte> Bytes(const PixelRect& pixels) {
         StateWriter writer;
-        PutPlanes(film, TheLayers(), pixels, &writer);
+        PutPlanes(film, pixels, &writer);
         return std::move(writer.bytes);
     }
 };
@@ -60,16 +61,19 @@ TEST(Planes, AreSetToWhatWasPut) {
     from.AddTo(kTile);
     const std::vector<std::byte> bytes = from.Bytes(kBlock);
     // Sums of all samples and of the half, layers, two groups of lights, and nine tiles.
-    EXPECT_EQ(bytes.size(), 400u * (24 + 24 + 104 + 60 + 40 + 128 + 2 * 80) + 9 * 8);
+    EXPECT_EQ(bytes.size(), 400u * (24 + 24 + 56 + 40 + 4 + 40 + 128 + 2 * 80) + 9 * 8);
+    EXPECT_EQ(Layers::Bytes(kAll), 56 + 40 + 4 + 40 + 128 + 2 * 80);
     StateReader reader(bytes);
-    GetPlanes(&reader, kBlock, &to.film, to.TheLayers());
+    GetPlanes(&reader, kBlock, &to.film);
     EXPECT_NO_THROW(reader.Finish());
     EXPECT_EQ(to.Bytes(kRegion), from.Bytes(kRegion));  // nothing is anywhere else
     EXPECT_EQ(to.film.SampleCount(), 4 * 400 + 16);
     EXPECT_EQ(to.film.RejectedCount(), from.film.RejectedCount());
     EXPECT_EQ(to.film.At({41, 23}).sum, (std::array<double, 3>{205, 115, 5}));
-    EXPECT_EQ(to.lights.At(1, {41, 23}, 5).sum, (std::array<double, 3>{153.75, 86.25, 3.75}));
-    EXPECT_EQ(to.lights.At(1, {41, 23}, 5).halfSum, (std::array<double, 3>{61.5, 34.5, 1.5}));
+    EXPECT_EQ(to.film.layers.Find<LightGroupLayer>()->At(1, {41, 23}, 5).sum,
+              (std::array<double, 3>{153.75, 86.25, 3.75}));
+    EXPECT_EQ(to.film.layers.Find<LightGroupLayer>()->At(1, {41, 23}, 5).halfSum,
+              (std::array<double, 3>{61.5, 34.5, 1.5}));
 }
 
 TEST(Planes, ReplaceWhatWasThere) {
@@ -80,28 +84,44 @@ TEST(Planes, ReplaceWhatWasThere) {
     planes.AddTo(kTile);
     EXPECT_NE(planes.Bytes(kRegion), before);
     StateReader reader(tile);
-    GetPlanes(&reader, kTile, &planes.film, planes.TheLayers());
+    GetPlanes(&reader, kTile, &planes.film);
     EXPECT_EQ(planes.Bytes(kRegion), before);
 }
 
 TEST(Planes, AreThoseThatThereAre) {
-    Planes planes(false);
-    planes.AddTo(kTile);
-    StateWriter writer;
-    PutPlanes(planes.film, {.features = &planes.features}, kTile, &writer);
-    EXPECT_EQ(writer.bytes.size(), 16u * (24 + 60) + 8);
-    std::string names;
-    ForEachPlane(
-        planes.film, {.mattes = &planes.mattes}, kTile,
-        [&](const std::string& name, const auto&, const PixelRect&) { names += name + " "; });
-    EXPECT_EQ(names, "tiles sums alpha crypto ");
-    names = "";
-    ForEachPlane(
-        planes.film, {.lights = &planes.lights}, kTile,
-        [&](const std::string& name, const auto&, const PixelRect&) { names += name + " "; });
-    EXPECT_EQ(names,
-              "tiles sums light_00 light_00_noise light_00_background light_01 light_01_noise "
-              "light_01_background ");
+    const auto names = [](const LayerOptions& layers) {
+        const Film film = MakeFilm(layers, false);
+        std::string text;
+        Film::ForEachPlane(
+            film, kTile,
+            [&](const std::string& name, const auto&, const PixelRect&) { text += name + "; "; });
+        EXPECT_EQ(int64_t(std::ranges::count(text, ';')), int64_t(PlanesOf(film).size()) + 1);
+        return text;
+    };
+    EXPECT_EQ(names({}), "tiles; sums; ");
+    EXPECT_EQ(names({.features = true}), "tiles; sums; features; noise for the denoiser; ");
+    EXPECT_EQ(names({.aovs = {.normal = true, .object = true, .noise = true}}),
+              "tiles; sums; albedo and normal; object and material; noise; ");
+    EXPECT_EQ(names({.aovs = {.cryptomatte = true}}), "tiles; sums; alpha; cryptomatte; ");
+    EXPECT_EQ(names({.groups = {{"a"}, {0}}, .groupNoise = true, .groupBackground = true}),
+              "tiles; sums; light group 00; light group 00 noise; light group 00 background; ");
+}
+
+TEST(Planes, HaveTheIdentityOfTheirLayers) {
+    LayerOptions layers = {.aovs = {.depth = true, .noise = true}};
+    const auto first = PlanesOf(MakeFilm(layers));
+    layers.aovs.throughSpecular = true;
+    const auto through = PlanesOf(MakeFilm(layers));
+    EXPECT_EQ(first.at("noise"), through.at("noise"));
+    EXPECT_NE(first.at("depth and position"), through.at("depth and position"));
+}
+
+TEST(Layers, AskForFirstHitsWhereOneOfThemDoes) {
+    EXPECT_FALSE(Layers(kRegion, {}).NeedFirstHits());
+    EXPECT_TRUE(Layers(kRegion, {}).IsEmpty());
+    EXPECT_FALSE(Layers(kRegion, {.aovs = {.noise = true}}).NeedFirstHits());
+    EXPECT_FALSE(Layers(kRegion, {.aovs = {.noise = true}}).IsEmpty());
+    EXPECT_TRUE(Layers(kRegion, {.aovs = {.depth = true, .noise = true}}).NeedFirstHits());
 }
 
 TEST(Planes, AreNotReadFromTooFewBytes) {
@@ -109,7 +129,7 @@ TEST(Planes, AreNotReadFromTooFewBytes) {
     std::vector<std::byte> bytes = planes.Bytes(kTile);
     bytes.pop_back();
     StateReader reader(bytes);
-    EXPECT_THROW(GetPlanes(&reader, kTile, &planes.film, planes.TheLayers()), std::runtime_error);
+    EXPECT_THROW(GetPlanes(&reader, kTile, &planes.film), std::runtime_error);
 }
 
 }  // namespace

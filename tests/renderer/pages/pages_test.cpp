@@ -7,13 +7,23 @@
 namespace lull {
 namespace {
 
-TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
-    const std::string page = MakePage({{"title", "x"}});
-    for (const char* name :
-         {"page.css", "page.js", "format.js", "save.js", "charts.js", "viewer.js", "tables.js",
-          "bench.js", "sentence.js", "uPlot.iife.min.js", "uPlot.min.css"}) {
+// Returns the page of a render of this scene.
+std::string PageOf(const std::string& scene) {
+    Provenance provenance;
+    provenance.scene = scene;
+    return MakeRenderPage(provenance, {}, Film({{0, 0}, {1, 1}}), {}, {}, nullptr);
+}
+
+TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
+    const std::string page = PageOf("x");
+    for (const char* name : {"page.css", "page.js", "viewer.js", "uPlot.iife.min.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
+    }
+    for (const char* name : {"comparison.css", "comparison.js", "bench.js", "study.js"}) {
+        ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
+        EXPECT_EQ(page.find(EmbeddedFile(name)), std::string::npos)
+            << name << " is the laboratory's";
     }
     EXPECT_EQ(EmbeddedFile("no such file"), "");
     EXPECT_TRUE(
@@ -21,13 +31,12 @@ TEST(MakePage, HoldsAllFilesAndNeedsNoOther) {
     for (const char* reaching :
          {"src=\"http", "href=\"http", "@import", "url(", "fetch(", "import("})
         EXPECT_EQ(page.find(reaching), std::string::npos) << reaching;
-    for (const char* name : {"page.css", "page.js", "data"})
-        EXPECT_FALSE(Contains(page, std::string("{{") + name + "}}"));
+    EXPECT_FALSE(Contains(page, ".js}}") || Contains(page, ".css}}") || Contains(page, "{{data}}"));
 }
 
-TEST(MakePage, CannotBeBrokenByItsData) {
+TEST(FillPage, CannotBeBrokenByItsData) {
     const std::string evil = "</script><script>alert(1)</script><!-- {{page.js}} \xff";
-    const std::string page = MakePage({{"title", evil}});
+    const std::string page = FillPage("page.html", {{"data", JsonForScript({{"title", evil}})}});
     EXPECT_FALSE(Contains(page, "alert(1)</script>"));
     const std::string title = DataOf(page)["title"];
     EXPECT_TRUE(title.starts_with("</script><script>alert(1)</script><!-- {{page.js}} "));

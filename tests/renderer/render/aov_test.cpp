@@ -5,6 +5,7 @@
 
 #include "renderer/render/checkpoint.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/film/add_sample.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull::aov_test {
@@ -16,11 +17,11 @@ const std::vector<std::string> kLayers = {"albedo", "normal",   "depth", "positi
 
 struct Rendered {
     Film film;
-    AovFilm aovs;
     RenderSetup options;
     RenderResult result;
 
-    Rendered() : film(kRegion), aovs(kRegion, ParseAovs(kLayers)) {
+    explicit Rendered(const AovSet& aovs = ParseAovs(kLayers))
+        : film(kRegion, {.layers = {.aovs = aovs}}) {
         options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
         options.sampler = SamplerKind::Random;
         options.threads = 1;
@@ -29,7 +30,6 @@ struct Rendered {
         };
         options.source = SyntheticSample;
         options.film = &film;
-        options.layers = {.aovs = &aovs};
     }
     void Run(const RenderState* interrupted = nullptr) {
         options.interrupted = interrupted;
@@ -38,17 +38,18 @@ struct Rendered {
 };
 
 // Adds the same samples one by one.
-AovFilm Expected(const Film& film, const AovSet& wanted) {
-    AovFilm aovs(kRegion, wanted);
+Film Expected(const Film& film) {
+    Film expected(kRegion, {.layers = film.layers.Options()});
     Sampler sampler(SamplerKind::Random, 0);
     for (int y = kRegion.min.y(); y < kRegion.max.y(); ++y)
         for (int x = kRegion.min.x(); x < kRegion.max.x(); ++x)
             for (uint32_t k = 0; k < film.At({x, y}).count; ++k) {
                 FirstHit hit;
                 const PathSample sample = SyntheticSample(sampler, {x, y}, k, {&hit});
-                aovs.At({x, y}).Add(hit, sample.radiance);
+                expected.layers.Add({x, y}, {k, sample.radiance, hit});
+                AddTo(&expected, {x, y}, sample.radiance, sample.rejected);
             }
-    return aovs;
+    return expected;
 }
 
 TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
@@ -57,7 +58,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
         render.options.threads = threads;
         render.Run();
         EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
-        EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
+        EXPECT_TRUE(SameSums(render.film, Expected(render.film)));
         Film without(kRegion);
         Render({.source = SyntheticSample, .film = &without}, render.options);
         EXPECT_TRUE(SamePixels(render.film, without));
@@ -66,9 +67,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
 
 TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
     for (const bool withDepth : {false, true}) {
-        Rendered render;
-        AovFilm aovs(kRegion, {.depth = withDepth, .noise = true});
-        render.options.layers = {.aovs = &aovs};
+        Rendered render({.depth = withDepth, .noise = true});
         render.options.schedule.cap = 6;
         int64_t asked = 0;
         render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
@@ -78,7 +77,7 @@ TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
         };
         render.Run();
         EXPECT_EQ(asked, withDepth ? render.film.SampleCount() : 0);
-        EXPECT_GT(aovs.At(kRegion.min).squares, 0);
+        EXPECT_GT(render.film.layers.Find<SquareLayer>()->At(kRegion.min), 0);
     }
 }
 
@@ -97,7 +96,7 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     render.Run();
     EXPECT_TRUE(render.result.timeUp);
     EXPECT_LT(render.film.SampleCount(), taken);  // some were undone
-    EXPECT_TRUE(SameLayers(render.aovs, Expected(render.film, render.aovs.Wanted())));
+    EXPECT_TRUE(SameSums(render.film, Expected(render.film)));
 }
 
 TEST(Aovs, GoOnFromCheckpoints) {
@@ -117,31 +116,41 @@ TEST(Aovs, GoOnFromCheckpoints) {
         };
         first.options.isCancelled = [&] { return taken > 50001; };
         first.options.checkpoints.write = [&](const RenderState& s) {
-            WriteCheckpoint(path, identity, s, first.film, first.options.layers);
+            WriteCheckpoint(path, identity, s, first.film);
         };
         first.options.checkpoints.interval = 1e6;
         first.Run();
         EXPECT_TRUE(first.result.cancelled);
     }
     Rendered second;
-    state = ReadCheckpoint(path, identity, &second.film, second.options.layers);
+    state = ReadCheckpoint(path, identity, &second.film);
     second.Run(&state);
-    EXPECT_TRUE(SamePixels(second.film, whole.film));
-    EXPECT_TRUE(SameLayers(second.aovs, whole.aovs));
-
-    // A render without layers goes on from it too, but not the other way round.
-    Film film(kRegion);
-    state = ReadCheckpoint(path, identity, &film);
-    WriteCheckpoint(path, identity, state, film);
-    Rendered third;
-    EXPECT_THROW(ReadCheckpoint(path, identity, &third.film, third.options.layers), Error);
+    EXPECT_TRUE(SameSums(second.film, whole.film));
 }
 
-TEST(Aovs, OfAnotherRegionAreRefused) {
-    Rendered render;
-    AovFilm other({{0, 0}, {1, 1}}, render.aovs.Wanted());
-    render.options.layers.aovs = &other;
-    EXPECT_THROW(render.Run(), std::invalid_argument);
+// Those that a render asks for must be in the checkpoint; others there are left out.
+TEST(Aovs, CanBeLeftOutAfterACheckpoint) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("c.h5");
+    const RenderIdentity identity = {{"scene", "a"}};
+    Rendered first, fewer({.depth = true, .noise = true});
+    first.options.schedule.cap = 12;
+    first.options.checkpoints = {
+        [&](const RenderState& s) { WriteCheckpoint(path, identity, s, first.film); }, 1e6, true};
+    first.Run();
+    const RenderState state = ReadCheckpoint(path, identity, &fewer.film);
+    EXPECT_TRUE(SameSums(fewer.film, Expected(fewer.film)));
+    EXPECT_EQ(fewer.film.SampleCount(), first.film.SampleCount());
+
+    WriteCheckpoint(path, identity, state, fewer.film);
+    for (const AovSet& more : {AovSet{.albedo = true}, AovSet{.alpha = true}})
+        EXPECT_TRUE(Contains(ErrorOf([&] {
+                                 Rendered other(more);
+                                 ReadCheckpoint(path, identity, &other.film);
+                             }),
+                             "it was written without the "));
+    Rendered through({.depth = true, .throughSpecular = true});
+    EXPECT_THROW(ReadCheckpoint(path, identity, &through.film), Error);
 }
 
 }  // namespace

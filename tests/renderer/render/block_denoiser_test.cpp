@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/film/layers.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -30,28 +29,25 @@ PathSample OneOfTwoLamps(Sampler& sampler, const Vec2i& pixel, uint32_t index,
 
 // Renders by the rule `denoised`; returns the samples that the block took.
 int SppOf(bool withGroups) {
-    Film film(kRegion, {.grid = {.blockSize = 40, .tileSize = 8}});
-    FeatureFilm features(kRegion);
-    LightGroupFilm lights(kRegion, {{"a", "b"}, {0, 1}}, {.forDenoiser = true});
+    LayerOptions layers = {.features = true, .groupNoise = true};
+    if (withGroups) layers.groups = {{"a", "b"}, {0, 1}};
+    Film film(kRegion, {.grid = {.blockSize = 40, .tileSize = 8}, .layers = layers});
     RenderOptions options;
     options.sampler = SamplerKind::Random;
     options.schedule = {.blockSize = 40, .passLength = 20, .cap = 640};
     options.threads = 2;
     const auto denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(kRegion, options.schedule));
-    denoiser->Show(&film, &features, withGroups ? &lights : nullptr);
+    denoiser->Show(&film);
     options.makeCriterion = CriteriaOf(
         ParseRule("denoised:1", {.passSpp = 20,
                                  .blockCount = 1,
                                  .cap = 640,
                                  .measures = {{kDenoisedRuleName, MeasureOf(denoiser)}}}));
-    const RenderResult result =
-        Render({.source = OneOfTwoLamps,
-                .film = &film,
-                .layers = {.features = &features, .lights = withGroups ? &lights : nullptr}},
-               options);
+    const RenderResult result = Render({.source = OneOfTwoLamps, .film = &film}, options);
+    const auto* lights = film.layers.Find<LightGroupLayer>();
     for (int y = 0; y < 40 && withGroups; ++y)
         for (int x = 0; x < 40; ++x) {
-            const FilmPixel a = lights.At(0, {x, y}, 1), b = lights.At(1, {x, y}, 1);
+            const FilmPixel a = lights->At(0, {x, y}, 1), b = lights->At(1, {x, y}, 1);
             EXPECT_EQ(a.sum[0] + b.sum[0], film.At({x, y}).sum[0]);
             EXPECT_EQ(a.halfSum[0] + b.halfSum[0], film.At({x, y}).halfSum[0]);
         }

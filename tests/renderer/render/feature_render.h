@@ -1,7 +1,6 @@
 // A render without a scene that keeps the inputs of a denoiser.
 #pragma once
 
-#include "renderer/film/layers.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
@@ -9,8 +8,7 @@ namespace lull {
 inline const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
 
 struct FeatureRender {
-    Film film{kPictureRegion};
-    FeatureFilm features{kPictureRegion};
+    Film film{kPictureRegion, {.layers = {.features = true}}};
 
     explicit FeatureRender(int threads, int spp = 36) {
         RenderOptions options;
@@ -19,8 +17,7 @@ struct FeatureRender {
         options.makeCriterion = [](const BlockInfo&) {
             return std::make_unique<ScriptedCriterion>(1000);
         };
-        Render({.source = SyntheticSample, .film = &film, .layers = {.features = &features}},
-               options);
+        Render({.source = SyntheticSample, .film = &film}, options);
     }
 };
 

@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/film/layers.h"
 #include "tests/renderer/render/feature_render.h"
 
 namespace lull {
 namespace {
 
-TEST(FeatureFilm, IsTheSameForAnyThreads) {
+TEST(Features, IsTheSameForAnyThreads) {
     const FeatureRender one(1), three(3);
-    EXPECT_EQ(one.features.Pixels(), three.features.Pixels());
+    EXPECT_TRUE(SameSums(one.film, three.film));
     // The film beside it is what it is without.
     Film film(kPictureRegion);
     RenderOptions options;
@@ -24,27 +23,25 @@ TEST(FeatureFilm, IsTheSameForAnyThreads) {
     EXPECT_TRUE(SamePixels(one.film, film));
 }
 
-TEST(FeatureFilm, GoesThroughCheckpoints) {
+TEST(Features, GoesThroughCheckpoints) {
     const TemporaryDirectory directory;
     const std::string path = directory.File("c.h5");
     FeatureRender render(1);
     RenderState state;
     state.blocks.push_back({.block = {.pixels = kPictureRegion}, .decisions = {}});
     state.criteria.resize(1);
-    WriteCheckpoint(path, {{"seed", "1"}}, state, render.film, {.features = &render.features});
-    Film film(kPictureRegion);
-    FeatureFilm features(kPictureRegion);
-    ReadCheckpoint(path, {{"seed", "1"}}, &film, {.features = &features});
-    EXPECT_TRUE(SamePixels(film, render.film));
-    EXPECT_EQ(features.Pixels(), render.features.Pixels());
-
     WriteCheckpoint(path, {{"seed", "1"}}, state, render.film);
-    EXPECT_THROW(ReadCheckpoint(path, {{"seed", "1"}}, &film, {.features = &features}), Error);
+    Film film(kPictureRegion, {.layers = {.features = true}});
+    ReadCheckpoint(path, {{"seed", "1"}}, &film);
+    EXPECT_TRUE(SameSums(film, render.film));
+
+    WriteCheckpoint(path, {{"seed", "1"}}, state, Film(kPictureRegion));
+    EXPECT_THROW(ReadCheckpoint(path, {{"seed", "1"}}, &film), Error);
 }
 
 TEST(PictureOf, HasBothHalvesOfTheMean) {
     const FeatureRender render(1);
-    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+    const NoisyPicture picture = PictureOf(render.film, kPictureRegion);
     ASSERT_EQ(picture.colour.a.width, kPictureRegion.Width());
     for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 60; ++x) {
@@ -64,7 +61,7 @@ TEST(PictureOf, HasBothHalvesOfTheMean) {
 TEST(PictureOf, SplitsPixelsWithFewSamplesAsAChessboard) {
     for (const int spp : {1, 3}) {
         const FeatureRender render(1, spp);
-        const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+        const NoisyPicture picture = PictureOf(render.film, kPictureRegion);
         for (const Vec2i& p : {Vec2i(20, 20), Vec2i(21, 20)}) {
             const auto meanAt = [&](int x, int y) {
                 return render.film.At(kPictureRegion.min + Vec2i(x, y)).Mean()[1];
@@ -84,10 +81,9 @@ TEST(PictureOf, SplitsPixelsWithFewSamplesAsAChessboard) {
 }
 
 TEST(PictureOf, HasTheFirstLookWhereThereAreNoSamples) {
-    Film film(kPictureRegion);
-    const FeatureFilm features(kPictureRegion);
+    Film film(kPictureRegion, {.layers = {.features = true}});
     film.SetFirstLook({1000, {Rgb(1, 2, 3)}});
-    const NoisyPicture picture = PictureOf(film, features, kPictureRegion);
+    const NoisyPicture picture = PictureOf(film, kPictureRegion);
     for (const Planes* half : {&picture.colour.a, &picture.colour.b})
         for (int c = 0; c < 3; ++c) EXPECT_EQ(half->Row(c, 7)[9], float(c + 1));
 }

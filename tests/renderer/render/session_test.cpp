@@ -42,7 +42,7 @@ SessionOptions OptionsFor(const std::string& checkpoint) {
         return std::make_unique<ScriptedCriterion>(40 + 20 * block.index);
     };
     options.film.grid = GridOf(options.render.schedule);
-    options.aovs = {.albedo = true, .depth = true, .noise = true};
+    options.film.layers.aovs = {.albedo = true, .depth = true, .noise = true};
     options.guide.mode = GuideMode::On;
     options.checkpoint = {.file = checkpoint, .interval = 1e6, .resume = true};
     options.identity = {{"scene", "box"}};
@@ -85,8 +85,7 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
         EXPECT_TRUE(said.warnings.empty());
         EXPECT_EQ(said.learning.size(), 1u);
         if (!isDone) continue;
-        EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm()));
-        EXPECT_TRUE(SameLayers(*session.Aovs(), *whole.Aovs()));
+        EXPECT_TRUE(SameSums(session.TheFilm(), whole.TheFilm()));
     }
     EXPECT_GT(interruptions, 2);
     EXPECT_EQ(resumed, interruptions);
@@ -101,7 +100,7 @@ TEST(Session, RefusesCheckpointsOfOtherLayers) {
     Session(*scene, kBoxRegion, options).Run();
     Session same(*scene, kBoxRegion, options);
     EXPECT_NO_THROW(same.Resume());
-    options.aovs.depth = false;
+    options.film.layers.aovs.object = true;
     Session other(*scene, kBoxRegion, options);
     EXPECT_THROW(other.Resume(), Error);
 }
@@ -110,37 +109,37 @@ TEST(Session, TakesLightGroupsUpAgain) {
     const auto scene = MakeBox();
     const TemporaryDirectory directory;
     SessionOptions options = OptionsFor("");
-    options.lightGroups = {{"lamp", "rest"}, {0}};
-    options.lights.forDenoiser = true;
+    options.film.layers.groups = {{"lamp", "rest"}, {0}};
+    options.film.layers.groupNoise = true;
     Session whole(*scene, kBoxRegion, options);
     whole.Run();
-    const auto bytesOf = [](Session& session) {
-        StateWriter writer;
-        PutPlanes(session.TheFilm(), session.Context().layers, kBoxRegion, &writer);
-        return std::move(writer.bytes);
-    };
     options.checkpoint.file = directory.File("c.h5");
     int left = 15;
     options.render.isCancelled = [&] { return left-- <= 0; };
     EXPECT_TRUE(Session(*scene, kBoxRegion, options).Run().cancelled);
     options.render.isCancelled = nullptr;
     SessionOptions others = options;
-    others.lightGroups.ofLight = {1};
+    others.film.layers.groups.ofLight = {1};
     Session other(*scene, kBoxRegion, others), same(*scene, kBoxRegion, options);
     EXPECT_THROW(other.Resume(), Error);
     same.Resume();
     EXPECT_FALSE(same.Run().cancelled);
-    EXPECT_EQ(bytesOf(same), bytesOf(whole));
+    EXPECT_TRUE(SameSums(same.TheFilm(), whole.TheFilm()));
     const FilmPixel pixel = same.TheFilm().At({16, 20});
     EXPECT_GT(pixel.sum[0], 0);
-    EXPECT_EQ(same.Lights()->At(0, {16, 20}, pixel.count).sum, pixel.sum);
-    EXPECT_EQ(same.Lights()->At(0, {16, 20}, pixel.count).halfSum, pixel.halfSum);
+    const FilmPixel lamp =
+        same.TheFilm().layers.Find<LightGroupLayer>()->At(0, {16, 20}, pixel.count);
+    EXPECT_EQ(lamp.sum, pixel.sum);
+    EXPECT_EQ(lamp.halfSum, pixel.halfSum);
 }
 
 TEST(Session, CountsTheBytesOfLightGroups) {
-    EXPECT_EQ(BytesOfLights(3, {}), 3 * 48);
-    EXPECT_EQ(BytesOfLights(3, {.forDenoiser = true}), 3 * 80);
-    EXPECT_EQ(BytesOfLights(3, {.forDenoiser = true, .withBackground = true}), 3 * 104);
+    LayerOptions layers = {.groups = {{"a", "b", "rest"}, {}}};
+    EXPECT_EQ(BytesOfLayers(layers), 3 * 48);
+    layers.groupNoise = true;
+    EXPECT_EQ(BytesOfLayers(layers), 3 * 80);
+    layers.groupBackground = true;
+    EXPECT_EQ(BytesOfLayers(layers), 3 * 104);
 }
 
 // A disk stays full for more than one attempt.

@@ -45,8 +45,17 @@ inline bool SamePixels(const Film& a, const Film& b) {
     return a.RejectedCount() == b.RejectedCount();
 }
 
-inline bool SameLayers(const AovFilm& a, const AovFilm& b) {
-    return std::ranges::equal(a.Pixels(), b.Pixels());
+// Returns whether the sums of their layers are, too, however the films are cut into tiles.
+inline bool SameSums(const Film& a, const Film& b) {
+    const auto layersOf = [](const Film& film) {
+        StateWriter writer;
+        film.layers.ForEach([&]<typename Kind>(const Kind& kind) {
+            Kind::ForEachPlane(
+                kind, [&](const char*, const auto& plane) { plane.Put(film.Region(), &writer); });
+        });
+        return std::move(writer.bytes);
+    };
+    return SamePixels(a, b) && PlanesOf(a) == PlanesOf(b) && layersOf(a) == layersOf(b);
 }
 
 // Stops at a given spp, and records its views.

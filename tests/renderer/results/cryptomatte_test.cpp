@@ -31,18 +31,18 @@ TEST(Cryptomatte, MakesIdsThatAreUsualFloats) {
 }
 
 TEST(Cryptomatte, RanksSharesOfNames) {
-    MatteFilm film({{0, 0}, {1, 1}}, true);
+    MatteLayer mattes({{0, 0}, {1, 1}}, {.aovs = {.cryptomatte = true}});
     const auto add = [&](uint32_t object, int count) {
         for (int i = 0; i < count; ++i)
-            film.Add({0, 0}, {.object = object, .found = object > 0}, Rgb::Zero());
+            mattes.Add({0, 0}, {.hit = {.object = object, .found = object > 0}});
     };
     add(1, 2);
     add(2, 1);
     add(3, 3);
     add(0, 2);
     // The first two are parts of one thing.
-    const ExtraLayers layers =
-        MakeCryptomatte("CryptoObject", film, &CryptoPixel::objects,
+    const LayerChannels layers =
+        MakeCryptomatte("CryptoObject", mattes, &CryptoPixel::objects,
                         [](uint32_t n) { return n == 3 ? "a \"b\"\xff" : "whole"; });
     ASSERT_EQ(layers.channels.size(), 12u);
     EXPECT_EQ(layers.channels[0].name, "CryptoObject00.R");

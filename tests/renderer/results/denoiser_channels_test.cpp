@@ -12,11 +12,11 @@ namespace {
 
 TEST(HalfChannels, AreReadAsTheyWere) {
     const FeatureRender render(1);
-    const NoisyPicture picture = PictureOf(render.film, render.features, kPictureRegion);
+    const NoisyPicture picture = PictureOf(render.film, kPictureRegion);
     ExrImage exr;
     exr.width = 60;
     exr.height = 40;
-    exr.channels = MakeHalfChannels(render.film, render.features, kPictureRegion);
+    exr.channels = MakeHalfChannels(render.film, kPictureRegion);
     const NoisyPicture again = ReadPicture(exr, "a.exr");
     EXPECT_EQ(again.colour.a.values, picture.colour.a.values);
     EXPECT_EQ(again.features.values, picture.features.values);

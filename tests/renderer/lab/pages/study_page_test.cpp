@@ -21,9 +21,9 @@ Study TwoBlocks() {
 TEST(MakeStudyPage, NeedsNothingElseAndAsksForNothing) {
     const std::string page = MakeStudyPage(TwoBlocks(), {});
     for (const char* name :
-         {"judge.css", "random.js", "adjust.js", "quest.js", "staircase.js", "session.js",
+         {"study.css", "random.js", "adjust.js", "quest.js", "staircase.js", "session.js",
           "pictures.js", "adjust_view.js", "staircase_view.js", "practice.js", "texts.js", "fit.js",
-          "screens.js", "check.js", "judge.js", "format.js"}) {
+          "screens.js", "check.js", "study.js", "format.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_TRUE(Contains(page, std::string(EmbeddedFile(name)))) << name;
     }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "renderer/render/guide_learning.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/messages.h"
@@ -78,7 +79,6 @@ class QueuePeers final : public Peers {
 // What a render came to at rank 0.
 struct Shared {
     std::unique_ptr<Film> film;
-    std::unique_ptr<AovFilm> layers;
     RenderResult result;
     RenderState state;  // the last that a checkpoint was shown
     int64_t bytes = 0;
@@ -118,20 +118,19 @@ Shared RenderShared(int ranks, const Change& change = {}, const Shared* before =
         options.threads = ranks + 1;
         if (rank == 0) options.checkpoints.write = [&](const RenderState& s) { shared.state = s; };
         if (change) change(&options, rank);
-        auto film = std::make_unique<Film>(kImage, FilmOptions{.grid = GridOf(options.schedule)});
-        auto layers = std::make_unique<AovFilm>(kImage, AovSet{.depth = true});
+        auto film = std::make_unique<Film>(
+            kImage, FilmOptions{.grid = GridOf(options.schedule),
+                                .withSpreads = options.light != nullptr,
+                                .layers = {.aovs = {.depth = withLayers, .object = withLayers}}});
         if (before && rank == 0) {
             *film = *before->film;
-            *layers = *before->layers;
             options.interrupted = &before->state;
         }
         options.source = sourceOf(rank);
         options.film = film.get();
-        if (withLayers) options.layers = {.aovs = layers.get()};
         RenderResult result = Render(options, options);
         if (rank > 0) return;
         shared.film = std::move(film);
-        shared.layers = std::move(layers);
         shared.result = std::move(result);
     };
     std::vector<std::thread> others;
@@ -371,7 +370,7 @@ Shared RenderLayers(int ranks, const Change& change = {}, const Shared* before =
 
 void ExpectSameLayers(const Shared& shared, const Shared& reference, int ranks) {
     EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
-    EXPECT_TRUE(SameLayers(*shared.layers, *reference.layers)) << ranks;
+    EXPECT_TRUE(SameSums(*shared.film, *reference.film)) << ranks;
     EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
 }
 
@@ -485,7 +484,7 @@ TEST(Ranks, UndoLayers) {
         undone = timed.film->SampleCount() < taken;
         const Shared again = RenderLayers(0, [&](RenderSetup* o, int) { StopAs(timed.result, o); });
         EXPECT_TRUE(SamePixels(*timed.film, *again.film));
-        EXPECT_TRUE(SameLayers(*timed.layers, *again.layers));
+        EXPECT_TRUE(SameSums(*timed.film, *again.film));
     }
     EXPECT_TRUE(undone);
 }
@@ -544,6 +543,63 @@ TEST(Ranks, LearnTheSame) {
     const Shared rest = render(3, &part, &learned);
     EXPECT_FALSE(rest.result.cancelled);
     EXPECT_TRUE(SamePixels(*rest.film, *reference.film));
+}
+
+// A ball under a lamp, seen from outside.
+std::unique_ptr<const Scene> MakeLamp() {
+    return SceneOf(R"(
+Integrator "bdpt" "integer maxdepth" [3]
+LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [60]
+Film "image" "integer xresolution" [80] "integer yresolution" [60]
+WorldBegin
+LightSource "infinite" "rgb L" [.2 .3 .4]
+LightSource "point" "point from" [1 2 -2] "rgb I" [3 3 3]
+Shape "sphere" "float radius" [1]
+WorldEnd
+)");
+}
+
+// Each traces a part of the light of a round; also where one of them has been given up in a round,
+// or while light is traced, and where the render goes on from a checkpoint within a round.
+TEST(Ranks, ShareLightPaths) {
+    const auto scene = MakeLamp();
+    const Film whole(kImage);
+    const auto render = [&](int ranks, const Shared* before = nullptr,
+                            std::vector<std::byte>* learned = nullptr, const Habits& how = {},
+                            int64_t tilesOfFirst = 1 << 30) {
+        std::vector<std::unique_ptr<LightRounds>> lights;
+        for (int rank = 0; rank < std::max(1, ranks); ++rank)
+            lights.push_back(std::make_unique<LightRounds>(*scene, whole, SamplerKind::Random, 0));
+        if (before) lights[0]->Take(*learned);
+        std::atomic<int64_t> left = tilesOfFirst;
+        const auto change = [&](RenderSetup* o, int rank) {
+            o->light = lights[size_t(rank)].get();
+            o->rankPatience = 1;
+            if (rank == 0) o->isCancelled = [&] { return --left < 0; };
+        };
+        Shared shared = RenderShared(
+            ranks, change, before,
+            [&](int rank) { return SamplesOf(*scene, *lights[size_t(rank)]); }, how, true);
+        if (learned) *learned = lights[0]->Save();
+        return shared;
+    };
+    const Shared reference = render(0);
+    ASSERT_FALSE(reference.result.cancelled);
+    for (const int ranks : {1, 2, 3})
+        EXPECT_TRUE(SameSums(*render(ranks).film, *reference.film)) << ranks;
+    for (const int messages : {0, 1, 2, 9})
+        EXPECT_TRUE(
+            SameSums(*render(3, nullptr, nullptr, {.sleeper = 1, .messagesBefore = messages}).film,
+                     *reference.film))
+            << messages;
+
+    std::vector<std::byte> learned;
+    Shared part = render(2, nullptr, &learned, {}, 400);
+    EXPECT_TRUE(part.result.cancelled);
+    const Shared rest = render(3, &part, &learned);
+    EXPECT_FALSE(rest.result.cancelled);
+    EXPECT_TRUE(SameSums(*rest.film, *reference.film));
 }
 
 }  // namespace

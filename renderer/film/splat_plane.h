@@ -13,24 +13,24 @@
 namespace lull {
 
 // Sums in steps of a unit that the plane's owner knows.
-struct LightPixel {
+struct SplatPixel {
     std::array<int64_t, 3> sum = {}, halfSum = {};
     int64_t squares = 0;  // of luminance
     uint64_t rejected = 0;
 };
 
 // The pixels of a film's region: 64 bytes a pixel.
-class LightPlane : public PixelPlane<LightPixel> {
+class SplatPlane : public PixelPlane<SplatPixel> {
   public:
     // Values are about as large as `unit`, > 0, W/(m^2 sr): differences below 2^-24 of it are lost,
     // and values above 2^26 times it are taken as that.
-    LightPlane(const PixelRect& region, double unit)
+    SplatPlane(const PixelRect& region, double unit)
         : PixelPlane(region), perStep(std::ldexp(unit, -kBits)), squaresPerStep(unit * unit / 64) {}
 
     // Adds to a pixel, from any thread.
     void Add(const Vec2i& p, const Rgb& radiance, bool inHalf) {
         constexpr double kMost = 0x1p50, kMostSquares = 0x1p54;
-        LightPixel& pixel = At(p);
+        SplatPixel& pixel = At(p);
         for (size_t c = 0; c < 3; ++c) {
             const auto steps = int64_t(std::llround(
                 std::clamp(double(radiance[Eigen::Index(c)]) / perStep, -kMost, kMost)));
@@ -49,13 +49,30 @@ class LightPlane : public PixelPlane<LightPixel> {
         std::atomic_ref(At(p).rejected).fetch_add(1, std::memory_order_relaxed);
     }
 
+    // Adds the sums that another plane of the same unit has put (PixelPlane::Put()).
+    void Merge(StateReader* reader) {
+        SplatPlane other(Region(), 1);
+        other.Get(Region(), reader);
+        for (int y = Region().min.y(); y < Region().max.y(); ++y)
+            for (int x = Region().min.x(); x < Region().max.x(); ++x) {
+                SplatPixel& pixel = At({x, y});
+                const SplatPixel& more = other.At({x, y});
+                for (size_t c = 0; c < 3; ++c) {
+                    pixel.sum[c] += more.sum[c];
+                    pixel.halfSum[c] += more.halfSum[c];
+                }
+                pixel.squares += more.squares;
+                pixel.rejected += more.rejected;
+            }
+    }
+
     // Light of a pixel, in W/(m^2 sr).
     struct Sums {
         std::array<double, 3> sum, halfSum;
         double squares;
     };
     Sums SumsAt(const Vec2i& p) const {
-        const LightPixel& pixel = At(p);
+        const SplatPixel& pixel = At(p);
         Sums sums;
         for (size_t c = 0; c < 3; ++c) {
             sums.sum[c] = double(pixel.sum[c]) * perStep;

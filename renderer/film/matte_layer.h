@@ -6,8 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "renderer/film/pixel_plane.h"
-#include "renderer/transport/first_hit.h"
+#include "renderer/film/layer.h"
 
 namespace lull {
 
@@ -60,22 +59,35 @@ struct CryptoPixel {
     }
 };
 
-// Alpha and mattes of a region.
-struct MatteFilm {
-    PixelPlane<AlphaPixel> alpha;
-    std::optional<PixelPlane<CryptoPixel>> crypto;  // where it is wanted
+class MatteLayer {
+  public:
+    static bool IsWanted(const LayerOptions& o) { return o.aovs.Mattes(); }
+    static int64_t Bytes(const LayerOptions& o) {
+        return int64_t(sizeof(AlphaPixel) + (o.aovs.cryptomatte ? sizeof(CryptoPixel) : 0));
+    }
+    MatteLayer(const PixelRect& region, const LayerOptions& o) : alpha(region) {
+        if (o.aovs.cryptomatte) crypto.emplace(region);
+    }
 
-    MatteFilm(const PixelRect& region, bool withCrypto) : alpha(region) {
-        if (withCrypto) crypto.emplace(region);
+    static bool NeedsFirstHits(const LayerOptions&) { return true; }
+    void Add(const Vec2i& p, const LayerSample& sample) {
+        alpha.At(p).Add(sample.hit, sample.radiance);
+        if (crypto) crypto->At(p).Add(sample.hit);
     }
-    // Returns the memory that a pixel takes.
-    static size_t BytesOfPixel(bool withCrypto) {
-        return sizeof(AlphaPixel) + (withCrypto ? sizeof(CryptoPixel) : 0);
+    static std::string Identity(const LayerOptions& o) { return o.HitsText(); }
+    template <typename Self, typename Visit>
+    static void ForEachPlane(Self& self, const Visit& visit) {
+        visit("alpha", self.alpha);
+        if (self.crypto) visit("cryptomatte", *self.crypto);
     }
-    void Add(const Vec2i& pixel, const FirstHit& hit, const Rgb& radiance) {
-        alpha.At(pixel).Add(hit, radiance);
-        if (crypto) crypto->At(pixel).Add(hit);
-    }
+
+    const AlphaPixel& AlphaAt(const Vec2i& p) const { return alpha.At(p); }
+    const PixelPlane<AlphaPixel>& Alpha() const { return alpha; }
+    const PixelPlane<CryptoPixel>& Crypto() const { return *crypto; }  // it is wanted
+
+  private:
+    PixelPlane<AlphaPixel> alpha;
+    std::optional<PixelPlane<CryptoPixel>> crypto;
 };
 
 }  // namespace lull

@@ -14,7 +14,7 @@
 #include "renderer/mpi/job.h"
 #include "stopping/base/parallel.h"
 
-namespace lull {
+namespace lull::record {
 
 namespace {
 
@@ -55,11 +55,12 @@ void AddOptions(CLI::App& app, Options* o) {
                    "Pictures of another renderer, their spp in the file names, not a scene")
         ->excludes(scene)
         ->type_name("DIR");
-    AddBlockOption(app, &o->render.schedule.blockSize);
+    AddBlockOption(app, &o->render.schedule.blockSize)->group("Stopping");
     app.add_option("--name", o->name,
                    "Name of the viewpoint, as in thresholds files [the name of the folder]")
         ->check(CheckViewpointName);
     app.add_option("-o,--output", o->output, "Write or extend this data set")
+        ->group(kCommonOptions)
         ->required()
         ->type_name("OUT.h5");
     app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
@@ -74,18 +75,21 @@ void AddOptions(CLI::App& app, Options* o) {
         ->type_name("X")
         ->needs(human);
     app.add_option("--cap", o->render.schedule.cap, "Record up to N spp")
+        ->group(kCommonOptions)
         ->check(Between(1, 1 << 24))
         ->type_name("N")
         ->capture_default_str();
     AddEstimatorOption(app, &o->render.estimator);
     app.add_option("--seed", o->render.seed, "Seed the random numbers")
+        ->group("Sampling")
         ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
     AddCheckpointInterval(app, &o->render.checkpoint);
-    app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors");
+    app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors")->group("Output");
     app.add_flag("--json-progress", o->render.jsonProgress,
-                 "Print events as JSON, one object per line, on stderr");
+                 "Print events as JSON, one object per line, on stderr")
+        ->group("Output");
     app.footer(kFooter);
 }
 
@@ -101,7 +105,7 @@ std::vector<int> LimitsOf(const Options& options, size_t blocks,
 }
 
 // There is no render that the ranks could share.
-ExitCode SayAllIsThere(const Options& options, Job* ranks) {
+ExitCode SayAllIsThere(const Options& options, MpiJob* ranks) {
     ranks->Begin("nothing");
     ranks->End();
     TalkOf(options.render)
@@ -135,7 +139,7 @@ ExitCode RecordFolder(const Options& options) {
     return kDone;
 }
 
-ExitCode RunDataset(Options options, Job* ranks) {
+ExitCode Run(Options options, MpiJob* ranks) {
     if (!options.images.empty()) return ranks->Rank() == 0 ? RecordFolder(options) : kDone;
     SetWording(options.render, ranks);
     CheckpointOptions& checkpoint = options.render.checkpoint;
@@ -173,7 +177,7 @@ ExitCode RunDataset(Options options, Job* ranks) {
 
 }  // namespace
 
-void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
+void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
     CLI::App* dataset = app.add_subcommand(
         "record", "Records block histories of a viewpoint, to train stopping rules.");
     auto options = std::make_shared<Options>();
@@ -183,11 +187,11 @@ void AddDatasetCommand(CLI::App& app, Command* command, Job* job) {
     AddOptions(*dataset, options.get());
     dataset->callback([=] {
         if (options->images.empty() && options->render.scene.file.empty())
-            throw CLI::ValidationError("dataset", "a SCENE is needed, or --images");
+            throw CLI::ValidationError("record", "a SCENE is needed, or --images");
         if (options->images.empty() && options->name.empty())
             throw CLI::ValidationError("--name", "is needed for a SCENE");
-        *command = [=] { return RunDataset(*options, job); };
+        *command = [=] { return Run(*options, job); };
     });
 }
 
-}  // namespace lull
+}  // namespace lull::record

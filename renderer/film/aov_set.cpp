@@ -1,6 +1,9 @@
-#include "renderer/film/aov_film.h"
+#include "renderer/film/aov_set.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 #include "renderer/base/error.h"
 

@@ -11,11 +11,11 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
-#include "renderer/lab/commands/judge_options.h"
+#include "renderer/lab/commands/study_options.h"
 #include "renderer/lab/viewpoints/study_render.h"
 #include "stopping/base/parallel.h"
 
-namespace lull {
+namespace lull::study {
 
 namespace {
 
@@ -27,7 +27,7 @@ void SayPower(int answers) {
         answers, octaves, std::exp2(octaves), 100 * (std::exp2(octaves / std::sqrt(10.0)) - 1));
 }
 
-void WriteStudy(const JudgeSettings& settings, const Study& study) {
+void WriteStudy(const Options& settings, const Study& study) {
     WriteFileAtomically(settings.output, MakeStudyPage(study, settings.study));
     if (!settings.render.quiet)
         Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
@@ -37,7 +37,7 @@ void WriteStudy(const JudgeSettings& settings, const Study& study) {
     fmt::print("{}\n", settings.output);
 }
 
-ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
+ExitCode MakeStudyOfImages(const Options& settings) {
     std::vector<NamedFile> pictures;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(settings.images, error))
@@ -52,7 +52,7 @@ ExitCode MakeStudyOfImages(const JudgeSettings& settings) {
 
 // Returns the levels of the ladder, which ends at the cap. Throws Error where they are too few, or
 // too many for the memory.
-std::vector<int> LevelsOf(const JudgeSettings& options, const ScheduleOptions& schedule,
+std::vector<int> LevelsOf(const Options& options, const ScheduleOptions& schedule,
                           const PixelRect& region) {
     const std::vector<int> levels =
         options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
@@ -93,7 +93,7 @@ struct Recording {
     }
 };
 
-ExitCode MakeStudyOfScene(JudgeSettings options) {
+ExitCode MakeStudyOfScene(Options options) {
     RenderSettings& settings = options.render;
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     settings.checkpoint =
@@ -126,7 +126,7 @@ ExitCode MakeStudyOfScene(JudgeSettings options) {
     return kDone;
 }
 
-ExitCode RunJudge(JudgeSettings settings) {
+ExitCode Run(Options settings) {
     if (settings.listsTexts) {
         fmt::print("{}", DefaultStudyTexts());
         return kDone;
@@ -140,15 +140,15 @@ ExitCode RunJudge(JudgeSettings settings) {
 
 }  // namespace
 
-void AddJudgeCommand(CLI::App& app, Command* command) {
-    CLI::App* judge = app.add_subcommand(
+void AddCommand(CLI::App& app, Command* command) {
+    CLI::App* study = app.add_subcommand(
         "study", "Makes a page on which observers mark visible noise, and collects their answers.");
-    auto settings = std::make_shared<JudgeSettings>();
-    AddJudgeOptions(*judge, settings.get());
-    judge->callback([=] {
-        CheckJudgeOptions(*settings);
-        *command = [=] { return RunJudge(*settings); };
+    auto settings = std::make_shared<Options>();
+    AddOptions(*study, settings.get());
+    study->callback([=] {
+        CheckOptions(*settings);
+        *command = [=] { return Run(*settings); };
     });
 }
 
-}  // namespace lull
+}  // namespace lull::study

@@ -4,9 +4,9 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/lab/pages/study_page.h"
 
-namespace lull {
+namespace lull::study {
 
-struct JudgeSettings {
+struct Options {
     RenderSettings render;
     StudySettings study;
     std::string textFile;              // that observers read first; empty: none
@@ -21,12 +21,12 @@ struct JudgeSettings {
 
 inline constexpr double kLadderRatio = 1.25;
 
-void AddJudgeOptions(CLI::App& app, JudgeSettings* settings);
+void AddOptions(CLI::App& app, Options* settings);
 
 // Throws CLI::ValidationError for options that do not fit together.
-void CheckJudgeOptions(const JudgeSettings& settings);
+void CheckOptions(const Options& settings);
 
 // Collects answers: the second half of the command. Throws Error.
-void CollectAnswers(const JudgeSettings& settings);
+void CollectAnswers(const Options& settings);
 
-}  // namespace lull
+}  // namespace lull::study

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets observers whose thresholds are known work through studies of `lull study` in a headless browser.
 
-judge_page.py LULL CHROMIUM SCENES: exits with 0 if what is collected is what they see, within a step
+study_page.py LULL CHROMIUM SCENES: exits with 0 if what is collected is what they see, within a step
 of the ladder, by mouse and by keys, over a reload, with repeats that differ as theirs do.
 """
 import csv
@@ -264,7 +264,7 @@ def check_collected(lull, folder, files):
     (folder / "answers" / "z-copy.json").write_text(text)
     (folder / "answers" / "foreign.json").write_text("[1, 2]")
     outcome = subprocess.run(
-        [lull, "judge", "--collect", *sorted(map(str, (folder / "answers").glob("*.json"))), "-o", "human.csv",
+        [lull, "study", "--collect", *sorted(map(str, (folder / "answers").glob("*.json"))), "-o", "human.csv",
          "--study", "study.html", "--report", "collected.html"], cwd=folder, check=True, capture_output=True, text=True)
     for name in ("cut.json: is not JSON", "z-copy.json: is a copy", "foreign.json: is not a file", "cy failed"):
         check(name in outcome.stderr, "named and left out: " + name)
@@ -296,7 +296,7 @@ def main(lull, chromium, scenes):
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory)
         (folder / "answers").mkdir()
-        make = [lull, "judge", f"{scenes}/cornell/scene.pbrt", "--resolution", "120x80", "--block", "40", "--cap", "240",
+        make = [lull, "study", f"{scenes}/cornell/scene.pbrt", "--resolution", "120x80", "--block", "40", "--cap", "240",
                 "--catches", "0.3", "--repeats", "0.3", "--quiet"]
         subprocess.run([*make, "-o", "study.html"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
         subprocess.run([*make, "--procedure", "staircase", "--answers", "12", "-o", "stairs.html"], cwd=folder,
@@ -316,19 +316,19 @@ def main(lull, chromium, scenes):
         subprocess.run([*make, "-o", "other.html", "--text", "texts.md", "--questions", "--descending", "0.5"],
                        cwd=folder, check=True, stdout=subprocess.DEVNULL)
         eve = in_another_way(browser, folder / "other.html", folder / "other")
-        subprocess.run([lull, "judge", "--collect", eve, "-o", "other.csv", "--quiet"], cwd=folder, check=True,
+        subprocess.run([lull, "study", "--collect", eve, "-o", "other.csv", "--quiet"], cwd=folder, check=True,
                        stdout=subprocess.DEVNULL)
         eve = rows(folder / "other.observers.csv")[0]
         check((eve["age"], eve["vision"], eve["tones"], eve["display_pixels"], float(eve["descending_octaves"]))
               == ("33", "good", "all", "1", 0), "what is known of an observer is in the table")
-        subprocess.run([lull, "judge", f"{scenes}/cornell/scene.pbrt", "--resolution", "800x800", "--pass", "1", "--cap",
+        subprocess.run([lull, "study", f"{scenes}/cornell/scene.pbrt", "--resolution", "800x800", "--pass", "1", "--cap",
                         "2", "-o", "large.html", "--quiet"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
         check_windows(browser, folder / "large.html")
 
         (folder / "staircase").mkdir()
         stairs = staircase(browser, folder / "stairs.html", folder / "staircase")
         guesses = guessing(browser, folder / "stairs.html", folder / "staircase")
-        subprocess.run([lull, "judge", "--collect", stairs, guesses, "-o", "stairs.csv", "--quiet"], cwd=folder,
+        subprocess.run([lull, "study", "--collect", stairs, guesses, "-o", "stairs.csv", "--quiet"], cwd=folder,
                        check=True, stdout=subprocess.DEVNULL)
         check(rows(folder / "stairs.observers.csv")[1]["reason"].startswith("failed"), "who guesses is left out")
         check(not (folder / "stairs.answers.csv").exists(), "staircases have no single answers")

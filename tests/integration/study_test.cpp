@@ -1,4 +1,4 @@
-// Makes studies and collects answers; the page itself is used in judge_page.py.
+// Makes studies and collects answers; the page itself is used in study_page.py.
 #include <gtest/gtest.h>
 
 #include "stopping/lab/recordings/dataset.h"
@@ -20,15 +20,15 @@ void WriteScene(const TemporaryDirectory& directory) {
     directory.Write("scene.pbrt", SceneText(kSphere));
 }
 
-TEST(Judge, RecordsWhatDatasetDoes) {
+TEST(Study, RecordsWhatRecordDoes) {
     const TemporaryDirectory directory;
     WriteScene(directory);
     const std::string same =
         " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet --estimator pbrt-v3 ";
     const Outcome judge =
-        ExpectSuccess(directory, "judge -o s.html --record a.h5 --sampler random" + same);
+        ExpectSuccess(directory, "study -o s.html --record a.h5 --sampler random" + same);
     EXPECT_TRUE(Contains(judge.out, "s.html\na.h5\n"));
-    ExpectSuccess(directory, "dataset -o b.h5" + same);
+    ExpectSuccess(directory, "record -o b.h5" + same);
     const ViewpointRecording a = ReadDataset(directory.File("a.h5")).at(0);
     const ViewpointRecording b = ReadDataset(directory.File("b.h5")).at(0);
     EXPECT_EQ(a.name, "room");
@@ -39,11 +39,11 @@ TEST(Judge, RecordsWhatDatasetDoes) {
     EXPECT_EQ(a.blocks.at(0).values, b.blocks.at(0).values);
 }
 
-TEST(Judge, GoesOnWhereItWasInterrupted) {
+TEST(Study, GoesOnWhereItWasInterrupted) {
     const TemporaryDirectory directory;
     WriteScene(directory);
     const std::string command =
-        "LULL judge scene.pbrt --resolution 80x80 --block 40 --cap 400 --threads 1 --quiet "
+        "LULL study scene.pbrt --resolution 80x80 --block 40 --cap 400 --threads 1 --quiet "
         "--checkpoint-interval 0.1 -o ";
     const Outcome interrupted =
         RunAndSignal(directory, command + "a.html", SIGINT, "a.html.checkpoint");
@@ -58,7 +58,7 @@ TEST(Judge, GoesOnWhereItWasInterrupted) {
     EXPECT_EQ(directory.CountFiles(), 3);  // the scene and two studies
 }
 
-TEST(Judge, TakesPicturesOfOtherRenderers) {
+TEST(Study, TakesPicturesOfOtherRenderers) {
     const TemporaryDirectory directory;
     WriteScene(directory);
     std::filesystem::create_directory(directory.path / "pictures");
@@ -68,9 +68,9 @@ TEST(Judge, TakesPicturesOfOtherRenderers) {
                                 directory.File(fmt::format("pictures/r-{}spp.png", spp)));
     }
     const Outcome own = RunLull(
-        directory, "judge scene.pbrt --cap 80 --levels 3 --block 10 --name x -o own.html --quiet");
+        directory, "study scene.pbrt --cap 80 --levels 3 --block 10 --name x -o own.html --quiet");
     const Outcome other =
-        RunLull(directory, "judge --images pictures --block 10 --name x -o other.html");
+        RunLull(directory, "study --images pictures --block 10 --name x -o other.html");
     ASSERT_EQ(own.exitCode, 0) << own.err;
     ASSERT_EQ(other.exitCode, 0) << other.err;
     EXPECT_TRUE(Contains(other.err, "6 blocks at 3 levels: 20, 40, 80 spp"));
@@ -82,7 +82,7 @@ TEST(Judge, TakesPicturesOfOtherRenderers) {
     EXPECT_EQ(pictures("own.html"), pictures("other.html"));
 }
 
-TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
+TEST(Study, CollectsThresholdsAndSaysWhoWasLeftOut) {
     const TemporaryDirectory directory;
     directory.Write("a.json", ExampleAnswers{.observer = R"(a, \"b\")", .session = "1"}.Text());
     const auto with = [](ExampleAnswers answers) { return answers.Text(); };
@@ -90,7 +90,7 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     directory.Write("c.json", with({.observer = "c", .session = "3", .failed = 3}));
     directory.Write("d.json", "{\"format\":");
     const Outcome outcome = ExpectSuccess(
-        directory, "judge --collect a.json b.json c.json d.json -o human.csv --report r.html");
+        directory, "study --collect a.json b.json c.json d.json -o human.csv --report r.html");
     EXPECT_EQ(outcome.out,
               "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
     EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));
@@ -109,23 +109,23 @@ TEST(Judge, CollectsThresholdsAndSaysWhoWasLeftOut) {
     EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);
 }
 
-TEST(Judge, RefusesWhatDoesNotFit) {
+TEST(Study, RefusesWhatDoesNotFit) {
     const TemporaryDirectory directory;
     WriteScene(directory);
     directory.Write("bad.json", "{}");
-    ExpectFailure(directory, "judge --collect bad.json -o human.csv", {"none of 1 files"});
-    ExpectFailure(directory, "judge --collect bad.json -o human.csv --study bad.json",
+    ExpectFailure(directory, "study --collect bad.json -o human.csv", {"none of 1 files"});
+    ExpectFailure(directory, "study --collect bad.json -o human.csv --study bad.json",
                   {"bad.json: not a page made by lull study"});
-    ExpectFailure(directory, "judge scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
-    ExpectFailure(directory, "judge scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
-    ExpectFailure(directory, "judge --images nowhere -o s.html", {"--images nowhere"});
-    ExpectFailure(directory, "judge scene.pbrt -o s.html --text none.md", {"none.md"});
-    ExpectFailure(directory, "judge scene.pbrt -o no/such/s.html", {"no/such"});
+    ExpectFailure(directory, "study scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
+    ExpectFailure(directory, "study scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
+    ExpectFailure(directory, "study --images nowhere -o s.html", {"--images nowhere"});
+    ExpectFailure(directory, "study scene.pbrt -o s.html --text none.md", {"none.md"});
+    ExpectFailure(directory, "study scene.pbrt -o no/such/s.html", {"no/such"});
     for (const char* usage :
-         {"judge -o s.html", "judge scene.pbrt", "judge scene.pbrt -o s.csv",
-          "judge scene.pbrt --images x -o s.html", "judge --images x --record d.h5 -o s.html",
-          "judge --collect bad.json -o s.html", "judge scene.pbrt -o s.html --report r.html",
-          "judge scene.pbrt -o s.html --procedure guess"})
+         {"study -o s.html", "study scene.pbrt", "study scene.pbrt -o s.csv",
+          "study scene.pbrt --images x -o s.html", "study --images x --record d.h5 -o s.html",
+          "study --collect bad.json -o s.html", "study scene.pbrt -o s.html --report r.html",
+          "study scene.pbrt -o s.html --procedure guess"})
         EXPECT_EQ(RunLull(directory, usage).exitCode, 2) << usage;
 }
 

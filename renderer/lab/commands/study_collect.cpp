@@ -7,12 +7,12 @@
 #include "renderer/base/say.h"
 #include "renderer/files/file_io.h"
 #include "renderer/files/outputs.h"
-#include "renderer/lab/commands/judge_options.h"
+#include "renderer/lab/commands/study_options.h"
 #include "renderer/lab/pages/collected_page.h"
 #include "stopping/lab/observers/agreement.h"
 #include "stopping/lab/observers/observer_tables.h"
 
-namespace lull {
+namespace lull::study {
 
 namespace {
 
@@ -67,7 +67,7 @@ std::string ThresholdsCsv(const Collected& collected) {
 
 }  // namespace
 
-void CollectAnswers(const JudgeSettings& settings) {
+void CollectAnswers(const Options& settings) {
     const std::string base = settings.output.substr(0, settings.output.rfind('.'));
     const std::string details = base + ".details.csv", observers = base + ".observers.csv";
     std::vector<NamedFile> inputs = {{"--study", settings.studyPage}};
@@ -108,4 +108,4 @@ void CollectAnswers(const JudgeSettings& settings) {
     for (const auto& [file, text] : files) fmt::print("{}\n", file);
 }
 
-}  // namespace lull
+}  // namespace lull::study

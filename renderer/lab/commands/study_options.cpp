@@ -1,12 +1,13 @@
-#include "renderer/lab/commands/judge_options.h"
+#include "renderer/lab/commands/study_options.h"
 
 #include <CLI/CLI.hpp>
 
 #include "renderer/commands/choice_option.h"
+#include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
-namespace lull {
+namespace lull::study {
 
 namespace {
 
@@ -71,7 +72,7 @@ void AddStudyOptions(CLI::App& app, StudySettings* s) {
 
 }  // namespace
 
-void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
+void AddOptions(CLI::App& app, Options* s) {
     AddRenderSettings(app, &s->render);
     app.get_option("SCENE")->required(false);
     app.add_option("--images", s->images,
@@ -80,6 +81,7 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     app.add_option("--collect", s->collect, "Collect these files of answers")
         ->type_name("ANSWERS.json ...");
     app.add_option("-o,--output", s->output, "The page to make, or the thresholds to write")
+        ->group(kCommonOptions)
         ->type_name("STUDY.html|HUMAN.csv");
     app.add_option("--name", s->name, "Name the viewpoint, as in thresholds files [the scene's]")
         ->check(CheckViewpointName);
@@ -109,11 +111,12 @@ void AddJudgeOptions(CLI::App& app, JudgeSettings* s) {
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
         ->type_name("STUDY.html");
     app.add_option("--report", s->report, "Write a page of the answers, with --collect")
+        ->group(kCommonOptions)
         ->type_name("PAGE.html");
     app.footer(kFooter);
 }
 
-void CheckJudgeOptions(const JudgeSettings& s) {
+void CheckOptions(const Options& s) {
     if (s.listsTexts) return;
     if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
     if (s.study.descending > 0 && s.study.procedure != StudyProcedure::Adjust)
@@ -133,4 +136,4 @@ void CheckJudgeOptions(const JudgeSettings& s) {
         Refuse("--report " + s.report + ": the report is a page, PAGE.html");
 }
 
-}  // namespace lull
+}  // namespace lull::study

@@ -1,4 +1,4 @@
-#include "renderer/film/matte_film.h"
+#include "renderer/film/matte_layer.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ FirstHit HitOf(uint32_t object, float weight = 1) {
     return {.object = object, .material = object + 10, .found = true, .weight = weight};
 }
 
-TEST(MatteFilm, CountsWhatIsCoveredByWeight) {
+TEST(MatteLayer, CountsWhatIsCoveredByWeight) {
     AlphaPixel pixel;
     EXPECT_EQ(pixel.Alpha(), 0);
     pixel.Add(HitOf(1, 2), Rgb(1, 1, 1));
@@ -23,7 +23,7 @@ TEST(MatteFilm, CountsWhatIsCoveredByWeight) {
     EXPECT_EQ(pixel.Alpha(), 1);
 }
 
-TEST(MatteFilm, SharesPixelsAmongObjects) {
+TEST(MatteLayer, SharesPixelsAmongObjects) {
     CryptoPixel pixel;
     for (const uint32_t object : {4u, 7u, 4u, 0u}) pixel.Add({.object = object, .material = 1});
     EXPECT_EQ(pixel.objects[0], (MatteShare{4, 2}));

@@ -1,0 +1,49 @@
+// Sums up the samples of a pixel.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "renderer/base/math.h"
+
+namespace lull {
+
+// Returns whether sample `index` belongs to the half on which noise is estimated: the bits at its
+// odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
+// and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
+inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
+
+// Returns how many of the samples 0 .. count - 1 are in the half.
+uint32_t HalfCount(uint32_t count);
+
+// Returns the luminance of a sum of colours, with the weights of base/color.h.
+inline double Luminance(const std::array<double, 3>& sum) {
+    return 0.212671 * sum[0] + 0.715160 * sum[1] + 0.072169 * sum[2];
+}
+
+// The sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
+// added to the running sums one by one, so that the sums are the same bits however the samples are
+// cut into passes.
+struct FilmPixel {
+    std::array<double, 3> sum = {}, halfSum = {};
+    uint32_t count = 0;
+    uint32_t rejected = 0;  // samples that were NaN, infinite or negative, and count as black
+
+    // Adds the sample of index `count`. The radiance must be finite.
+    void Add(const Rgb& radiance, bool wasRejected) {
+        const bool inHalf = InHalf(count);
+        for (int c = 0; c < 3; ++c) {
+            sum[c] += double(radiance[c]);
+            if (inHalf) halfSum[c] += double(radiance[c]);
+        }
+        ++count;
+        rejected += wasRejected;
+    }
+    // Return the mean of all samples, or of those in the half; without any, black, or the mean of
+    // all.
+    Rgb Mean() const;
+    Rgb HalfMean() const;
+};
+
+}  // namespace lull

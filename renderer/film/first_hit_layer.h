@@ -1,0 +1,131 @@
+// Sums up what the first hits of paths are, for AOVs and for the denoiser.
+#pragma once
+
+#include <optional>
+
+#include "renderer/film/film_pixel.h"
+#include "renderer/film/layer.h"
+
+namespace lull {
+
+// Sums of a pixel, added to in the order of the samples as FilmPixel is.
+
+// For the denoiser, by halves: albedo R, G, B, normal X, Y, Z, weighted by the pixel filter as the
+// image is, and one over the depth, which is 0 where nothing is met. Of the samples that are in the
+// half (InHalf()), and of the others.
+struct FeatureSums {
+    std::array<std::array<float, 7>, 2> halves = {};
+
+    void Add(const FirstHit& hit, bool inHalf) {
+        std::array<float, 7>& sum = halves[inHalf ? 0 : 1];
+        for (size_t c = 0; c < 3; ++c) {
+            sum[c] += hit.weight * hit.albedo[int(c)];
+            sum[3 + c] += hit.weight * hit.normal[int(c)];
+        }
+        if (hit.found && hit.depth > 0) sum[6] += 1 / std::max(hit.depth, 1e-12f);
+    }
+    bool operator==(const FeatureSums&) const = default;
+};
+
+// The same albedo and normal where there is no denoiser.
+struct SurfaceSums {
+    std::array<double, 3> albedo = {}, normal = {};
+
+    void Add(const FirstHit& hit) {
+        for (int c = 0; c < 3; ++c) {
+            albedo[size_t(c)] += double(hit.weight * hit.albedo[c]);
+            normal[size_t(c)] += double(hit.weight * hit.normal[c]);
+        }
+    }
+    bool operator==(const SurfaceSums&) const = default;
+};
+
+struct PlaceSums {
+    std::array<double, 3> position = {};
+    double depth = 0;
+    int64_t hits = 0;  // samples with a first hit
+
+    void Add(const FirstHit& hit) {
+        if (!hit.found) return;
+        ++hits;
+        depth += double(hit.depth);
+        for (int c = 0; c < 3; ++c) position[size_t(c)] += double(hit.position[c]);
+    }
+    bool operator==(const PlaceSums&) const = default;
+};
+
+// Not a sum: numbers cannot be averaged.
+struct NearestHit {
+    uint32_t object = 0, material = 0;  // of the sample nearest to the centre
+    float offset2 = kInfinity;          // its FirstHit::offset2
+
+    void Add(const FirstHit& hit) {
+        if (hit.offset2 < offset2) *this = {hit.object, hit.material, hit.offset2};
+    }
+    bool operator==(const NearestHit&) const = default;
+};
+
+class FirstHitLayer {
+  public:
+    static bool IsWanted(const LayerOptions& o) { return o.features || o.aovs.Hits(); }
+    static int64_t Bytes(const LayerOptions& o) {
+        return int64_t(
+            (o.features ? sizeof(FeatureSums) : 0) + (WantsSurface(o) ? sizeof(SurfaceSums) : 0) +
+            (WantsPlace(o) ? sizeof(PlaceSums) : 0) + (WantsNearest(o) ? sizeof(NearestHit) : 0));
+    }
+    FirstHitLayer(const PixelRect& region, const LayerOptions& o) {
+        if (o.features) features.emplace(region);
+        if (WantsSurface(o)) surface.emplace(region);
+        if (WantsPlace(o)) place.emplace(region);
+        if (WantsNearest(o)) nearest.emplace(region);
+    }
+
+    static bool NeedsFirstHits(const LayerOptions&) { return true; }
+    void Add(const Vec2i& p, const LayerSample& sample) {
+        if (features) features->At(p).Add(sample.hit, InHalf(sample.index));
+        if (surface) surface->At(p).Add(sample.hit);
+        if (place) place->At(p).Add(sample.hit);
+        if (nearest) nearest->At(p).Add(sample.hit);
+    }
+    static std::string Identity(const LayerOptions& o) { return o.HitsText(); }
+    template <typename Self, typename Visit>
+    static void ForEachPlane(Self& self, const Visit& visit) {
+        if (self.features) visit("features", *self.features);
+        if (self.surface) visit("albedo and normal", *self.surface);
+        if (self.place) visit("depth and position", *self.place);
+        if (self.nearest) visit("object and material", *self.nearest);
+    }
+    // Frees what the denoiser alone reads.
+    void ForgetFeatures(const LayerOptions& o) {
+        if (!o.aovs.albedo && !o.aovs.normal) features.reset();
+    }
+
+    // Return the sums of a pixel; those that are wanted are there.
+    SurfaceSums SurfaceAt(const Vec2i& p) const {
+        if (surface) return surface->At(p);
+        SurfaceSums sums;
+        for (const std::array<float, 7>& half : features->At(p).halves)
+            for (size_t c = 0; c < 3; ++c) {
+                sums.albedo[c] += double(half[c]);
+                sums.normal[c] += double(half[3 + c]);
+            }
+        return sums;
+    }
+    const FeatureSums& FeaturesAt(const Vec2i& p) const { return features->At(p); }
+    const PlaceSums& PlaceAt(const Vec2i& p) const { return place->At(p); }
+    const NearestHit& NearestAt(const Vec2i& p) const { return nearest->At(p); }
+
+  private:
+    static bool WantsSurface(const LayerOptions& o) {
+        return (o.aovs.albedo || o.aovs.normal) && !o.features;
+    }
+    static bool WantsPlace(const LayerOptions& o) { return o.aovs.depth || o.aovs.position; }
+    static bool WantsNearest(const LayerOptions& o) { return o.aovs.object || o.aovs.material; }
+
+    std::optional<PixelPlane<FeatureSums>> features;
+    std::optional<PixelPlane<SurfaceSums>> surface;
+    std::optional<PixelPlane<PlaceSums>> place;
+    std::optional<PixelPlane<NearestHit>> nearest;
+};
+
+}  // namespace lull

@@ -1,0 +1,229 @@
+#include "renderer/results/layer_channels.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "renderer/results/cryptomatte.h"
+#include "stopping/signals/lightness.h"
+
+namespace lull {
+
+namespace {
+
+using Sum = std::array<double, 3>;
+
+// Calls visit(i, p) for every pixel p, the i-th row by row.
+template <typename Visit>
+void ForEachPixel(const PixelRect& region, const Visit& visit) {
+    size_t i = 0;
+    for (int y = region.min.y(); y < region.max.y(); ++y)
+        for (int x = region.min.x(); x < region.max.x(); ++x) visit(i++, Vec2i(x, y));
+}
+
+// Makes a channel of `value(p)`.
+template <typename Value>
+ExrChannel MakeChannel(const std::string& name, const PixelRect& region, const Value& value) {
+    ExrChannel channel{.name = name, .values = std::vector<float>(size_t(region.Area()))};
+    ForEachPixel(region, [&](size_t i, const Vec2i& p) { channel.values[i] = float(value(p)); });
+    return channel;
+}
+
+// Names the numbers that occur, as JSON.
+std::string NamesOf(const FirstHitLayer& hits, uint32_t NearestHit::*number,
+                    const PixelRect& region, const std::function<std::string(uint32_t)>& name) {
+    std::set<uint32_t> numbers;
+    ForEachPixel(region,
+                 [&](size_t, const Vec2i& p) { numbers.insert(hits.NearestAt(p).*number); });
+    numbers.erase(0);
+    nlohmann::ordered_json names = nlohmann::ordered_json::object();
+    for (const uint32_t n : numbers) names[std::to_string(n)] = name(n);
+    return names.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+// Returns the standard error in lightness of a pixel whose mean luminance is `mean`.
+double Noise(double squares, double mean, double count) {
+    constexpr double kUnknown = 100;  // from black to white
+    if (count < 2) return kUnknown;
+    const double variance = std::max(0., squares / count - mean * mean) / (count - 1);
+    const double noise = LightnessAt(mean).slope * std::sqrt(variance);
+    return std::min(noise, double(std::numeric_limits<float>::max()));
+}
+
+// Returns the means of a group's samples; the first look of the film, where there are none, belongs
+// to the last group.
+std::vector<float> MeansOf(const LightGroupLayer& lights, int group, const Film& film) {
+    std::vector<float> rgb(size_t(film.Region().Area()) * 3);
+    ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
+        const FilmPixel pixel = lights.At(group, p, film.At(p).count);
+        const bool showsLook = pixel.count == 0 && group + 1 == lights.Count();
+        const Rgb mean = showsLook ? film.MeanAt(p) : pixel.Mean();
+        std::copy_n(mean.data(), 3, &rgb[3 * i]);
+    });
+    return rgb;
+}
+
+void LeaveOutBackground(const LightGroupLayer& lights, int group, const FinishedFilm& finished,
+                        std::vector<float>* rgb) {
+    const Film& film = finished.film;
+    const MatteLayer& mattes = *film.layers.Find<MatteLayer>();
+    ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
+        const FilmPixel pixel = lights.At(group, p, film.At(p).count);
+        const Sum& background = lights.BackgroundAt(group, p);
+        for (size_t c = 0; c < 3 && pixel.count > 0; ++c)
+            RemoveBackground(mattes.AlphaAt(p).covered, pixel.sum[c] / pixel.count,
+                             background[c] / pixel.count, finished.denoised != nullptr,
+                             &(*rgb)[3 * i + c]);
+    });
+}
+
+// Returns the text in UTF-8, with U+FFFD in place of other bytes and of NUL.
+std::string ReadableUtf8(const std::string& text) {
+    using nlohmann::json;
+    const std::string utf8 =
+        json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+    std::string clean;
+    for (const char c : utf8) clean += c == '\0' ? std::string("\xef\xbf\xbd") : std::string(1, c);
+    return clean;
+}
+
+// Returns the beginning of UTF-8 text, of up to `most` bytes, without part of a character.
+std::string Beginning(const std::string& text, size_t most) {
+    if (text.size() <= most) return text;
+    while (most > 0 && (text[most] & 0xc0) == 0x80) --most;
+    return text.substr(0, most);
+}
+
+// Returns names of layers that differ, in UTF-8: an EXR cuts those of channels off, silently.
+std::vector<std::string> LayerNames(const std::vector<std::string>& groups) {
+    constexpr size_t kLongest = 240;  // bytes; 255 with "light." and ".R"
+    std::vector<std::string> names;
+    for (const std::string& group : groups) {
+        const std::string whole = ReadableUtf8(group);
+        std::string name = whole;
+        bool isLong = whole.size() > kLongest;
+        for (int number = 1; isLong || std::ranges::count(names, name) > 0; ++number) {
+            const std::string end = "~" + std::to_string(number);
+            name = Beginning(whole, kLongest - end.size()) + end;
+            isLong = false;
+        }
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace
+
+void LayerChannels::Append(LayerChannels more) {
+    std::ranges::move(more.channels, std::back_inserter(channels));
+    attributes.merge(more.attributes);
+    if (!more.colours.empty()) colours = std::move(more.colours);
+}
+
+void RemoveBackground(double covered, double mean, double background, bool isDenoised,
+                      float* colour) {
+    if (covered == 0)
+        *colour = 0;
+    else if (isDenoised)
+        *colour *= mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
+    else
+        *colour -= float(background);
+}
+
+LayerChannels ChannelsOf(const FirstHitLayer& hits, const FinishedFilm& finished) {
+    const Film& film = finished.film;
+    const PixelRect& region = film.Region();
+    const AovSet& wanted = film.layers.Options().aovs;
+    LayerChannels made;
+    const auto add = [&](const std::string& name, const auto& value) {
+        made.channels.push_back(MakeChannel(name, region, value));
+    };
+    const auto addMeans = [&](const std::string& layer, const char* components, auto member) {
+        for (size_t c = 0; c < 3; ++c)
+            add(layer + "." + components[c], [&, c](const Vec2i& p) {
+                const uint32_t count = film.At(p).count;
+                return count > 0 ? (hits.SurfaceAt(p).*member)[c] / double(count) : 0.;
+            });
+    };
+    if (wanted.albedo) addMeans("albedo", "RGB", &SurfaceSums::albedo);
+    if (wanted.normal) addMeans("N", "XYZ", &SurfaceSums::normal);
+    if (wanted.depth)
+        add("Z", [&](const Vec2i& p) {
+            const PlaceSums& place = hits.PlaceAt(p);
+            return place.hits > 0 ? place.depth / double(place.hits) : double(kAovFarAway);
+        });
+    for (size_t c = 0; c < 3 && wanted.position; ++c)
+        add(std::string("P.") + "XYZ"[c], [&, c](const Vec2i& p) {
+            const PlaceSums& place = hits.PlaceAt(p);
+            return place.hits > 0 ? place.position[c] / double(place.hits) : 0.;
+        });
+    if (wanted.object) {
+        add("objectID", [&](const Vec2i& p) { return hits.NearestAt(p).object; });
+        made.attributes["objectNames"] =
+            NamesOf(hits, &NearestHit::object, region, finished.nameOfObject);
+    }
+    if (wanted.material) {
+        add("materialID", [&](const Vec2i& p) { return hits.NearestAt(p).material; });
+        made.attributes["materialNames"] =
+            NamesOf(hits, &NearestHit::material, region, finished.nameOfMaterial);
+    }
+    return made;
+}
+
+LayerChannels ChannelsOf(const SquareLayer& squares, const FinishedFilm& finished) {
+    const Film& film = finished.film;
+    LayerChannels made;
+    if (film.layers.Options().aovs.noise)
+        made.channels.push_back(MakeChannel("noise", film.Region(), [&](const Vec2i& p) {
+            return Noise(squares.At(p), double(Luminance(film.MeanAt(p))), film.At(p).count);
+        }));
+    return made;
+}
+
+LayerChannels ChannelsOf(const MatteLayer& mattes, const FinishedFilm& finished) {
+    const AovSet& wanted = finished.film.layers.Options().aovs;
+    LayerChannels made;
+    if (wanted.alpha)
+        made.channels.push_back(MakeChannel("A", finished.film.Region(), [&](const Vec2i& p) {
+            return mattes.AlphaAt(p).Alpha();
+        }));
+    if (wanted.cryptomatte) {
+        made.Append(
+            MakeCryptomatte("CryptoObject", mattes, &CryptoPixel::objects, finished.nameOfObject));
+        made.Append(MakeCryptomatte("CryptoMaterial", mattes, &CryptoPixel::materials,
+                                    finished.nameOfMaterial));
+    }
+    return made;
+}
+
+LayerChannels ChannelsOf(const LightGroupLayer& lights, const FinishedFilm& finished) {
+    const Film& film = finished.film;
+    const LightGroups& groups = film.layers.Options().groups;
+    const DenoisedImage* denoised = finished.denoised;
+    LayerChannels made;
+    const std::vector<std::string> names = LayerNames(groups.names);
+    made.attributes["lightGroups"] = fmt::format("{}", fmt::join(names, ","));
+    if (finished.isTransparent && denoised) made.colours.resize(size_t(film.Region().Area()) * 3);
+    for (int group = 0; group < lights.Count(); ++group) {
+        std::vector<float> rgb =
+            denoised ? denoised->lights[size_t(group)] : MeansOf(lights, group, film);
+        if (finished.isTransparent) LeaveOutBackground(lights, group, finished, &rgb);
+        std::ranges::transform(made.colours, rgb, made.colours.begin(), std::plus());
+        std::ranges::move(ColourChannels("light." + names[size_t(group)] + ".", rgb),
+                          std::back_inserter(made.channels));
+    }
+    return made;
+}
+
+LayerChannels ChannelsOf(const FinishedFilm& finished) {
+    const Layers& layers = finished.film.layers;
+    LayerChannels made;
+    if (layers.Options().aovs.Any()) made.attributes["aov"] = TextOf(layers.Options().aovs);
+    layers.ForEach([&](const auto& layer) { made.Append(ChannelsOf(layer, finished)); });
+    return made;
+}
+
+}  // namespace lull

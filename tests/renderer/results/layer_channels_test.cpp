@@ -1,0 +1,197 @@
+// Channels of layers, where pixels have samples, none, or a background that is left out.
+#include "renderer/results/layer_channels.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/film/add_sample.h"
+
+namespace lull::layer_channels_test {
+namespace {
+
+const PixelRect kPixel = {{3, 4}, {4, 5}};
+
+std::vector<ExrChannel> ChannelsOfFilm(const Film& film) {
+    const auto name = [](uint32_t n) { return std::to_string(n); };
+    return ChannelsOf({.film = film, .nameOfObject = name, .nameOfMaterial = name}).channels;
+}
+
+// One pixel with its layers.
+struct OnePixel {
+    Film film;
+
+    explicit OnePixel(const std::vector<std::string>& aovs, bool features = false)
+        : film(kPixel, {.layers = {.aovs = ParseAovs(aovs), .features = features}}) {}
+    void Add(const FirstHit& hit, const Rgb& radiance = Rgb::Zero()) {
+        film.layers.Add(kPixel.min, {film.At(kPixel.min).count, radiance, hit});
+        AddTo(&film, kPixel.min, radiance);
+    }
+    float Value(const std::string& channel) const {
+        for (const ExrChannel& c : ChannelsOfFilm(film))
+            if (c.name == channel) return c.values.at(0);
+        ADD_FAILURE() << "no channel " << channel;
+        return 0;
+    }
+};
+
+FirstHit HitAt(float depth, uint32_t object, float offset2) {
+    return {.albedo = Rgb(0.5f, 0.25f, 1),
+            .normal = Vec3f(0, 0, -1),
+            .position = Vec3f(depth, 2, 3),
+            .depth = depth,
+            .object = object,
+            .material = object + 10,
+            .found = true,
+            .weight = 1,
+            .offset2 = offset2};
+}
+
+TEST(AovChannels, HasTheChannelsThatAreWanted) {
+    const auto names = [](const std::vector<std::string>& layers) {
+        std::string text;
+        for (const ExrChannel& c : ChannelsOfFilm(OnePixel(layers).film)) text += c.name + " ";
+        return text;
+    };
+    EXPECT_EQ(names({"albedo", "normal"}), "albedo.R albedo.G albedo.B N.X N.Y N.Z ");
+    EXPECT_EQ(names({"depth", "position", "object", "material", "noise"}),
+              "Z P.X P.Y P.Z objectID materialID noise ");
+}
+
+TEST(AovChannels, AveragesOverAllSamplesOrThoseThatMetSomething) {
+    OnePixel pixel({"albedo", "normal", "depth", "position", "object", "material"});
+    pixel.Add(HitAt(2, 1, 0.3f));
+    pixel.Add(HitAt(4, 2, 0.1f));
+    pixel.Add({.albedo = Rgb(1, 0, 0), .offset2 = 0.2f});  // the sky
+    pixel.Add({.offset2 = 0.4f});
+    EXPECT_FLOAT_EQ(pixel.Value("albedo.R"), 0.5f);
+    EXPECT_FLOAT_EQ(pixel.Value("albedo.G"), 0.125f);
+    EXPECT_FLOAT_EQ(pixel.Value("N.Z"), -0.5f);
+    EXPECT_FLOAT_EQ(pixel.Value("Z"), 3);
+    EXPECT_FLOAT_EQ(pixel.Value("P.X"), 3);
+    EXPECT_FLOAT_EQ(pixel.Value("P.Y"), 2);
+    EXPECT_EQ(pixel.Value("objectID"), 2);  // not a mean: that nearest to the centre
+    EXPECT_EQ(pixel.Value("materialID"), 12);
+}
+
+// A denoiser's halves are added up.
+TEST(AovChannels, AreSharedWithTheDenoiser) {
+    OnePixel alone({"albedo", "normal", "noise"}), shared({"albedo", "normal", "noise"}, true);
+    for (int i = 0; i < 10; ++i)
+        for (OnePixel* pixel : {&alone, &shared})
+            pixel->Add(HitAt(2, 1, float(i)), Rgb::Constant(float(i)));
+    for (const char* channel : {"albedo.G", "N.Z", "noise"})
+        EXPECT_NEAR(shared.Value(channel), alone.Value(channel),
+                    1e-5f * std::abs(alone.Value(channel)));
+    EXPECT_FALSE(PlanesOf(shared.film).contains("albedo and normal"));
+    // They outlast what the denoiser alone needs.
+    shared.film.layers.ForgetFeatures();
+    EXPECT_FLOAT_EQ(shared.Value("N.Z"), -1);
+}
+
+TEST(AovChannels, WeighsAsThePixelFilterDoes) {
+    OnePixel pixel({"albedo", "depth"});
+    FirstHit hit = HitAt(2, 1, 0);
+    for (const float weight : {1.25f, 1.25f, 1.25f, -0.75f}) {
+        hit.weight = weight;
+        hit.albedo = Rgb::Constant(weight > 0 ? 0.8f : 0.4f);
+        pixel.Add(hit);
+    }
+    EXPECT_FLOAT_EQ(pixel.Value("albedo.R"), (3 * 1.25f * 0.8f - 0.75f * 0.4f) / 4);
+    EXPECT_FLOAT_EQ(pixel.Value("Z"), 2);
+}
+
+TEST(AovChannels, KnowsOfPixelsThatMetNothing) {
+    OnePixel pixel({"albedo", "normal", "depth", "position", "object", "material", "noise"});
+    EXPECT_EQ(pixel.Value("albedo.R"), 0);  // not even a sample
+    EXPECT_EQ(pixel.Value("noise"), 100);
+    pixel.Add({});
+    EXPECT_EQ(pixel.Value("noise"), 100);
+    pixel.Add({});
+    EXPECT_EQ(pixel.Value("Z"), kAovFarAway);
+    EXPECT_EQ(pixel.Value("P.X"), 0);
+    EXPECT_EQ(pixel.Value("objectID"), 0);
+    EXPECT_EQ(pixel.Value("noise"), 0);
+}
+
+// The deviation of L over many pixels is what the layer says of each.
+TEST(AovChannels, NoiseIsTheStandardErrorInLightness) {
+    std::mt19937 random(1);
+    constexpr int kPixels = 4000, kSamples = 64;
+    for (const float mean : {0.004f, 0.2f, 3.f}) {
+        std::uniform_real_distribution<float> sample(0.6f * mean, 1.4f * mean);
+        double sum = 0, squares = 0, said = 0;
+        for (int i = 0; i < kPixels; ++i) {
+            OnePixel pixel({"noise"});
+            for (int k = 0; k < kSamples; ++k) pixel.Add({}, Rgb::Constant(sample(random)));
+            const double y = Luminance(pixel.film.At(kPixel.min).Mean());
+            const double L = y > 0.008856 ? 116 * std::cbrt(y) - 16 : 116 * 7.787 * y;
+            sum += L;
+            squares += L * L;
+            said += pixel.Value("noise");
+        }
+        const double deviation = std::sqrt(squares / kPixels - sum * sum / kPixels / kPixels);
+        // A deviation of 4,000 numbers has an error of 1.1 %.
+        EXPECT_NEAR(said / kPixels / deviation, 1, 0.05) << mean;
+    }
+}
+
+const PixelRect kTwoPixels = {{2, 3}, {4, 4}};
+
+// Four samples of the first pixel, one of which sees past everything; none of the second.
+struct Lights {
+    Film film{kTwoPixels,
+              {.layers = {.aovs = {.alpha = true},
+                          .groups = {{"lamp", "sky"}, {0, 1}},
+                          .groupBackground = true}}};
+
+    Lights() {
+        film.SetFirstLook({.spacing = 1, .colours = {Rgb::Constant(9), Rgb::Constant(3)}});
+        FilmTile tile = film.Tile({{2, 3}, {3, 4}});
+        FilmPixel pixel = tile.At({2, 3});
+        for (uint32_t k = 0; k < 4; ++k) {
+            GroupRadiance groups(film.layers.Options().groups);
+            groups.Clear();
+            if (k > 0) groups.Add(0, Rgb(4, 8, 12));
+            groups.Add(1, Rgb(2, 2, 2));
+            const Rgb radiance = groups.All()[0] + groups.All()[1];
+            film.layers.Add({2, 3}, {k, radiance, {.found = k > 0, .weight = 1}, &groups});
+            pixel.Add(radiance, false);
+        }
+        tile.Set({2, 3}, pixel);
+    }
+    LayerChannels Make(const DenoisedImage* denoised, bool isTransparent) const {
+        return ChannelsOf(*film.layers.Find<LightGroupLayer>(), {film, denoised, isTransparent});
+    }
+};
+
+TEST(LightGroupChannels, NamesMeansOfTheSamples) {
+    const LayerChannels extra = Lights().Make(nullptr, false);
+    ASSERT_EQ(extra.channels.size(), 6u);
+    EXPECT_EQ(extra.channels[1].name, "light.lamp.G");
+    EXPECT_EQ(extra.channels[1].values, (std::vector<float>{6, 0}));
+    EXPECT_EQ(extra.channels[3].name, "light.sky.R");
+    EXPECT_EQ(extra.channels[3].values, (std::vector<float>{2, 3}));  // the first look
+    EXPECT_EQ(std::get<std::string>(extra.attributes.at("lightGroups")), "lamp,sky");
+    EXPECT_TRUE(extra.colours.empty());
+}
+
+TEST(LightGroupChannels, LeavesOutTheBackground) {
+    const LayerChannels extra = Lights().Make(nullptr, true);
+    EXPECT_EQ(extra.channels[1].values[0], 6);
+    EXPECT_EQ(extra.channels[3].values[0], 1.5f);
+}
+
+TEST(LightGroupChannels, SplitsDenoisedLightAsThatOfTheSamples) {
+    DenoisedImage denoised{{2, 1, {}}, {}, {}};
+    denoised.lights = {{3, 7, 9, 0, 0, 0}, {4, 4, 4, 3, 3, 3}};
+    EXPECT_EQ(Lights().Make(&denoised, false).channels[1].values, (std::vector<float>{7, 0}));
+    const LayerChannels extra = Lights().Make(&denoised, true);
+    EXPECT_EQ(extra.channels[1].values[0], 7);
+    EXPECT_EQ(extra.channels[3].values[0], 3);
+    EXPECT_EQ(extra.colours, (std::vector<float>{6, 10, 12, 3, 3, 3}));
+}
+
+}  // namespace
+}  // namespace lull::layer_channels_test
