@@ -119,7 +119,7 @@ std::string SettingsOf(const PreparedRender& p) {
     const PictureFormat& format = request.pictures.format;
     RenderIdentity identity = p.render.Identity();
     identity["aov"] = TextOf(request.aovs);
-    identity["light groups"] = NameOf(p.lightGroups);
+    identity["light groups"] = NameOf(p.film.layers.groups);
     identity["denoise"] = request.denoise ? "yes" : "no";
     identity["denoise-layers"] = request.denoiseLayers ? "yes" : "no";
     identity["png-bits"] = std::to_string(format.pngBits);

@@ -8,12 +8,12 @@
 
 namespace lull {
 
-// Returns the path of a file of tests/stopping/golden or tests/stopping/thresholds.
+// Returns the path of a file of tests/stopping/golden or stopping/data.
 inline std::string GoldenFile(const std::string& name) {
     return LULL_TESTS_DIR "/stopping/golden/" + name;
 }
 inline std::string ThresholdsFile(const std::string& name) {
-    return LULL_TESTS_DIR "/stopping/thresholds/" + name;
+    return LULL_TESTS_DIR "/../stopping/data/" + name;
 }
 
 inline nlohmann::json ReadJson(const std::string& path) {
