@@ -206,8 +206,8 @@ std::optional<BsdfSample> Bsdf::SampleHere(const Vec3f& wo, const Vec3f& woWorld
                 Vec3f wiWorld = shading.FromLocal(wi);
                 const bool reflects = Reflects(woWorld, wiWorld);
                 BsdfValue value;
-                if (mayTurn && ReflectsAgain<L>()) {
-                    if (!reflects) wiWorld -= 2 * wiWorld.dot(ng) * ng;
+                if (mayTurn) {
+                    if (ReflectsAgain<L>() && !reflects) wiWorld -= 2 * wiWorld.dot(ng) * ng;
                     value = EvaluateHere(wo, woWorld, wiWorld, set);
                 } else if (count > 1) {
                     value = EvaluateLocal(wo, wi, nullptr, reflects, set);
