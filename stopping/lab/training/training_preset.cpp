@@ -3,21 +3,23 @@
 namespace lull {
 
 std::span<const TrainingPreset> TrainingPresets() {
-    static const TrainingPreset presets[] = {{.name = "entropy",
-                                              .settings = {.k = 2,
-                                                           .features = {Feature::VisibleDrop},
-                                                           .pools = {{1}},
-                                                           .spacing = Spacing::Geometric,
-                                                           .ratio = 1.4142,
-                                                           .visibility = {.mask = 1e9, .flare = 0}},
-                                              .training = {.units = {8, 4},
-                                                           .dropout = 0,
-                                                           .learningRate = 0.003,
-                                                           .epochs = 60,
-                                                           .balanceViewpoints = true,
-                                                           .balanceClasses = false,
-                                                           .noisyWeight = 1}},
-                                             {.name = "paper"}};
+    static const TrainingPreset presets[] = {
+        {.name = "entropy",
+         .settings = {.k = 2,
+                      .features = {Feature::VisibleDrop},
+                      .pools = {{1}},
+                      .spacing = Spacing::Geometric,
+                      .ratio = 1.4142,
+                      .visibility = {.mask = 1e9, .flare = 0, .nearness = 0.35},
+                      .peakLimit = 1.1},
+         .training = {.units = {8, 4},
+                      .dropout = 0,
+                      .learningRate = 0.003,
+                      .epochs = 60,
+                      .balanceViewpoints = true,
+                      .balanceClasses = false,
+                      .noisyWeight = 1}},
+        {.name = "paper"}};
     return presets;
 }
 

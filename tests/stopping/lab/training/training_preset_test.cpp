@@ -23,6 +23,7 @@ void ExpectTrainedBy(const TrainingPreset& preset, const Model& model) {
     EXPECT_EQ(a.visibility.mask, b.visibility.mask);
     EXPECT_EQ(a.visibility.flare, b.visibility.flare);
     EXPECT_EQ(a.visibility.nearness, b.visibility.nearness);
+    EXPECT_EQ(a.peakLimit, b.peakLimit);
 }
 
 TEST(TrainingPreset, IsThatOfTheModelThatShips) {

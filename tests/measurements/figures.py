@@ -1,0 +1,83 @@
+"""Runs the `lull evaluate` and `lull train --cross-validate` commands of the documents on the shipped data sets, and
+compares their output with the text that follows them.
+
+    python3 figures.py LULL [FILE.md ...]            # compares; prints what differs, and fails
+    python3 figures.py LULL --write [FILE.md ...]    # replaces the outputs in the documents
+
+A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
+output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
+repeats: `<!-- figure: LABEL -->` after it, with `<!-- output: LABEL: ROW: COLUMN -->` after the fenced block of that
+row and column.
+"""
+
+import argparse
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/rules.md', 'stopping/docs/paper.md', 'README.md']
+COMMAND = re.compile(r'^((?:    .*\\\n)*    lull (?:evaluate|train) [^\n]*(?:(?<=\\)\n    [^\n]*)*)\n\n```text\n(.*?)```\n', re.M | re.S)
+OUTPUT = re.compile(r'<!-- output: ([^:]*): ([^:]*): ([^:]*) -->')
+FIGURE = re.compile(r'([0-9.,]+)(?: %)?<!-- figure: ([^>]*?) -->')
+
+
+def run(lull, command):
+    """Returns the output of a command, without the talk on stderr."""
+    words = shlex.split(command.replace('\\\n', ' '))
+    result = subprocess.run([lull] + words[1:], cwd=ROOT / 'stopping' / 'data', capture_output=True, text=True)
+    if result.returncode != 0:
+        raise RuntimeError(f'{command.strip()}: {result.stderr.strip()}')
+    return re.sub(r' +$', '', result.stdout, flags=re.M)
+
+
+def cell(output, row, column):
+    """Returns the number in a row, whose first words are given, below the heading of a column."""
+    heading = None
+    for line in output.split('\n'):
+        if re.search(r'\s' + re.escape(column) + r'(\s|$)', line):
+            heading = line
+        elif heading and line.startswith(row):
+            end = heading.index(' ' + column) + 1 + len(column)
+            return line[:end].split()[-1]
+    raise RuntimeError(f'no row {row!r} with a column {column!r}')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('lull')
+    parser.add_argument('--write', action='store_true')
+    parser.add_argument('files', nargs='*', default=DOCUMENTS)
+    options = parser.parse_args()
+    texts = {name: (ROOT / name).read_text() for name in options.files}
+    wrong, known, commands = [], {}, 0
+    for name, text in texts.items():
+        def replace(match):
+            nonlocal commands
+            commands += 1
+            output = run(options.lull, match[1])
+            labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]
+            for label, row, column in OUTPUT.findall(labels):
+                known[label] = cell(output, row, column)
+            if output != match[2]:
+                wrong.append(f'{name}: {match[1].strip()}\n--- documented\n{match[2]}--- printed\n{output}')
+            return f'{match[1]}\n\n```text\n{output}```\n'
+        texts[name] = COMMAND.sub(replace, text)
+    for name, text in texts.items():
+        for number, label in FIGURE.findall(text):
+            if known.get(label) != number:
+                wrong.append(f'{name}: {number} is not {label}, {known.get(label)}')
+    if options.write:
+        for name, text in texts.items():
+            (ROOT / name).write_text(text)
+        return 0
+    if not commands:
+        wrong.append('no command was found')
+    print('\n'.join(wrong) if wrong else f'{commands} commands print what the documents say')
+    return 1 if wrong else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
