@@ -2,7 +2,7 @@
 compares their output with the text that follows them.
 
     python3 figures.py LULL [FILE.md ...]            # compares; prints what differs, and fails
-    python3 figures.py LULL --write [FILE.md ...]    # replaces the outputs in the documents
+    python3 figures.py LULL [FILE.md ...] --write    # replaces the outputs in the documents
 
 A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
 output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
@@ -26,8 +26,8 @@ FIGURE = re.compile(r'([0-9.,]+)(?: %)?<!-- figure: ([^>]*?) -->')
 
 def run(lull, command):
     """Returns the output of a command, without the talk on stderr."""
-    words = shlex.split(command.replace('\\\n', ' '))
-    result = subprocess.run([lull] + words[1:], cwd=ROOT / 'stopping' / 'data', capture_output=True, text=True)
+    line = re.sub(r'^ *lull', shlex.quote(lull), command.replace('\\\n', ' '))
+    result = subprocess.run(line, shell=True, cwd=ROOT / 'stopping' / 'data', capture_output=True, text=True)
     if result.returncode != 0:
         raise RuntimeError(f'{command.strip()}: {result.stderr.strip()}')
     return re.sub(r' +$', '', result.stdout, flags=re.M)
@@ -51,6 +51,7 @@ def main():
     parser.add_argument('--write', action='store_true')
     parser.add_argument('files', nargs='*', default=DOCUMENTS)
     options = parser.parse_args()
+    options.lull = str(pathlib.Path(options.lull).resolve())
     texts = {name: (ROOT / name).read_text() for name in options.files}
     wrong, known, commands = [], {}, 0
     for name, text in texts.items():
