@@ -58,7 +58,7 @@ class Help:
         self.usage, _, rest = rest.partition("\n")
         self.entries, self.notes = {}, ""
         while True:
-            section = re.match(r"\s*^(Positionals:\n|Subcommands:\n|[A-Z]\w+:\n(?=  -))", rest, re.M)
+            section = re.match(r"\s*^(Positionals:\n|Subcommands:\n|[A-Z][\w ]+:\n(?=  -))", rest, re.M)
             if not section:
                 break
             body, _, rest = rest[section.end():].partition("\n\n")

@@ -19,11 +19,11 @@ struct BsdfSample {
     bool isSpecular, isTransmission;
 };
 
-// A shading normal that the surface does not have, of a map or of interpolation, may send a
-// mirror's light below the surface. Light to such a direction wo is scattered in a turned frame:
-// its normal lies between both normals, where the mirror direction just stays above. (Cycles does
-// so for maps.) Glossy light that is still scattered below is reflected at the surface once more,
-// so that none is lost. Diffuse lobes alone are pbrt-v3's.
+// A shading normal that a map has tilted may send a mirror's light below the surface. Light to such
+// a direction wo is scattered in a turned frame: its normal lies between both normals, where the
+// mirror direction just stays above. (Cycles does so for maps.) Glossy light that is still
+// scattered below is reflected at the surface once more, so that none is lost. Diffuse lobes alone
+// are pbrt-v3's.
 
 class Bsdf {
   public:
@@ -32,14 +32,15 @@ class Bsdf {
     // Takes the orthonormal shading frame, the geometric normal (both world) and the relative
     // index of refraction across the surface (1 for opaque surfaces), which only the radiance
     // scale of paths through it needs.
-    Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1)
-        : shading(shading), ng(ng), eta(eta), alongNg(shading.n.dot(ng)) {}
+    // `isTilted` says whether a map has tilted the shading normal: interpolated ones are pbrt-v3's.
+    Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1, bool isTilted = false)
+        : shading(shading), ng(ng), eta(eta), alongNg(shading.n.dot(ng)), isTilted(isTilted) {}
 
     // Adds a lobe, at most kMaxLobes of them.
     void Add(const Lobe& lobe) {
         assert(lobeCount < kMaxLobes && lobe.index() != 0);
         specularCount += IsSpecular(lobe);
-        if (alongNg < kUntilted) mayTurn |= Mirrors(lobe);
+        if (isTilted && alongNg < kUntilted) mayTurn |= Mirrors(lobe);
         lobes[lobeCount++] = lobe;
     }
     // Multiplies f of lobes begin to end - 1.
@@ -117,8 +118,9 @@ class Bsdf {
     Frame shading;
     Vec3f ng;
     float eta;
-    float alongNg;         // shading.n . ng
-    bool mayTurn = false;  // the normals differ, and a lobe favours the mirror direction
+    float alongNg;  // shading.n . ng
+    bool isTilted;
+    bool mayTurn = false;  // isTilted, the normals differ, and a lobe favours the mirror direction
     int lobeCount = 0, specularCount = 0;
     bool hasShares = false;
     std::array<float, kMaxLobes> shares;  // probabilities of lobes, where hasShares

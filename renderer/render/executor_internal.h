@@ -61,6 +61,7 @@ class Executor {
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
     std::atomic<bool> isLit = true;  // the light of the round, if there is any, has been traced
+    bool isLastRound = false;        // the cap cuts it short: the checkpoint is of before
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
@@ -71,7 +72,6 @@ class Executor {
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
-    bool isLastRound = false;  // the cap cuts it short: the checkpoint is of before
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

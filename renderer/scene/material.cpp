@@ -231,7 +231,7 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         frame.n = hit->ns;
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
-    Bsdf bsdf(frame, hit->n);
+    Bsdf bsdf(frame, hit->n, 1, material.isTilted);
     AddLobes(material,
              MaterialInputs{textures,
                             {hit->p, hit->uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy},

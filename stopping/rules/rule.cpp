@@ -52,7 +52,7 @@ double WithPeak(const Rule& rule, double number, double peakOverLimit) {
 void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,
                Rule* rule) {
     if (most <= 0) return;
-    rule->peak = {.most = most / context.caution, .visibility = visibility};
+    rule->peak = {.most = most, .visibility = visibility};
     if (context.hasHalves) rule->need = std::max(rule->need, ViewNeed::MeanAndHalf);
 }
 

@@ -93,8 +93,9 @@ double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double varianc
 // follow it.
 double WithPeak(const Rule& rule, double number, double peakOverLimit);
 
-// The limit of rules that are not trained, in L*: people's mean over viewpoints (docs/rules.md).
-inline constexpr double kPeakLimit = 1.3;
+// The limit of rules that are not trained, over their threshold: that of people's mean over
+// viewpoints (docs/entropy.md).
+inline constexpr double kPeakOverThreshold = 2;
 
 // Limits the peak noise of a rule, and lets it ask for half means where views have them.
 void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,

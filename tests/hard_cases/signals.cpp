@@ -152,6 +152,7 @@ HardCaseResult PureTexture(const HardCaseOptions&) {
             for (int y = 0; y < side; ++y)
                 for (int x = 0; x < side; ++x)
                     std::fill_n(block.Mean(x, y), 3, Pattern(kind, x, y));
+            block.halfMean = block.mean;
             HardCaseResult result{140, 10'000, 0, fmt::format("spp; pattern {}", kind)};
             for (int spp = 20; spp <= 1000; spp += 20) {
                 if (!criterion->Observe(block.At(spp)).stop) continue;
@@ -185,6 +186,7 @@ HardCaseResult NoiseOnTexture(const HardCaseOptions& options) {
                         const double draw = (random.Float() - 0.5) * std::sqrt(12);
                         std::fill_n(block.Mean(x, y), 3, float(mean + draw * noise / slope));
                     }
+                block.halfMean = block.mean;  // no noise of few pixels
                 if (!criterion->Observe(block.At(spp)).stop) continue;
                 result.ours = noise;
                 break;

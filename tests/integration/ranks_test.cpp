@@ -140,7 +140,7 @@ TEST_F(RanksTest, ShareLightGroups) {
 
 // Each rank traces a part of the light paths, and what they bring is learned from all.
 TEST_F(RanksTest, ShareLightPaths) {
-    directory.Write("scene.pbrt", SceneText(std::string("Integrator \"bdpt\"\n") + kSphere +
+    directory.Write("scene.pbrt", SceneText(std::string(kSphere) +
                                             "LightSource \"point\" \"point from\" [2 1 -2]\n"));
     const std::string render =
         std::string(kRender) + "--integrator bdpt --aov noise --light-groups environment ";

@@ -53,6 +53,8 @@ class Leader {
             const double pause = Seconds();
             const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
             Gather(undo);
+            if (context.light && !undo && !hasGivenUp && schedule.Unlocked().NoPassUnderWay())
+                LearnLight();
             const bool takesOver = std::exchange(hasGivenUp, false) && !executor.IsCancelled();
             const bool over = !takesOver && IsOver() &&
                               (undo || !schedule.TimeCalled() || executor.IsCancelled());
@@ -95,11 +97,13 @@ class Leader {
         LightRounds& light = *context.light;
         if (light.End() > 0) {
             Gather(false);
+            if (std::exchange(hasGivenUp, false) && !executor.IsCancelled()) return TakeOver();
+            LearnLight();
             if (executor.IsCancelled()) return;
-            if (std::exchange(hasGivenUp, false)) return TakeOver();
-            light.Learn(film);
         }
         light.Begin(schedule.Unlocked());
+        if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();
+        executor.isLastRound = light.IsCutShort();
         splats.clear();
         traced.clear();
         executor.isLit = true;
@@ -116,6 +120,14 @@ class Leader {
             channel.PostToAll(PackSplats(int(i), light.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
         schedule.BeginRound(light.End());
+    }
+
+    // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the
+    // checkpoint has to know what was learned.
+    void LearnLight() {
+        LightRounds& light = *context.light;
+        if (light.End() == 0 || std::exchange(learnedEnd, light.End()) == light.End()) return;
+        light.Learn(film);
     }
 
     // Traces a rank's part, and gives signs of life meanwhile.
@@ -427,8 +439,9 @@ class Leader {
     bool hasAsked = false;                   // whether the others are there
     std::set<int> quiet, collected, traced;  // ranks that have said so
     std::map<int, std::vector<std::vector<std::byte>>> splats;  // of the round, by rank
-    int64_t samplesGathered = 0;                                // at the last checkpoint
-    bool hasGivenUp = false;  // a rank whose tiles are still to be taken over
+    int learnedEnd = 0;           // of the last round of light that was learned from
+    int64_t samplesGathered = 0;  // at the last checkpoint
+    bool hasGivenUp = false;      // a rank whose tiles are still to be taken over
 };
 
 }  // namespace

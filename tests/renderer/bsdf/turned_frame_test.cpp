@@ -20,7 +20,7 @@ Lobe Metal(float roughness) {
 Bsdf Tilted(const Lobe& lobe, const Vec3f& normal) {
     Frame frame{{}, {}, normal};
     CoordinateSystem(normal, &frame.s, &frame.t);
-    Bsdf bsdf(frame, Vec3f::UnitZ());
+    Bsdf bsdf(frame, Vec3f::UnitZ(), 1, true);
     bsdf.Add(lobe);
     return bsdf;
 }

@@ -58,7 +58,8 @@ TEST(VisibleError, IsNotSeenAboveWhite) {
 // A block whose picture lacks one line of 60 pixels is not clean; the mean of its errors would be.
 TEST(VisibleError, CountsALineThatIsMissing) {
     const Planes flat(200, 200, 3, 0.2f);
-    const DenoisedPicture denoised{flat, {flat, flat}, {flat, flat}, Planes(200, 200, 3, 1e-6f)};
+    const DenoisedPicture denoised{
+        flat, {flat, flat}, {flat, flat}, Planes(200, 200, 3, 1e-6f), Planes(200, 200, 1)};
     EstimatedError error = MeasureError(denoised);
     EXPECT_LT(MeasureVisibleError(denoised, error, Whole(200)).upper, 0.01);
     for (int x = 70; x < 130; ++x) error.structure.Row(0, 100)[x] = -6;

@@ -84,7 +84,7 @@ TEST(Spectrum, FilesOfAnyTextEditor) {
           "400 .2\n500 .9\n700 .1\n\x1a", "# made by hand\r400 .2\r500 .9\r700 .1\r",
           "400, .2\r\n500, .9\r\n700, .1\r\n"})
         EXPECT_TRUE((load(text) == rgb).all()) << text;
-    EXPECT_TRUE((load(std::string("400 .2\n500 .9\n700 .1\n\0\0", 25)) == rgb).all());
+    EXPECT_TRUE((load(std::string("400 .2\n500 .9\n700 .1\n\0\0", 23)) == rgb).all());
     std::string wide = "\xff\xfe";
     for (const char c : std::string("400 .2\n")) wide += std::string{c, '\0'};
     EXPECT_EQ(ErrorOf([&] { load(wide); }),

@@ -196,7 +196,7 @@ TEST(MediumTable, RefusesNonsense) {
     EXPECT_TRUE(Contains(error("homogeneous", {RgbParameter("sigma_a", 0, -1, 0)}), "\"sigma_a\""));
     EXPECT_TRUE(
         Contains(error("homogeneous", {RgbParameter("sigma_s", 0, kInfinity, 0)}), "\"sigma_s\""));
-    for (const float g : {1.f, -1.f, std::nanf("")})
+    for (const float g : {1.001f, -2.f, std::nanf("")})
         EXPECT_TRUE(Contains(error("homogeneous", {FloatParameter("g", {g})}), "\"g\""));
     EXPECT_TRUE(Contains(error("heterogeneous", {}), "has to be the same in red"));
     EXPECT_TRUE(Contains(error("heterogeneous", GridParameters({1, 2})), "2 values"));

@@ -97,8 +97,6 @@ TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
     LimitPeak(2, {}, {.hasHalves = false}, &without);
     EXPECT_EQ(without.need, ViewNeed::Nothing);
     EXPECT_EQ(without.peak.most, 2);
-    LimitPeak(2, {}, {.caution = 2}, &without);
-    EXPECT_EQ(without.peak.most, 1);
     EXPECT_EQ(PeakOverLimit(OwnRule({}, 2), 4, 20), 0);
 }
 

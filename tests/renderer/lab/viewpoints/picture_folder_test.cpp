@@ -121,7 +121,8 @@ TEST(RecordPictures, NamesAPictureOfAnotherSize) {
 std::vector<PictureRule> Rules(const std::vector<std::string>& texts, int pass) {
     std::vector<PictureRule> rules;
     for (const std::string& text : texts)
-        rules.push_back({text, ParseRule(text, {.passSpp = pass, .blockCount = 2})});
+        rules.push_back(
+            {text, ParseRule(text, {.passSpp = pass, .blockCount = 2, .hasHalves = false})});
     return rules;
 }
 
