@@ -2,7 +2,10 @@
 compares their output with the text that follows them.
 
     python3 figures.py LULL [FILE.md ...]            # compares; prints what differs, and fails
-    python3 figures.py LULL [FILE.md ...] --write    # replaces the outputs in the documents
+    python3 figures.py LULL [FILE.md ...] --train    # runs the trainings, too
+    python3 figures.py LULL [FILE.md ...] --write    # runs all, and replaces the outputs in the documents
+
+Numbers may differ by 0.3 or 2 %: other processors round differently, and a block may stop a check earlier.
 
 A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
 output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
@@ -33,6 +36,15 @@ def run(lull, command):
     return re.sub(r' +$', '', result.stdout, flags=re.M)
 
 
+def agree(documented, printed):
+    """Returns whether two texts are the same but for small differences of numbers."""
+    number = re.compile(r'-?\d+(?:\.\d+)?')
+    if number.sub('#', documented).split() != number.sub('#', printed).split():
+        return False
+    pairs = zip(map(float, number.findall(documented)), map(float, number.findall(printed)))
+    return all(abs(a - b) <= max(0.3, 0.02 * abs(a)) for a, b in pairs)
+
+
 def cell(output, row, column):
     """Returns the number in a row, whose first words are given, below the heading of a column."""
     heading = None
@@ -48,6 +60,7 @@ def cell(output, row, column):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('lull')
+    parser.add_argument('--train', action='store_true')
     parser.add_argument('--write', action='store_true')
     parser.add_argument('files', nargs='*', default=DOCUMENTS)
     options = parser.parse_args()
@@ -57,12 +70,14 @@ def main():
     for name, text in texts.items():
         def replace(match):
             nonlocal commands
+            if ' lull train ' in match[1] and not (options.train or options.write):
+                return match[0]
             commands += 1
             output = run(options.lull, match[1])
             labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]
             for label, row, column in OUTPUT.findall(labels):
                 known[label] = cell(output, row, column)
-            if output != match[2]:
+            if not agree(match[2], output):
                 wrong.append(f'{name}: {match[1].strip()}\n--- documented\n{match[2]}--- printed\n{output}')
             return f'{match[1]}\n\n```text\n{output}```\n'
         texts[name] = COMMAND.sub(replace, text)
