@@ -101,7 +101,10 @@ TEST_P(Plugins, LookAsInPbrt) {
             GetParam(), estimator == Estimator::PbrtV3 ? "pbrt-v3" : "combined", c.energyRatio,
             c.energySigma, 100 * c.pixelsOut, 100 * c.tilesOut);
         fmt::print("{}\n", line);
-        EXPECT_TRUE(std::abs(c.energyRatio - 1) < 0.002 || std::abs(c.energySigma) < 3.5) << line;
+        // Scenes of filtering have a bump map, whose mirrored light stays above the surface here.
+        const double tolerance = filters ? 0.005 : 0.002;
+        EXPECT_TRUE(std::abs(c.energyRatio - 1) < tolerance || std::abs(c.energySigma) < 3.5)
+            << line;
         EXPECT_LE(c.pixelsOut, 0.01) << line;  // single samples have tails that the normal has not
         EXPECT_EQ(c.tilesOut, 0) << line;
         EXPECT_EQ(ours.rejected, 0);

