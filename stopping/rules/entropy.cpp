@@ -76,7 +76,7 @@ Rule ReadEntropy(const std::string& argument, const RuleContext& context) {
     const NoiseVisibility visibility = VisibilityAt(context.cap, context.visibility);
     Rule rule = EntropyRule(threshold, visibility, context.passSpp);
     rule.trend = TrendOfFalls(visibility);
-    LimitPeak(kPeakOverThreshold * threshold, visibility, context, &rule);
+    rule.peak = {.most = kPeakOverThreshold * threshold, .visibility = visibility};
     return rule;
 }
 

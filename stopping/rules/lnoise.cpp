@@ -38,7 +38,7 @@ Rule LightnessNoiseRule(double threshold) {
 
 Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context) {
     Rule rule = LightnessNoiseRule(ParseThreshold(argument) / context.caution);
-    LimitPeak(kPeakOverThreshold * rule.threshold, {.nearness = 0}, context, &rule);
+    rule.peak.most = kPeakOverThreshold * rule.threshold;
     return rule;
 }
 

@@ -49,13 +49,6 @@ double WithPeak(const Rule& rule, double number, double peakOverLimit) {
     return std::max(number, least);
 }
 
-void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,
-               Rule* rule) {
-    if (most <= 0) return;
-    rule->peak = {.most = most, .visibility = visibility};
-    if (context.hasHalves) rule->need = std::max(rule->need, ViewNeed::MeanAndHalf);
-}
-
 RuleCriterion::RuleCriterion(std::shared_ptr<const Rule> given, const BlockInfo& block)
     : rule(std::move(given)),
       block(block),

@@ -23,8 +23,6 @@
 
 namespace lull {
 
-struct RuleContext;
-
 // Computes the number of one block from its signals, and stores the state this needs.
 class Statistic {
   public:
@@ -96,10 +94,6 @@ double WithPeak(const Rule& rule, double number, double peakOverLimit);
 // The limit of rules that are not trained, over their threshold: that of people's mean over
 // viewpoints (docs/entropy.md).
 inline constexpr double kPeakOverThreshold = 2;
-
-// Limits the peak noise of a rule, and lets it ask for half means where views have them.
-void LimitPeak(double most, const NoiseVisibility& visibility, const RuleContext& context,
-               Rule* rule);
 
 // Returns the rule that stops blocks at `stopAt`.
 Rule CountingRule(std::function<int(const BlockInfo&)> stopAt);

@@ -164,6 +164,8 @@ Rule ParseRule(const std::string& given, const RuleContext& context) {
         CheckCaution(*entry, context.caution);
         Rule rule = entry->read(ArgumentOf(given), context);
         rule.text = text;
+        if (rule.peak.most > 0 && context.hasHalves)
+            rule.need = std::max(rule.need, ViewNeed::MeanAndHalf);
         rule.trend.kind = entry->compares;
         rule.trend.votes = std::max(1, rule.votes);
         if (context.caution != 1) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stopping/rules/rule_table.h"
 #include "tests/stopping/cut_states.h"
 
 namespace lull {
@@ -76,8 +77,9 @@ TEST(RuleCriterion, StopsBelowTheThresholdSoManyTimesInARow) {
 
 TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
     Rule rule = OwnRule({}, 2);
-    LimitPeak(2, {.reference = 1000, .nearness = 0.5}, {}, &rule);
-    EXPECT_EQ(rule.need, ViewNeed::MeanAndHalf);
+    rule.peak = {.most = 2, .visibility = {.reference = 1000, .nearness = 0.5}};
+    const Rule read = ParseRule("entropy:1");
+    EXPECT_EQ(read.need, ViewNeed::MeanAndHalf);
     EXPECT_NEAR(PeakOverLimit(rule, 4, 750), 1, 1e-12);
     EXPECT_EQ(PeakOverLimit(rule, 4, 1000), 0);
     EXPECT_EQ(PeakOverLimit(rule, 4, 750, 0.5), 0);  // the reference is nearer by half
@@ -93,9 +95,8 @@ TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
     rule.trend.kind = RuleTrend::Probability;
     EXPECT_EQ(WithPeak(rule, 0.1, 1), 0.5);
     EXPECT_EQ(WithPeak(rule, 0.1, 3), 0.75);
-    Rule without = OwnRule({}, 2);
-    LimitPeak(2, {}, {.hasHalves = false}, &without);
-    EXPECT_EQ(without.need, ViewNeed::Nothing);
+    const Rule without = ParseRule("entropy:1", {.hasHalves = false});
+    EXPECT_EQ(without.need, ViewNeed::Mean);
     EXPECT_EQ(without.peak.most, 2);
     EXPECT_EQ(PeakOverLimit(OwnRule({}, 2), 4, 20), 0);
 }
