@@ -12,6 +12,9 @@ constexpr float kFireflyLimit = 4;  // standard deviations
 constexpr float kLeastLuminance = 1e-3f;
 constexpr int kNoiseRadius = 10;  // pixels over which halves say how large noise is
 constexpr float kLeastVariance = 1e-10f;
+// Lamps are small where this share of the pixels within the radius shows them.
+constexpr int kLampRadius = 3;
+constexpr float kMostOfLamps = 0.3f;
 
 void MakeSane(Halves* halves) {
     for (Planes* half : {&halves->a, &halves->b})
@@ -40,6 +43,46 @@ Planes WithLeast(Planes variance) {
     return variance;
 }
 
+// Keeps the emission of lamps of few pixels: edges of others are filtered like all edges.
+void KeepSmallLamps(Halves* emission) {
+    Planes lit(emission->a.width, emission->a.height, 1);
+    for (size_t i = 0; i < lit.Area(); ++i)
+        lit.values[i] = LuminanceOf(emission->a, i) + LuminanceOf(emission->b, i) > 0;
+    lit = BoxMean(std::move(lit), kLampRadius);
+    for (size_t i = 0; i < lit.Area(); ++i)
+        for (int c = 0; c < kColours && lit.values[i] > kMostOfLamps; ++c)
+            emission->a.Plane(c)[i] = emission->b.Plane(c)[i] = 0;
+}
+
+// Removes the emission of small lamps from the colours, with its share of their variance.
+void TakeEmission(NoisyPicture* picture) {
+    Halves &colour = picture->colour, &emission = picture->emission;
+    MakeSane(&emission);
+    KeepSmallLamps(&emission);
+    const auto subtract = [](const Planes& from, Planes* half) {
+        for (size_t i = 0; i < from.values.size(); ++i) half->values[i] -= from.values[i];
+    };
+    subtract(emission.a, &colour.a);
+    subtract(emission.b, &colour.b);
+    for (size_t i = 0; i < picture->variance.values.size(); ++i) {
+        if (!(LuminanceOf(emission.a, i) + LuminanceOf(emission.b, i) > 0)) continue;
+        const float rest = LuminanceOf(colour.a, i) - LuminanceOf(colour.b, i);
+        picture->variance.values[i] = std::min(picture->variance.values[i], Sqr(rest) / 4);
+    }
+}
+
+void AddEmission(const Halves& emission, DenoisedPicture* picture) {
+    const auto add = [](const Planes& to, Planes* half) {
+        for (size_t i = 0; i < to.values.size(); ++i)
+            half->values[i] = Sane(half->values[i] + to.values[i]);
+    };
+    for (Halves* halves : {&picture->halves, &picture->noisy}) {
+        add(emission.a, &halves->a);
+        add(emission.b, &halves->b);
+    }
+    add(BoxMean(VarianceOf(emission.a, emission.b), 1), &picture->variance);
+}
+
 }  // namespace
 
 // By the samples' squares of luminance, shared out by colour, and scaled.
@@ -60,6 +103,8 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
 }
 
 DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
+    const bool hasEmission = in.emission.a.count > 0;
+    if (hasEmission) TakeEmission(&in);
     MakeSane(&in.colour);
     DenoisedPicture result;
     result.variance = EstimateVariance(in.colour, in.variance);
@@ -69,6 +114,7 @@ DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
     result.halves = FilterColours(result.noisy, in.features, result.variance, rowsPerFit);
     in.features = {};
     RestoreStructure(result.noisy, result.variance, &result.halves);
+    if (hasEmission) AddEmission(in.emission, &result);
 
     result.picture = result.halves.a;
     for (size_t i = 0; i < result.picture.values.size(); ++i)

@@ -17,6 +17,9 @@ struct NoisyPicture {
     // Variance of the luminance of the mean of all samples, from their squares; no channel where it
     // is not known: then the halves alone tell.
     Planes variance;
+    // The part of `colour`, R, G, B, that is light seen directly, such as lamps and sky; no
+    // channels where it is not known. It stays as it is.
+    Halves emission = {};
 };
 
 struct DenoisedPicture {

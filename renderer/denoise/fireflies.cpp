@@ -11,19 +11,25 @@ constexpr int kSpreadRadius = 20;      // of each of two box filters, one after 
 constexpr int kRounds = 2;             // as fireflies hide each other
 constexpr float kMostReturned = 0.5f;  // of a pixel's brightness, by one firefly
 
-// Returns the largest luminance of each pixel and its eight neighbours.
-Planes MostAround(const Planes& image) {
-    Planes y(image.width, image.height, 1), most = y;
+// The extremes of the luminance of a pixel and its eight neighbours.
+struct Around {
+    Planes least, most;
+};
+
+Around LuminancesAround(const Planes& image) {
+    Planes y(image.width, image.height, 1);
     for (size_t i = 0; i < y.Area(); ++i) y.values[i] = LuminanceOf(image, i);
+    Around around{y, y};
     for (int row = 0; row < y.height; ++row)
-        for (int x = 0; x < y.width; ++x) {
-            float value = 0;
+        for (int x = 0; x < y.width; ++x)
             for (int r = std::max(0, row - 1); r < std::min(y.height, row + 2); ++r)
-                for (int q = std::max(0, x - 1); q < std::min(y.width, x + 2); ++q)
-                    value = std::max(value, y.Row(0, r)[q]);
-            most.Row(0, row)[x] = value;
-        }
-    return most;
+                for (int q = std::max(0, x - 1); q < std::min(y.width, x + 2); ++q) {
+                    const float value = y.Row(0, r)[q];
+                    float &least = around.least.Row(0, row)[x], &most = around.most.Row(0, row)[x];
+                    least = std::min(least, value);
+                    most = std::max(most, value);
+                }
+    return around;
 }
 
 // Scales pixel i of `half` down to the luminance `limit` if it is brighter.
@@ -51,15 +57,18 @@ std::vector<Firefly> TakeFireflies(float limit, Halves* halves) {
         for (size_t i = 0; i < a.Area(); ++i)
             distance.values[i] = std::abs(LuminanceOf(a, i) - LuminanceOf(b, i));
         const Planes around = BoxSum(distance, kScaleRadius);
-        const Planes mostA = MostAround(a), mostB = MostAround(b);
+        const Around ofA = LuminancesAround(a), ofB = LuminancesAround(b);
         for (size_t i = 0; i < a.Area(); ++i) {
             // The mean of |x| is sqrt(2 / pi) standard deviations; without the pixel itself.
             const float others = std::max(0.f, around.values[i] - distance.values[i]) /
                                  std::max(1.f, counts.values[i] - 1);
             const float reach = limit * 1.2533f * others;
             const float ya = LuminanceOf(a, i), yb = LuminanceOf(b, i);
-            Limit(i, std::max(yb + reach, mostB.values[i]), &a, &taken);
-            Limit(i, std::max(ya + reach, mostA.values[i]), &b, &taken);
+            // A lamp or glint of a pixel is bright in both halves, and may differ by as much.
+            const float agreed = std::max(
+                0.f, std::min(ya, yb) - std::min(ofA.least.values[i], ofB.least.values[i]));
+            Limit(i, std::max(yb + reach + agreed, ofB.most.values[i]), &a, &taken);
+            Limit(i, std::max(ya + reach + agreed, ofA.most.values[i]), &b, &taken);
         }
     }
     return taken;

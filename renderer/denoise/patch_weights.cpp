@@ -4,6 +4,11 @@ namespace lull {
 
 namespace {
 
+// Two pixels are not alike, whatever their values say, where the noise of one alone makes them so,
+// as that of a lamp of a pixel does with everything around it: only so many times the smaller
+// variance counts, or that of noise of this share of the darker one.
+constexpr float kMostNoise = 30, kLeastNoise = 0.1f;
+
 std::vector<PatchWeights::Offset> WindowOffsets(int radius) {
     std::vector<PatchWeights::Offset> offsets;
     for (int y = -radius; y <= radius; ++y)
@@ -59,7 +64,8 @@ void PatchWeights::AddRow(int y) {
             for (int c = 0; c < image.Count(); ++c) {
                 const LanesIn u(image.At(c, x, y)), other(image.At(c, x + dx, y + dy));
                 const LanesIn v(variance.At(c, x, y)), also(variance.At(c, x + dx, y + dy));
-                const Lanes both = v + also;
+                const Lanes least = v.min(also) + (kLeastNoise * u.min(other)).square();
+                const Lanes both = (v + also).min(kMostNoise * least);
                 sum += ((u - other).square() - both) / (both + 1e-10f);
             }
             Store(sum, &differences[size_t(i)]);

@@ -23,6 +23,7 @@
 #include <optional>
 #include <tuple>
 
+#include "renderer/film/emission_layer.h"
 #include "renderer/film/first_hit_layer.h"
 #include "renderer/film/light_group_layer.h"
 #include "renderer/film/matte_layer.h"
@@ -80,12 +81,14 @@ class Layers {
     // Frees what the denoiser alone reads.
     void ForgetFeatures() {
         if (auto* hits = Find<FirstHitLayer>()) hits->ForgetFeatures(options);
+        std::get<std::optional<EmissionLayer>>(kinds).reset();
         if (!options.aovs.noise) std::get<std::optional<SquareLayer>>(kinds).reset();
     }
 
   private:
     using Kinds = std::tuple<std::optional<FirstHitLayer>, std::optional<SquareLayer>,
-                             std::optional<MatteLayer>, std::optional<LightGroupLayer>>;
+                             std::optional<EmissionLayer>, std::optional<MatteLayer>,
+                             std::optional<LightGroupLayer>>;
 
     template <typename Kind>
     void Make(const PixelRect& region, std::optional<Kind>* kind) {

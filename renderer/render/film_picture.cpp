@@ -140,7 +140,10 @@ NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect) {
     const auto read = [&](int y0, int y1) {
         return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
     };
-    return {{}, FilterFeatures(rect.Width(), rect.Height(), read), VarianceOf(film, rect)};
+    return {{},
+            FilterFeatures(rect.Width(), rect.Height(), read),
+            VarianceOf(film, rect),
+            EmissionOf(film, rect)};
 }
 
 GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
@@ -166,6 +169,19 @@ Halves FeatureHalvesOf(const Film& film, const PixelRect& rect) {
             split.Put(a[size_t(f)], b[size_t(f)], f, p - rect.min, &halves);
     });
     return halves;
+}
+
+Halves EmissionOf(const Film& film, const PixelRect& rect) {
+    const auto* lights = film.layers.Find<EmissionLayer>();
+    if (!lights) return {};
+    Halves emission = MakeHalves(rect.Width(), rect.Height(), kColours);
+    ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
+        if (!split.isSplit) return;
+        const auto& [a, b] = lights->At(p).halves;
+        for (int c = 0; c < kColours; ++c)
+            split.Put(a[size_t(c)], b[size_t(c)], c, p - rect.min, &emission);
+    });
+    return emission;
 }
 
 Planes VarianceOf(const Film& film, const PixelRect& rect) {

@@ -27,6 +27,9 @@ Halves ColoursOf(const Film&, const PixelRect&);
 // Return the features of both halves of the samples, not filtered, and the variance of the mean
 // luminance.
 Halves FeatureHalvesOf(const Film&, const PixelRect&);
+// Returns NoisyPicture::emission: 0 in pixels with too few samples for two halves, no channels
+// where the film has no such layer.
+Halves EmissionOf(const Film&, const PixelRect&);
 Planes VarianceOf(const Film&, const PixelRect&);
 
 }  // namespace lull

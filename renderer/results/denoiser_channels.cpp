@@ -13,6 +13,8 @@ namespace {
 constexpr std::array<const char*, kColours> kColourNames = {"R", "G", "B"};
 constexpr std::array<const char*, kFeatures> kFeatureNames = {
     "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "disparity"};
+constexpr std::array<const char*, kColours> kEmissionNames = {"emission.R", "emission.G",
+                                                              "emission.B"};
 constexpr const char* kVarianceName = "variance.Y";
 
 Halves MakeHalves(int width, int height, int count) {
@@ -83,6 +85,8 @@ std::vector<ExrChannel> MakeHalfChannels(const Film& film, const PixelRect& rect
     };
     add(ColoursOf(film, rect), kColourNames);
     add(FeatureHalvesOf(film, rect), kFeatureNames);
+    if (const Halves emission = EmissionOf(film, rect); emission.a.count > 0)
+        add(emission, kEmissionNames);
     channels.push_back({kVarianceName, VarianceOf(film, rect).values});
     return channels;
 }
@@ -91,9 +95,16 @@ NoisyPicture ReadPicture(const ExrImage& image, const std::string& name) {
     NoisyPicture picture{MakeHalves(image.width, image.height, kColours),
                          ReadFeatures(image, Channels(image, name, "halfA.", kFeatureNames),
                                       Channels(image, name, "halfB.", kFeatureNames)),
+                         {},
                          {}};
     Copy(Channels(image, name, "halfA.", kColourNames), &picture.colour.a);
     Copy(Channels(image, name, "halfB.", kColourNames), &picture.colour.b);
+    // Images of former versions have none.
+    if (image.Find("halfA." + std::string(kEmissionNames[0]))) {
+        picture.emission = MakeHalves(image.width, image.height, kColours);
+        Copy(Channels(image, name, "halfA.", kEmissionNames), &picture.emission.a);
+        Copy(Channels(image, name, "halfB.", kEmissionNames), &picture.emission.b);
+    }
     if (const ExrChannel* variance = image.Find(kVarianceName)) {
         picture.variance = Planes(image.width, image.height, 1);
         picture.variance.values = variance->values;
@@ -110,7 +121,7 @@ NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const Ex
                         nameOfA, a.width, a.height, nameOfB, b.width, b.height));
     if (a.origin != b.origin)
         throw Error(fmt::format("{} and {} show different parts of the picture", nameOfA, nameOfB));
-    NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}};
+    NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}, {}};
     Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
     Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);
     FoundChannels<kFeatures> featuresOfA = {}, featuresOfB = {};

@@ -11,8 +11,8 @@
 namespace lull {
 
 // Returns the channels of an EXR from which ReadPicture() makes the same picture: halfA.R .G .B,
-// halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), the same with halfB,
-// and variance.Y.
+// halfA.albedo.R .G .B, halfA.N.X .Y .Z, halfA.disparity (one over the depth), halfA.emission.R .G
+// .B (light seen directly), the same with halfB, and variance.Y.
 std::vector<ExrChannel> MakeHalfChannels(const Film&, const PixelRect&);
 
 // Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is

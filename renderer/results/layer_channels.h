@@ -45,6 +45,8 @@ LayerChannels ChannelsOf(const FirstHitLayer&, const FinishedFilm&);
 //                    bound), times the derivative of L = 116 cbrt(Y) - 16, which continues above
 //                    white; 100 where there are less than two samples
 LayerChannels ChannelsOf(const SquareLayer&, const FinishedFilm&);
+//   none
+inline LayerChannels ChannelsOf(const EmissionLayer&, const FinishedFilm&) { return {}; }
 //   A                the coverage of the pixel; and Cryptomattes (cryptomatte.h)
 LayerChannels ChannelsOf(const MatteLayer&, const FinishedFilm&);
 //   light.NAME.R     of each group of lights, and .G .B: they add up to the image, and are

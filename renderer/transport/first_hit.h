@@ -14,6 +14,8 @@ struct FirstHit {
     uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
     uint32_t material = 0;  // 1 + number of the material; 0: none
     bool found = false;     // there was one
+    // Of the sample's radiance, that of a surface that the camera's ray meets unscattered.
+    Rgb emission = Rgb::Zero();
     // Of the sample: its filter weight, and the squared distance from the pixel's centre.
     float weight = 1, offset2 = 0;
 };

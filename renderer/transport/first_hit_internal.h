@@ -42,9 +42,11 @@ class FirstHitRecorder : public NoRecorder {
                                 !(scene.materials.Needs(at.material) & kScattersBelow);
         if (isSpecular && options.throughSpecular && at.areaLight < 0) return;
         Rgb color = AlbedoOf(bsdf, at.wo);
-        if (at.areaLight >= 0)
-            color = color.max(Emission(scene, options.estimator, path, &at, found, NoRecorder()) *
-                              scene.film.scale);
+        if (at.areaLight >= 0) {
+            const Rgb seen = Emission(scene, options.estimator, path, &at, found, NoRecorder());
+            if (isDirect) hit->emission = path.beta * seen;
+            color = color.max(seen * scene.film.scale);
+        }
         Store(color, at.p, path);
         if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
         hit->object = NumberOfObject(scene, found);
@@ -57,6 +59,8 @@ class FirstHitRecorder : public NoRecorder {
         distance += t;
         Store(Rgb::Ones(), p, path);
     }
+
+    void Scatter(const Path&, bool) { isDirect = false; }
 
   private:
     void Store(const Rgb& color, const Vec3f& p, const Path& path) {
@@ -88,6 +92,7 @@ class FirstHitRecorder : public NoRecorder {
     FirstHit* hit;
     float distance = 0;  // of the path so far
     bool done = false;
+    bool isDirect = true;  // nothing has scattered the path
 };
 
 }  // namespace lull

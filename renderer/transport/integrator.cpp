@@ -29,6 +29,11 @@ PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler&
     };
     const PathSample found = std::visit(li, scene.integrator);
     const PathSample sample = Weighted(scene, start, found);
+    if (detail.firstHit) {
+        Rgb& emission = detail.firstHit->emission;
+        emission *= LimitOf(scene, Luminance(found.radiance)) * WeightOf(scene, start);
+        if (sample.rejected || !IsFinite(emission)) emission = Rgb::Zero();
+    }
     if (detail.groups) Weigh(scene, start, found, sample.rejected, detail.groups);
     return sample;
 }

@@ -93,8 +93,8 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
     ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
-    RunLull(directory,
-            std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
+    RunLull(directory, std::string("render scene.pbrt") + kSize +
+                           "--sampler random --denoise --cap 300 -o clean.exr");
     EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
     EXPECT_EQ(ReadExr(directory.File("room.denoised.exr")).Find("spp")->values,
               ReadExr(directory.File("clean.exr")).Find("spp")->values);

@@ -41,7 +41,7 @@ inline NoisyPicture AddNoise(const Planes& truth, const Planes& features, double
                              unsigned seed) {
     std::mt19937 generator(seed);
     std::normal_distribution<double> gauss;  // its own deviation has to be above 0
-    NoisyPicture noisy{{truth, truth}, Filtered({features, features}), {}};
+    NoisyPicture noisy{{truth, truth}, Filtered({features, features}), {}, {}};
     for (Planes* half : {&noisy.colour.a, &noisy.colour.b})
         for (float& v : half->values) v = std::max(0.f, v + float(deviation * gauss(generator)));
     return noisy;

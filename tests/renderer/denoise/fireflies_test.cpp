@@ -44,6 +44,19 @@ TEST(Fireflies, AreNotWhatBothHalvesSee) {
     EXPECT_EQ(a.Row(0, 20)[90], 60);
 }
 
+// Their noise is that of how often each half has met them.
+TEST(Fireflies, AreNotLampsOfAPixel) {
+    Halves halves = AddNoise(Grey(0.03), FlatFeatures(120, 100), 0.001, 3).colour;
+    const auto set = [&](int x, float a, float b) {
+        for (int c = 0; c < 3; ++c) halves.a.Row(c, 40)[x] = a, halves.b.Row(c, 40)[x] = b;
+    };
+    set(20, 12.3f, 11.2f);
+    set(60, 3, 4);
+    set(61, 9, 7);  // of the same lamp
+    set(90, 0.4f, 0.6f);
+    EXPECT_TRUE(TakeFireflies(4, &halves).empty());
+}
+
 TEST(Fireflies, KeepTheirColourAndShareItByBrightness) {
     Planes picture = Grey(0.1);
     for (int c = 0; c < 3; ++c)

@@ -3,11 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "renderer/base/error.h"
 #include "tests/renderer/render/feature_render.h"
 
 namespace lull {
 namespace {
+
+double SumOfValues(const Planes& planes) {
+    return std::accumulate(planes.values.begin(), planes.values.end(), 0.0);
+}
 
 TEST(Features, IsTheSameForAnyThreads) {
     const FeatureRender one(1), three(3);
@@ -55,6 +61,21 @@ TEST(PictureOf, HasBothHalvesOfTheMean) {
                 EXPECT_TRUE(std::isfinite(picture.features.Row(c, y)[x]));
             EXPECT_GE(picture.variance.Row(0, y)[x], 0);
         }
+}
+
+TEST(PictureOf, HasTheLightSeenDirectlyByHalves) {
+    const FeatureRender render(1);
+    const Halves emission = PictureOf(render.film, kPictureRegion).emission;
+    for (int x = 0; x < 60; ++x) {
+        const float a = emission.a.Row(0, 7)[x], b = emission.b.Row(0, 7)[x];
+        EXPECT_EQ(a > 0 && b > 0 && a != b, (x + 3) % 3 == 0) << x;
+        EXPECT_EQ(emission.a.Row(1, 7)[x], 0);
+        EXPECT_NEAR(a, (x + 3) % 3 == 0 ? 0.5 : 0, 0.25);  // of 18 uniform numbers
+    }
+    // Too few samples for halves, or no such layer.
+    const FeatureRender few(1, 3);
+    EXPECT_EQ(SumOfValues(PictureOf(few.film, kPictureRegion).emission.a), 0);
+    EXPECT_EQ(EmissionOf(Film(kPictureRegion), kPictureRegion).a.count, 0);
 }
 
 // Of few samples one half has the pixel, and the other its neighbours, in turns.

@@ -16,6 +16,7 @@ inline FirstHit SyntheticHit(const Vec2f& u, const Vec2i& pixel, uint32_t index)
             .object = index,
             .material = uint32_t(pixel.x()),
             .found = u.x() < 0.7f,
+            .emission = pixel.x() % 3 == 0 ? Rgb(u.y(), 0, 1e-6f) : Rgb(Rgb::Zero()),
             .weight = 1,
             .offset2 = u.y()};
 }

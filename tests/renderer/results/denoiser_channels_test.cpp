@@ -21,6 +21,7 @@ TEST(HalfChannels, AreReadAsTheyWere) {
     EXPECT_EQ(again.colour.a.values, picture.colour.a.values);
     EXPECT_EQ(again.features.values, picture.features.values);
     EXPECT_EQ(again.variance.values, picture.variance.values);
+    EXPECT_EQ(again.emission.b.values, picture.emission.b.values);
     exr.channels.erase(exr.channels.begin());
     EXPECT_THROW(ReadPicture(exr, "a.exr"), Error);
 }

@@ -62,6 +62,27 @@ TEST(FirstHit, IsWhatIsSeen) {
     }
 }
 
+TEST(FirstHit, KnowsTheLampSeenDirectly) {
+    const std::string lamp =
+        "AttributeBegin\nAreaLightSource \"area\" \"rgb L\" [4 5 6]\n"
+        "Material \"matte\" \"rgb Kd\" [0 0 0]\n" +
+        Wall(2) + "AttributeEnd\n";
+    for (const Estimator estimator : kBoth) {
+        const auto scene = MakeScene(lamp);
+        Sampler sampler(SamplerKind::Random, 7);
+        FirstHit hit;
+        const PathOptions options = estimator;
+        const PathSample sample = RenderSample(*scene, options, sampler, {0, 0}, 0, {&hit});
+        EXPECT_FALSE(IsBlack(hit.emission));
+        ExpectColor(hit.emission, sample.radiance);
+    }
+    // Seen in a mirror it is like any light that is reflected; the sky is no lamp.
+    const auto mirror =
+        MakeScene("Material \"mirror\"\nRotate 45 0 1 0\n" + Wall(0) + "Rotate -45 0 1 0\n" + kSky);
+    EXPECT_TRUE(IsBlack(Find(*mirror, Estimator::Combined, true).emission));
+    EXPECT_TRUE(IsBlack(Find(*MakeScene(kSky), Estimator::Combined).emission));
+}
+
 TEST(FirstHit, NumbersInstancesAfterShapes) {
     const auto scene = MakeScene("ObjectBegin \"o\"\n" + Wall(0) + "ObjectEnd\n" + Wall(9) +
                                  "Translate 0 0 20\nObjectInstance \"o\"\nTranslate 0 0 -19\n"
