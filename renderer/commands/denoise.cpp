@@ -87,6 +87,7 @@ ExitCode RunDenoise(Options options) {
     const std::string png = path(options.output).replace_extension(".png").string();
     CheckOutputs(std::vector<NamedFile>{{"-o", options.output}, {"-o", png}},
                  std::vector<NamedFile>{{"IN", options.input}, {"--half", options.half}});
+    const std::optional<FileLock> lock = LockOutput(options.output);
     std::error_code missing;
     if (std::filesystem::equivalent(options.input, options.half, missing))
         throw Error("--half " + options.half + ": the same file as " + options.input +

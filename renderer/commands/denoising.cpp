@@ -2,10 +2,39 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "renderer/base/say.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/render/progress.h"
 
 namespace lull {
+
+void KeepDecisions(const RenderResult& result, DenoisedImage* denoised) {
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        const BlockResult& block = result.blocks[i];
+        std::optional<VisibleError>& error = denoised->blocks[i];
+        if (!error || !block.block.stoppedByVote || block.decisions.empty()) continue;
+        error->upper = block.decisions.back().decision.value;
+        error->estimate = std::min(error->estimate, error->upper);
+    }
+}
+
+int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
+    constexpr float mostLightness = 100;
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
+        ++count;
+        if (i < denoised->blocks.size()) denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), mostLightness);
+    }
+    return count;
+}
 
 void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet, const Talk& talk) {
     if (quiet) return;

@@ -1,10 +1,20 @@
-// Messages of the commands that denoise.
+// What the commands that denoise know of the remaining error, and tell.
 #pragma once
 
 #include "renderer/commands/talk.h"
+#include "renderer/render/render.h"
 #include "renderer/results/denoised_image.h"
 
 namespace lull {
+
+// Sets the visible error of blocks that the rule `denoised` has stopped to that by which it did.
+// Theirs are still the same samples, which the picture in the end filters more carefully: its own
+// estimate, equally rough, may be above the threshold.
+void KeepDecisions(const RenderResult&, DenoisedImage*);
+
+// Removes the error estimates of blocks with too few samples for one, and sets the error of their
+// pixels to the largest. Returns the number of these blocks.
+int DoubtBlocks(const RenderResult&, const PixelRect& region, DenoisedImage*);
 
 // Prints how long denoising took and how clean the picture is, unless `quiet`.
 void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Talk& = {});

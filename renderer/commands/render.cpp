@@ -22,6 +22,7 @@
 #include "renderer/render/half_buffer.h"
 #include "renderer/results/denoiser_channels.h"
 #include "stopping/base/input_file.h"
+#include "stopping/rules/denoised.h"
 
 namespace lull::render {
 
@@ -193,6 +194,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
+    render.LockResults(p->files.exr);
     p->film.layers = request.WantedLayers();
     CheckLayersFit(p->film.layers, region);
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
@@ -250,24 +252,6 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.identity = render.Identity();
     how.identity["curves"] = p->request.HasPage() ? "yes" : "no";
     return how;
-}
-
-// Removes the error estimates of blocks with too few samples for one, and sets the error of their
-// pixels to the largest. Returns the number of these blocks.
-int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
-    constexpr float mostLightness = 100;
-    int count = 0;
-    for (size_t i = 0; i < result.blocks.size(); ++i) {
-        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
-        ++count;
-        if (i < denoised->blocks.size()) denoised->blocks[i].reset();
-        const PixelRect& pixels = result.blocks[i].block.pixels;
-        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
-            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
-                            (pixels.min.x() - region.min.x()),
-                        pixels.Width(), mostLightness);
-    }
-    return count;
 }
 
 // A preview that cannot be written is a warning: the files may be written in the end.
@@ -334,6 +318,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
     made.image = hasGroups ? DenoiseImage(std::move(lights), region, blocks)
                            : DenoiseImage(std::move(picture), region, blocks);
+    if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(
             "{} of {} blocks have fewer than {} samples per pixel; how far they are from "

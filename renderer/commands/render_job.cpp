@@ -62,6 +62,12 @@ void RenderJob::LockCheckpoint() {
         checkpointLock.emplace(lull::LockCheckpoint(file));
 }
 
+void RenderJob::LockResults(const std::string& output) {
+    resultLock.reset();
+    if (!Leads()) return;
+    if (std::optional<FileLock> lock = LockOutput(output)) resultLock.emplace(std::move(*lock));
+}
+
 void RenderJob::DenoiseBlocks() {
     denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
 }

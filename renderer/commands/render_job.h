@@ -36,6 +36,9 @@ class RenderJob {
     // which those of the scene are known, or could not be written now. Takes the checkpoint for
     // this process alone.
     void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {});
+    // There, takes the results, of which `output` is one, for this process alone. Throws Error if
+    // another process has them.
+    void LockResults(const std::string& output);
     // Locks the checkpoint of the settings, which have changed, instead. Throws Error if another
     // process has it.
     void LockCheckpoint();
@@ -67,7 +70,7 @@ class RenderJob {
     std::shared_ptr<BlockDenoiser> denoiser;  // null: blocks are not denoised
 
   private:
-    std::optional<FileLock> checkpointLock;
+    std::optional<FileLock> checkpointLock, resultLock;
 };
 
 // Lets errors and warnings be JSON where all there is to say is; to be called first of all.

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -18,12 +19,16 @@ namespace lull {
 
 namespace {
 
-// Links are followed, so that all who write to a file meet at the same lock.
+// Links are followed, so that all who write to a file meet at the same lock. Of a name that is just
+// allowed the end is kept, in which numbered files differ.
 std::string NameOfLock(const std::string& path) {
+    constexpr size_t kMost = 240;  // bytes; file systems allow 255
     std::error_code error;
     std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
     if (error) target = path;
-    return target.parent_path() / fmt::format(".{}.lock", target.filename().string());
+    const std::string name = target.filename();
+    return target.parent_path() /
+           fmt::format(".{}.lock", name.substr(name.size() - std::min(name.size(), kMost)));
 }
 
 [[noreturn]] void Fail(const std::string& name) {

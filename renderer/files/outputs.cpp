@@ -56,6 +56,17 @@ void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile>
     }
 }
 
+std::optional<FileLock> LockOutput(const std::string& output) {
+    std::error_code error;
+    const fs::file_status status = fs::status(output, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) return {};
+    std::optional<FileLock> lock = FileLock::Try(output);
+    if (!lock)
+        throw Error(output +
+                    ": another process is writing this file; wait for its end, or name another");
+    return lock;
+}
+
 std::string BeginningOfNames(const std::string& output, const std::string& name) {
     if (!output.ends_with('/')) return output.empty() ? name : output;
     std::error_code error;

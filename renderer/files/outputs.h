@@ -1,8 +1,11 @@
 // Keeps results from replacing each other, or their inputs.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+
+#include "renderer/files/file_lock.h"
 
 namespace lull {
 
@@ -15,6 +18,10 @@ struct NamedFile {
 // or as an input, by whatever name or link, or could not be written now (see CheckWritable()).
 // Empty paths stand for none, and devices are no files.
 void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs);
+
+// Keeps other processes from writing files that belong together, of which one is `output`, until it
+// is destroyed; nothing for devices. Throws Error if another process is writing them.
+std::optional<FileLock> LockOutput(const std::string& output);
 
 // Returns how the names of all results begin: `output`, or `name` if that is empty. "DIR/" stands
 // for files in the folder DIR, which is made if it is not there, whose names begin with `name`.

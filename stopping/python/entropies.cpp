@@ -3,7 +3,9 @@
 #include <lull/stopping.h>
 #include <pybind11/numpy.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "stopping/python/check.h"
@@ -24,10 +26,9 @@ Picture WholePicture(const py::array& image) {
 
 py::tuple SvdEntropyOf(const py::array& image, int subBlocks, const py::object& type) {
     const Picture picture = WholePicture(image);
-    if (subBlocks < 1 || subBlocks > picture.view.width * picture.view.height)
-        throw py::value_error("sub_blocks is " + std::to_string(subBlocks) +
-                              "; a square number is needed, such as 100");
-    std::vector<lull_entropy> entropies(static_cast<size_t>(subBlocks));
+    // More than there are pixels are refused, and need no room.
+    const int64_t pixels = int64_t(picture.view.width) * picture.view.height;
+    std::vector<lull_entropy> entropies(size_t(std::clamp<int64_t>(subBlocks, 0, pixels)));
     Check(lull_svd_entropy(&picture.view, subBlocks, entropies.data()));
     const auto side = py::ssize_t(std::lround(std::sqrt(subBlocks)));
     const auto values = [&](double lull_entropy::*field) {

@@ -58,6 +58,12 @@ py::object Logger() { return py::module_::import("logging").attr("getLogger")("l
 
 bool IsLogged(int level) { return Logger().attr("isEnabledFor")(level).cast<bool>(); }
 
+// A text with a NUL would silently stand for its beginning in C.
+void CheckText(const std::optional<std::string>& text, const char* name) {
+    if (text && text->find('\0') != std::string::npos)
+        throw py::value_error(std::string(name) + " holds a NUL character");
+}
+
 class Stopper {
   public:
     Stopper(int width, int height, const std::optional<std::string>& model,
@@ -67,6 +73,9 @@ class Stopper {
         if (model && rule) throw py::value_error("model and rule are both given; one is needed");
         if (!(caution > 0)) throw py::value_error("caution must be above 0");
         if (block == 0) throw py::value_error("blocks of 0 pixels");
+        CheckText(model, "model");
+        CheckText(rule, "rule");
+        CheckText(models, "models");
         lull_settings settings = {};
         settings.width = width;
         settings.height = height;

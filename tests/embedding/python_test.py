@@ -152,7 +152,9 @@ class StopperTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "there is no block 1"):
             stopper.observe_block(1, image, 80)
         for settings, error in ((dict(rule="hunch"), ValueError), (dict(model="unknown"), OSError),
-                                (dict(model="a", rule="b"), ValueError), (dict(block=0), ValueError),
+                                (dict(model="a", rule="b"), ValueError),
+                                (dict(model="entropy\0"), ValueError), (dict(rule="lnoise\0"), ValueError),
+                                (dict(models="a\0"), ValueError), (dict(block=0), ValueError),
                                 (dict(caution=0), ValueError), (dict(caution=float("nan")), ValueError)):
             with self.assertRaises(error):
                 lull.Stopper(WIDTH, HEIGHT, **settings)
@@ -223,6 +225,13 @@ class StopperTest(unittest.TestCase):
         for sub_blocks in 0, -1, 99, 61 * 61, 10 ** 9:
             with self.assertRaises(ValueError):
                 lull.svd_entropy(codes, sub_blocks=sub_blocks)
+        # One pixel has one singular value, and no parts.
+        for one in codes[:1, :1], np.float32(codes[:1, :1]) / 255, np.zeros((1, 1, 3), np.float32):
+            self.assertEqual([float(h[0, 0]) for h in lull.svd_entropy(one, sub_blocks=1)], [0, 0, 0])
+            with self.assertRaisesRegex(ValueError, "1x1 pixels has no 100 sub-blocks"):
+                lull.svd_entropy(one)
+            with self.assertRaisesRegex(ValueError, "1x1"):
+                lull.attributes26(one)
         for wrong in codes[:, :, 0], codes[:0], codes.astype(int):
             with self.assertRaises(ValueError):
                 lull.svd_entropy(wrong)

@@ -1,5 +1,6 @@
 // Denoises renders: by the render itself, afterwards, and those of others.
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
@@ -55,6 +56,23 @@ TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
     for (const std::string name : {"R", "G", "B"})
         EXPECT_EQ(clean.at("noisy." + name), plain.at(name));
     EXPECT_EQ(clean.at("spp"), plain.at("spp"));
+}
+
+// Nothing is said of a stopped block that its threshold contradicts.
+TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
+    const BoxDirectory directory;
+    for (const int seed : {1, 6}) {  // the whole picture says 2.8 and 3.2
+        const Outcome outcome = ExpectSuccess(
+            directory, fmt::format("render scene.pbrt --resolution 60x60 --block 60 --denoise "
+                                   "--seed {} -o a.exr --report a.json",
+                                   seed));
+        const auto report = nlohmann::json::parse(ReadBytes(directory.File("a.json")));
+        const auto& block = report["blocks"][0];
+        ASSERT_EQ(block["end"], "stopped");
+        EXPECT_EQ(block["visibleDifference"]["upper"], block["decisions"]["value"].back());
+        EXPECT_LE(block["visibleDifference"]["upper"], block["decisions"]["threshold"]);
+        EXPECT_LE(block["visibleDifference"]["estimate"], block["visibleDifference"]["upper"]);
+    }
 }
 
 TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {

@@ -217,6 +217,34 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
         EXPECT_TRUE(fs::exists(directory.File(std::string("out") + extension))) << extension;
 }
 
+// What long renders of the laboratory are made for is not lost, nor what was there before.
+TEST(Outputs, PagesThatCannotBeWrittenGoElsewhere) {
+    const Inputs directory;
+    const std::string study =
+        "LULL study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --quiet -o ";
+    const std::string bench =
+        "LULL bench scene.pbrt --cap 20 --samplers random --quiet -o b --report ";
+    fs::create_symlink("/dev/full", directory.File("full.html"));
+    for (const std::string& command : {study, bench}) {
+        const Outcome outcome = RunShell(directory, "TMPDIR=. " + command + "full.html");
+        EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+        EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err, "cannot write \"full.html\": No space left on device"))
+            << outcome.err;
+        std::string place = outcome.out.substr(0, outcome.out.size() - 1);
+        place = place.substr(place.rfind('\n') + 1);
+        EXPECT_TRUE(place.ends_with("/full.html")) << outcome.out;
+        EXPECT_TRUE(ReadBytes(directory.File(place)).ends_with("</html>\n")) << place;
+
+        directory.Write("page.html", "former");
+        const Outcome small = RunShell(directory, "ulimit -f 4; TMPDIR=. " + command + "page.html");
+        EXPECT_EQ(small.exitCode, 1) << small.err;
+        EXPECT_EQ(CountErrorLines(small.err), 1) << small.err;
+        EXPECT_TRUE(Contains(small.err, "; lost: \"page.html\"")) << small.err;
+        EXPECT_EQ(ReadBytes(directory.File("page.html")), "former");
+    }
+}
+
 TEST(Outputs, DenoisedPicturesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
     ExpectSuccess(directory, fmt::format("render {} --denoise-layers -o in.exr", kOptions));

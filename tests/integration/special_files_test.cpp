@@ -25,17 +25,16 @@ TEST(Writers, OfOneDatasetLoseNothing) {
     EXPECT_EQ(directory.CountFiles(), 2);
 }
 
-// Expects that of two processes that write the same checkpoint one says so, and the other ends
-// well.
+// Expects that of two processes that write the same `file` one says so, and the other ends well.
 void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& command,
-                     const std::string& lock) {
+                     const std::string& lock, const std::string& file = "this checkpoint") {
     const Outcome outcome = RunShell(directory, "exec 9>" + lock + " && flock 9 && (" + command +
                                                     " 9>&-; echo first $?); " + "exec 9>&-; " +
                                                     command + "; echo then $?");
     EXPECT_TRUE(Contains(outcome.out, "first 1\n")) << outcome.out << outcome.err;
     EXPECT_TRUE(Contains(outcome.out, "then 0\n")) << outcome.out << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "another process is writing this checkpoint")) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "another process is writing " + file)) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(directory.File(lock)));
 }
 
@@ -50,6 +49,29 @@ TEST(Writers, OfOneCheckpointAreOne) {
                     ".d.h5.v.checkpoint.lock");
     ExpectOneWriter(directory, "LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet",
                     ".b.random.checkpoint.lock");
+}
+
+// Files of one name are of one process; another name, or a name that a killed process had, is free.
+TEST(Writers, OfOneResultAreOne) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const auto expectOneWriter = [&](const std::string& command, const std::string& lock) {
+        ExpectOneWriter(directory, command, lock, "this file");
+    };
+    expectOneWriter("LULL render scene.pbrt --spp 20 --denoise-layers -o a.png --quiet",
+                    ".a.exr.lock");
+    expectOneWriter("LULL denoise a.exr -o b.exr --quiet", ".b.exr.lock");
+    expectOneWriter("LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet", ".b.csv.lock");
+    expectOneWriter("LULL compare scene.pbrt --cap 20 --snapshots -o c --quiet",
+                    ".c.compare.json.lock");
+    expectOneWriter("LULL compare --automatic a.exr --reference b.exr -o c",
+                    ".c.compare.json.lock");
+    expectOneWriter(
+        "LULL study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 -o s.html --quiet",
+        ".s.html.lock");
+    ExpectSuccess(RunShell(directory,
+                           "exec 9>.a.exr.lock && flock 9 && LULL render scene.pbrt --spp 1 -o "
+                           "other.exr --quiet 9>&-"));
 }
 
 TEST(Substitutes, OfManyMaterialsAreToldTenTimes) {

@@ -13,7 +13,7 @@
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/render_job.h"
-#include "renderer/files/file_io.h"
+#include "renderer/files/result_files.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/lab/commands/viewing_option.h"
 #include "renderer/lab/comparison/bench.h"
@@ -159,6 +159,7 @@ void CheckFiles(Bench* bench) {
         inputs.push_back({"an image of --external", image.file});
     for (const std::string& rule : options.rules) AddFileOfRule(rule, &inputs);
     bench->render.CheckFiles(std::move(outputs), std::move(inputs));
+    bench->render.LockResults(options.output + ".csv");
 }
 
 // Checks all that can be wrong before the work begins.
@@ -284,17 +285,18 @@ std::vector<std::string> Notes(const Options& options) {
     return notes;
 }
 
-// Writes the points, and the page.
+// Writes the points, and the page. Throws Error where one of them is not where it should be.
 void WriteBench(const Bench& bench, const std::vector<std::string>& names) {
     const Options& options = bench.options;
-    WriteFileAtomically(options.output + ".csv", BenchCsv(bench.points));
-    fmt::print("{}.csv\n", options.output);
-    if (options.report.empty()) return;
-    WriteFileAtomically(
-        options.report,
-        MakeBenchPage(SceneName(options.render.scene.file), bench.render.provenance, bench.points,
-                      names, *bench.reference, options.display, Notes(options)));
-    fmt::print("{}\n", options.report);
+    ResultFiles results;
+    results.WriteText(options.output + ".csv", BenchCsv(bench.points));
+    if (!options.report.empty())
+        results.WriteText(
+            options.report,
+            MakeBenchPage(SceneName(options.render.scene.file), bench.render.provenance,
+                          bench.points, names, *bench.reference, options.display, Notes(options)));
+    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
+    results.Check();
 }
 
 ExitCode RunBench(Options options, MpiJob* ranks) {

@@ -52,6 +52,7 @@ ExitCode CompareFiles(CompareOptions options) {
                     ": thresholds need a scene; without one, an image");
     options.output = BeginningOfNames(options.output, "lull");
     CheckOutputs(OutputsOf(options, {}), InputsOf(options));
+    const std::optional<FileLock> lock = LockOutput(options.output + ".compare.json");
 
     std::vector<ComparedFile> files;
     if (!options.automatic.empty())
@@ -126,6 +127,7 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) 
     for (const ObservedRule& rule : compared->rules) rendered.push_back(rule.name);
     if (options.snapshots) rendered.push_back("reference");
     render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
+    render.LockResults(options.output + ".compare.json");
     render.Compile();
     render.provenance.criterion = automatic.text;
     render.provenance.checksum = automatic.checksum;

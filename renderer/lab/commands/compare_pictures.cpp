@@ -80,6 +80,7 @@ ExitCode CompareFolder(CompareOptions options) {
     AddFileOfRule("thresholds:" + options.human, &inputs);
     AddFileOfRule(options.rule, &inputs);
     CheckOutputs(OutputsOf(options, rules), inputs);
+    const std::optional<FileLock> lock = LockOutput(options.output + ".compare.json");
 
     ComparisonReport report;
     report.title = folder.name;

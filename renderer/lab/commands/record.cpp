@@ -8,7 +8,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/commands/render_job.h"
-#include "renderer/files/file_io.h"
+#include "renderer/files/result_files.h"
 #include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
@@ -113,6 +113,18 @@ ExitCode SayAllIsThere(const Options& options, MpiJob* ranks) {
     return kDone;
 }
 
+// Adds the recording to the data set, or to a new one where that cannot be written. Throws Error
+// then.
+void Write(const ViewpointRecording& viewpoint, const std::string& output, const Talk& talk) {
+    ResultFiles results;
+    results.Write(output, [&](const std::string& file) {
+        AddToDatasetFile(viewpoint, file,
+                         [&] { talk.Note("waiting for another process to write " + file); });
+    });
+    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
+    results.Check();
+}
+
 ExitCode RecordFolder(const Options& options) {
     const PictureFolder folder = FindPictures(options.images, options.name);
     CheckOutputs(std::vector<NamedFile>{{"-o", options.output}}, InputsOf(folder));
@@ -133,9 +145,7 @@ ExitCode RecordFolder(const Options& options) {
     RunWithThreads(options.render.scene.compile.threads, [&] {
         viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits}, talk);
     });
-    AddToDatasetFile(viewpoint, options.output,
-                     [&] { talk.Note("waiting for another process to write " + options.output); });
-    fmt::print("{}\n", options.output);
+    Write(viewpoint, options.output, talk);
     return kDone;
 }
 
@@ -167,11 +177,8 @@ ExitCode Run(Options options, MpiJob* ranks) {
         &session, [&](const auto&... how) { return RecordBlocks(how..., limits, &viewpoint); });
     if (const auto code = render.End(result.cancelled)) return *code;
 
-    AddToDatasetFile(viewpoint, options.output, [&] {
-        TalkOf(options.render).Note("waiting for another process to write " + options.output);
-    });
+    Write(viewpoint, options.output, TalkOf(options.render));
     render.RemoveCheckpoint();
-    fmt::print("{}\n", options.output);
     return kDone;
 }
 

@@ -10,7 +10,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_job.h"
-#include "renderer/files/file_io.h"
+#include "renderer/files/result_files.h"
 #include "renderer/lab/commands/study_options.h"
 #include "renderer/lab/viewpoints/study_render.h"
 #include "stopping/base/parallel.h"
@@ -27,14 +27,21 @@ void SayPower(int answers) {
         answers, octaves, std::exp2(octaves), 100 * (std::exp2(octaves / std::sqrt(10.0)) - 1));
 }
 
-void WriteStudy(const Options& settings, const Study& study) {
-    WriteFileAtomically(settings.output, MakeStudyPage(study, settings.study));
+void WriteStudy(const Options& settings, const Study& study, ResultFiles* results) {
+    RunWithThreads(settings.render.scene.compile.threads, [&] {
+        results->WriteText(settings.output, MakeStudyPage(study, settings.study));
+    });
     if (!settings.render.quiet)
         Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
             fmt::join(study.levels, ", "));
     if (!settings.render.quiet && settings.study.procedure == StudyProcedure::Staircase)
         SayPower(settings.study.answers);
-    fmt::print("{}\n", settings.output);
+}
+
+// Prints the names of the files. Throws Error where one is not where it should be.
+void PrintFiles(const ResultFiles& results) {
+    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
+    results.Check();
 }
 
 ExitCode MakeStudyOfImages(const Options& settings) {
@@ -43,10 +50,13 @@ ExitCode MakeStudyOfImages(const Options& settings) {
     for (const auto& entry : std::filesystem::directory_iterator(settings.images, error))
         pictures.push_back({"a picture", entry.path()});
     CheckOutputs(std::vector<NamedFile>{{"-o", settings.output}}, pictures);
+    const std::optional<FileLock> lock = LockOutput(settings.output);
     const Study study =
         MakeStudy(FindPictures(settings.images, settings.name), settings.render.schedule.blockSize,
                   settings.levels, kLadderRatio);
-    RunWithThreads(settings.render.scene.compile.threads, [&] { WriteStudy(settings, study); });
+    ResultFiles results;
+    WriteStudy(settings, study, &results);
+    PrintFiles(results);
     return kDone;
 }
 
@@ -85,11 +95,12 @@ struct Recording {
         viewpoint = std::move(begun);
         if (!file.empty()) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
     }
-    void Write(const Talk& talk) {
+    void Write(const Talk& talk, ResultFiles* results) const {
         if (file.empty()) return;
-        AddToDatasetFile(viewpoint, file,
-                         [&] { talk.Note("waiting for another process to write " + file); });
-        fmt::print("{}\n", file);
+        results->Write(file, [&](const std::string& to) {
+            AddToDatasetFile(viewpoint, to,
+                             [&] { talk.Note("waiting for another process to write " + to); });
+        });
     }
 };
 
@@ -104,6 +115,7 @@ ExitCode MakeStudyOfScene(Options options) {
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<int> levels = LevelsOf(options, schedule, region);
     render.CheckFiles({{"-o", options.output}, {"--record", options.record}});
+    render.LockResults(options.output);
     Recording recording(options.record, blocks, schedule);
 
     render.Compile();
@@ -120,8 +132,10 @@ ExitCode MakeStudyOfScene(Options options) {
     });
     if (const auto code = render.End(result.cancelled)) return *code;
 
-    RunWithThreads(settings.scene.compile.threads, [&] { WriteStudy(options, study); });
-    recording.Write(TalkOf(settings));
+    ResultFiles results;
+    WriteStudy(options, study, &results);
+    recording.Write(TalkOf(settings), &results);
+    PrintFiles(results);
     render.RemoveCheckpoint();
     return kDone;
 }

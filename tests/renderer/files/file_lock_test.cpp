@@ -55,6 +55,16 @@ TEST(FileLock, LosesNoUpdate) {
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 
+// Names that are just allowed have locks, too, which differ where the names do at their end.
+TEST(FileLock, IsThereForTheLongestNames) {
+    const TemporaryDirectory directory;
+    const std::string beginning(250, 'a');
+    const auto one = FileLock::Try(directory.File(beginning + "1.exr"));
+    const auto other = FileLock::Try(directory.File(beginning + "2.exr"));
+    EXPECT_TRUE(one && other);
+    EXPECT_FALSE(FileLock::Try(directory.File(beginning + "1.exr")));
+}
+
 TEST(FileLock, NamesWhatCannotBeLocked) {
     const TemporaryDirectory directory;
     EXPECT_TRUE(
