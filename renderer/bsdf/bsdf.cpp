@@ -63,6 +63,21 @@ Bsdf Bsdf::WithoutShares() const {
     return bsdf;
 }
 
+Rgb Bsdf::StraightThrough(const Vec3f& woWorld) const {
+    const float cosine = woWorld.dot(FrameTowards(woWorld).n);
+    Rgb sum = Rgb::Zero();
+    if (cosine == 0) return sum;
+    for (int i = 0; i < lobeCount; ++i)
+        if (const auto* sheet = std::get_if<ThinSpecular>(&lobes[i]))
+            sum += sheet->StraightThrough(std::abs(cosine));
+    return sum;
+}
+
+void Bsdf::BlockStraight() {
+    for (int i = 0; i < lobeCount; ++i)
+        if (auto* sheet = std::get_if<ThinSpecular>(&lobes[i])) sheet->t = Rgb(Rgb::Zero());
+}
+
 const Lobe& Bsdf::Choose(int choice, LobeSet set) const {
     if (set == LobeSet::All || specularCount == 0) return lobes[choice];
     int i = 0;

@@ -83,6 +83,11 @@ class Bsdf {
     // Returns the Bsdf as it was before that.
     Bsdf WithoutShares() const;
 
+    // Returns the share of the light from behind that gets straight through smooth thin sheets to
+    // wo, and leaves such light out of all that follows.
+    Rgb StraightThrough(const Vec3f& wo) const;
+    void BlockStraight();
+
     // Chooses one lobe of the set, uniformly unless ChooseByShare was called, with u.x and a
     // direction from it. Returns nothing if the choice scatters no light (f or the density is 0).
     std::optional<BsdfSample> Sample(const Vec3f& wo, const Vec2f& u, LobeSet set) const;

@@ -174,6 +174,13 @@ struct ThinSpecular {
     float coat;
     StoredRgb scale = Rgb(1, 1, 1);  // sampling does not depend on it
 
+    // Returns the share of light that goes straight through at this cosine, > 0.
+    Rgb StraightThrough(float cosine) const {
+        const InterfaceAbove above = stored;
+        return Rgb(t) * Rgb(scale) *
+               (std::max(0.f, above.Through(cosine)) * ThroughCoat(coat, cosine, cosine));
+    }
+
     bool Sample(const Vec3f& wo, const Vec2f& u, SpecularSample* s) const {
         const float cosO = std::abs(wo.z());
         const InterfaceAbove above = stored;

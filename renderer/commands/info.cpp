@@ -12,6 +12,8 @@
 #include "renderer/files/file_contents.h"
 #include "renderer/render/progress.h"
 #include "renderer/results/report.h"
+#include "renderer/scene/geometry/slabs.h"
+#include "renderer/scene/scene_names.h"
 
 namespace lull::info {
 
@@ -89,6 +91,42 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     Line("lights", CountsText(lights));
 }
 
+// Returns the names of glTF's objects that are flat slabs of clear solid glass.
+std::vector<std::string> NamesOfSlabs(const Description& description, const Scene& scene) {
+    std::vector<std::string> names;
+    size_t index = 0;
+    const auto add = [&](const ShapeEntity& entity) {
+        const Shape& shape = scene.shapes.shapes[index++];
+        const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
+        if (!mesh || entity.material < 0) return;
+        const Parameters& parameters = description.materials[size_t(entity.material)].parameters;
+        if (!parameters.GetBool("solid", false) ||
+            parameters.GetFloat("transmissionfactor", 0) <= 0)
+            return;
+        if (CountSlabs(*mesh) == 0) return;
+        const std::string name = GivenName(entity);
+        names.push_back(name.empty() ? NameOfMaterial(uint32_t(entity.material) + 1, description)
+                                     : name);
+    };
+    for (const ShapeEntity& entity : description.shapes) add(entity);
+    for (const ObjectEntity& object : description.objects)
+        for (const ShapeEntity& entity : object.shapes) add(entity);
+    return names;
+}
+
+void PrintSlabs(const Description& description, const Scene& scene) {
+    constexpr size_t kMostListed = 3;
+    const std::vector<std::string> names = NamesOfSlabs(description, scene);
+    if (names.empty()) return;
+    std::string text;
+    for (size_t i = 0; i < std::min(names.size(), kMostListed); ++i)
+        text += (i > 0 ? ", \"" : "\"") + Printable(names[i]) + "\"";
+    if (names.size() > kMostListed) text += fmt::format(" and {} more", names.size() - kMostListed);
+    Line("hint", text +
+                     ": flat slabs of solid glass, which light sampling does not pass; without "
+                     "KHR_materials_volume they are sheets, which it does pass");
+}
+
 std::string FilmText(const FilmSettings& film, const std::string& file) {
     std::string text = fmt::format("{} x {} pixels", film.resolution.x(), film.resolution.y());
     if ((film.cropMin != Vec2i(0, 0)) || (film.cropMax != film.resolution))
@@ -149,6 +187,7 @@ ExitCode RunInfo(const SceneOptions& options) {
     Line("scene", options.file);
     PrintGeometry(description, *scene);
     PrintAppearance(description, *scene);
+    PrintSlabs(description, *scene);
     PrintView(description, *scene, options.file);
     PrintCosts(*scene, parseSeconds);
     Line("warnings", CountsText(warnings.Counts()));

@@ -69,6 +69,12 @@ const char* WhyNotBdpt(const Description& description, const CompileOptions& opt
     return nullptr;
 }
 
+bool HasPanes(const Scene& scene) {
+    return std::any_of(scene.shapes.shapes.begin(), scene.shapes.shapes.end(), [&](const Shape& s) {
+        return s.material >= 0 && (scene.materials.Needs(s.material) & kLetsThrough);
+    });
+}
+
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
     if (!(Farthest(scene.camera, scene.film) <= double(scene.shapes.reach)))
@@ -96,6 +102,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     scene->shapeSeconds = Timed([&] {
         warnings.Try([&] {
             scene->shapes = ShapeTable(description, scene->textures, warnings);
+            scene->hasPanes = HasPanes(*scene);
             if (seesAll) CheckCamera(*scene, description.camera.loc);
             scene->lights = LightTable(description, scene->shapes, scene->textures,
                                        options.lightsAsPbrtV3, warnings);

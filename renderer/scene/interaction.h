@@ -6,7 +6,7 @@
 namespace lull {
 
 // Fields of a hit that a material needs beyond position and normals; others are not computed. Bits.
-enum SurfaceNeeds : uint8_t {
+enum SurfaceNeeds : uint16_t {
     kNeedsNothing = 0,
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
@@ -16,10 +16,11 @@ enum SurfaceNeeds : uint8_t {
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color
     kScattersBelow = 128,         // nothing, but transmitted light leaves elsewhere: subsurface
+    kLetsThrough = 256,           // nothing, but light may go straight through, as through a pane
 };
 
 constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
-    return SurfaceNeeds(uint8_t(a) | uint8_t(b));
+    return SurfaceNeeds(uint16_t(a) | uint16_t(b));
 }
 
 // A hit as the accelerator returns it.

@@ -34,11 +34,12 @@
 #include "renderer/scene/lights/point.h"
 #include "renderer/scene/lights/projection.h"
 #include "renderer/scene/lights/spot.h"
+#include "renderer/scene/lights/sun.h"
 
 namespace lull {
 
 using Light = std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, AreaLight,
-                           GoniometricLight, ProjectionLight>;
+                           GoniometricLight, ProjectionLight, SunLight>;
 
 inline LightType TypeOf(const Light& light) {
     return Visit(light, []<typename L>(const L&) { return L::kType; });

@@ -14,18 +14,21 @@ namespace lull {
 
 namespace {
 
+constexpr const char* kArea = "area";
 constexpr const char* kRest = "rest";
 constexpr const char* kEach = "each";
 constexpr size_t kMostListed = 10;
 
 using Names = std::vector<std::string>;
 
-const char* KindOf(LightType type) {
-    switch (type) {
+// Suns are of one kind, whatever their size.
+const char* KindOf(const Light& light) {
+    if (std::holds_alternative<SunLight>(light)) return "delta";
+    switch (TypeOf(light)) {
         case LightType::Infinite:
             return "environment";
         case LightType::Area:
-            return "area";
+            return kArea;
         default:
             return "delta";
     }
@@ -46,7 +49,7 @@ Names NamesOfEmitter(const ShapeEntity& shape, const Description& description) {
     AddNew(GivenName(shape), &names);
     if (shape.material >= 0)
         AddNew(description.materials[size_t(shape.material)].materialName, &names);
-    AddNew(KindOf(LightType::Area), &names);
+    AddNew(kArea, &names);
     return names;
 }
 
@@ -63,7 +66,7 @@ std::vector<NamedLights> ListLights(const Description& description, const Scene&
         Names names;
         AddNew(LightGroupOf(light), &names);
         AddNew(light.label, &names);
-        AddNew(KindOf(TypeOf(scene.lights[int(lights.size())])), &names);
+        AddNew(KindOf(scene.lights[int(lights.size())]), &names);
         lights.push_back({std::move(names), 1});
     }
     for (int i = 0; i < scene.shapes.worldShapeCount; ++i) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
+#include "renderer/base/rounding.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/light_groups.h"
@@ -32,11 +35,26 @@ Light Make(const LightReader& in) {
     return L::Make(in);
 }
 
+// Makes a parallel light, or one with an "angle" across, degrees.
+Light MakeDistant(const LightReader& in) {
+    const DistantLight parallel = DistantLight::Make(in);
+    const float angle = in.entity.parameters.GetFloat("angle", 0);
+    const auto across = InRange(double(angle), 0, 180);
+    if (!across)
+        throw Error(in.entity.loc,
+                    fmt::format("the distant light's \"angle\" is {:g}; it has to be "
+                                "from 0 to 180 degrees",
+                                angle));
+    // Below, directions of float are all the same.
+    if (*across < 1e-3) return parallel;
+    return SunLight(parallel, *across * std::numbers::pi / 180);
+}
+
 constexpr Kind<Light(const LightReader&)> kLights[] = {
     {"point", Make<PointLight>},
     {"spot", Make<SpotLight>},
     {"spot-squared", Make<SpotLight>},
-    {"distant", Make<DistantLight>},
+    {"distant", MakeDistant},
     {"infinite", Make<InfiniteLight>},
     {"exinfinite", Make<InfiniteLight>},
     {"goniometric", Make<GoniometricLight>},

@@ -28,6 +28,7 @@ struct Scene {
     Integrator integrator;
     bool isMoving = false;      // shapes, instances or the camera, while the shutter is open
     bool isVolumetric = false;  // has visible media, or interfaces that shadow rays pass
+    bool hasPanes = false;      // has surfaces with kLetsThrough
 
     TextureTable textures;
     MaterialTable materials;

@@ -96,11 +96,21 @@ void FollowLight(const Context& context, int mostBounces, const Place& place, co
         if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) return;
         SurfaceInteraction hit;
         const Shape& shape = scene.shapes.shapes[found.shape];
-        scene.shapes.Interact(stride.ray, found, scene.materials.Needs(shape.material), &hit,
-                              context.time);
+        const SurfaceNeeds needs = scene.materials.Needs(shape.material);
+        scene.shapes.Interact(stride.ray, found, needs, &hit, context.time);
+        if (needs & kLetsThrough) {
+            SurfaceInteraction at = hit;  // which bump maps turn
+            Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &at);
+            if (GoesThroughPane(hit.wo, false, sampler, &bsdf, &stride.beta)) {
+                stride.ray = hit.SpawnRay(stride.ray.d);
+                --bounces;
+                continue;
+            }
+        }
         Arrival arrival = Arrive(stride, hit.p, hit.n, context.Connected(stride.connects));
         if (!(arrival.density > 0)) return;
         SubpathVertex& v = place(hit, stride.beta, arrival);
+        if (needs & kLetsThrough) v.bsdf.BlockStraight();
         if (bounces == 1) v.arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
         visit(v, hit, emitted->light);
         if (bounces == mostBounces) return;
@@ -167,9 +177,10 @@ Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoi
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     const BsdfValue value = v.TowardsLight(light->wi);
     if (IsBlack(value.f)) return Rgb::Zero();
-    if (!SeesLight(scene, context.time, SurfaceVertex{v.hit, v.bsdf, 0}, *light))
-        return Rgb::Zero();
-    const Rgb L = light->isOnMap ? scene.lights.Radiance(index, *light) : light->L;
+    const auto ray = ShadowRay(SurfaceVertex{v.hit, v.bsdf, 0}, *light);
+    const Rgb share = ray ? ShareAlong(scene, *ray, context.time) : Rgb(Rgb::Zero());
+    if (IsBlack(share)) return Rgb::Zero();
+    const Rgb L = share * (light->isOnMap ? scene.lights.Radiance(index, *light) : light->L);
 
     const double direct = double(light->pdf) * double(pmf);
     const double found = light->isDelta || light->isHidden ? 0 : double(value.pdf) / direct;
@@ -196,8 +207,10 @@ Rgb ConnectedLight(const Context& context, const SubpathVertex& z, const Subpath
     const BsdfValue atZ = z.TowardsLight(w);
     if (IsBlack(atZ.f)) return Rgb::Zero();
     const BsdfValue atY = y.TowardsCamera(-w);
-    const Rgb L = atZ.f * atY.f * y.beta / distance2;
-    if (IsBlack(L) || !SeeEachOther(context.scene, z.hit, y.hit, context.time)) return Rgb::Zero();
+    Rgb L = atZ.f * atY.f * y.beta / distance2;
+    if (IsBlack(L)) return Rgb::Zero();
+    L *= ShareBetween(context.scene, z.hit, y.hit, context.time);
+    if (IsBlack(L)) return Rgb::Zero();
     const double towardsY = double(atZ.pdf) * PerArea(y.hit.n, w, double(distance2));
     const double towardsZ = double(y.Pdf(y.hit.wo, -w)) * PerArea(z.hit.n, w, double(distance2));
     double others = 0;
@@ -283,10 +296,21 @@ template <typename Recorder>
             find(hit.areaLight, EmittedLight(context, stride, hit, found, arrival, choice));
         if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
-        if (isLast && !recorder.Wanted()) break;
+        if (isLast && !recorder.Wanted() && !(needs & kLetsThrough)) break;
 
-        const SubpathVertex v(scene, hit, stride.beta, arrival);
+        SubpathVertex v(scene, hit, stride.beta, arrival);
         recorder.MeetSurface(path, found, v.hit, v.bsdf);
+        if (needs & kLetsThrough) {
+            const bool goesThrough =
+                GoesThroughPane(v.hit.wo, isLast, context.sampler, &v.bsdf, &v.beta);
+            path.beta = stride.beta = v.beta;
+            if (goesThrough) {
+                path.ray = stride.ray = v.hit.SpawnRay(stride.ray.d);
+                recorder.Scatter(path, true);
+                --bounces;
+                continue;
+            }
+        }
         if (isLast) break;
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = SurfaceVertex{v.hit, v.bsdf, found.shape}.Choice(scene.lights);
@@ -393,7 +417,8 @@ class Onlooker {
         Rgb L = value.f * v.beta * (view.perSolidAngle / distance2);
         if (IsBlack(L)) return;
         const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
-        if (scene.accelerator.Occluded({origin, view.lens - origin, 1}, context.time)) return;
+        L *= ShareAlong(scene, {origin, view.lens - origin, 1}, context.time);
+        if (IsBlack(L)) return;
         const double seen = double(view.perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
         const double samples = context.lightPaths;
         L *= float(samples / (Sqr(samples) + Sqr(seen) * v.arrival.Sum(value.pdf)));

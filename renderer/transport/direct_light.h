@@ -87,8 +87,17 @@ template <typename Media, typename Vertex, typename Guiding>
     const float cosine = v.Cosine(light->wi);
     const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
     if constexpr (!Media::kExist) {
-        if (IsBlack(L) || !context.media.Sees(context, v, *light)) return Rgb::Zero();
-        return light->isOnMap ? Rgb(L * context.scene.lights.Radiance(sample.index, *light)) : L;
+        if (IsBlack(L)) return Rgb::Zero();
+        const auto seen = context.media.See(context, v, *light);
+        Rgb arriving = L;
+        if constexpr (Media::kLetThrough) {
+            if (IsBlack(seen)) return Rgb::Zero();
+            arriving *= seen;
+        } else if (!seen) {
+            return Rgb::Zero();
+        }
+        return light->isOnMap ? Rgb(arriving * context.scene.lights.Radiance(sample.index, *light))
+                              : arriving;
     } else {
         const auto sight = context.media.See(context, v, *light);
         if (IsBlack(sight.share)) return Rgb::Zero();

@@ -3,7 +3,7 @@
 namespace lull {
 namespace {
 
-// Follows a ray through interfaces and multiplies the transmittances of their media.
+// Follows a ray through interfaces and panes, and multiplies the transmittances of their media.
 class Beam {
   public:
     Beam(const PathContext<Media>& context, const Ray& ray, int medium)
@@ -20,22 +20,33 @@ class Beam {
         }
         if (!isHit) return false;
         const int material = scene.shapes.shapes[found.shape].material;
-        isInterface = scene.materials.Needs(material) & kIsInterface;
-        scene.shapes.Interact(ray, found, kNeedsNothing, &hit, context.camera.time);
+        const SurfaceNeeds needs = scene.materials.Needs(material);
+        isInterface = needs & kIsInterface;
+        if (needs & kLetsThrough)
+            through = ShareThrough(scene, ray, found, context.camera.time, &hit);
+        else
+            scene.shapes.Interact(ray, found, kNeedsNothing, &hit, context.camera.time);
+        isPane = (needs & kLetsThrough) && !IsBlack(through);
         medium = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, medium);
         return true;
+    }
+    // Goes through the surface. Returns false where no light does.
+    bool GoThrough() {
+        if (isPane) transmittance *= through;
+        return (isInterface || isPane) && !IsBlack(transmittance);
     }
 
     Ray ray;
     Rgb transmittance = Rgb::Ones();
     // Of the surface where the beam is now:
-    bool isInterface = false;
+    bool isInterface = false, isPane = false;
     Hit found;
     SurfaceInteraction hit;
     int medium;  // beyond it
 
   private:
     const PathContext<Media>& context;
+    Rgb through = Rgb::Zero();  // the pane
 };
 
 }  // namespace
@@ -45,7 +56,7 @@ Media::Sight Media::Look(const Context& context, const Vec3f& origin, const Vec3
     const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
     Beam beam(context, rayFrom(origin), from);
     while (beam.Advance()) {
-        if (!beam.isInterface || IsBlack(beam.transmittance)) return {};
+        if (!beam.GoThrough()) return {};
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
     }
     Sight sight{.share = beam.transmittance};
@@ -53,19 +64,22 @@ Media::Sight Media::Look(const Context& context, const Vec3f& origin, const Vec3
     return sight;
 }
 
-int Media::Follow(const Context& context, const Ray& ray, int from, Sighting* sighting) {
+bool Media::Follow(const Context& context, const Ray& ray, int from, int index,
+                   Sighting* sighting) {
     Beam beam(context, ray, from);
-    bool isHit;
-    while ((isHit = beam.Advance()) && beam.isInterface) {
-        if (IsBlack(beam.transmittance)) return kNoLight;
+    while (beam.Advance()) {
+        const bool isThere = context.scene.shapes.LightAt(beam.found) == index;
+        if (isThere && !beam.isInterface) {
+            sighting->share = beam.transmittance;
+            sighting->found = beam.found;
+            sighting->at = beam.hit;
+            return true;
+        }
+        if (!beam.GoThrough()) return false;
         beam.ray = beam.hit.SpawnRay(ray.d);
     }
     sighting->share = beam.transmittance;
-    if (!isHit) return kNothing;
-    sighting->found = beam.found;
-    sighting->at = beam.hit;
-    const int light = context.scene.shapes.LightAt(beam.found);
-    return light >= 0 ? light : kNoLight;
+    return index == kNothing;
 }
 
 }  // namespace lull

@@ -1,8 +1,8 @@
 // Steps of the path loop between two vertices, with and without participating media.
 #pragma once
 
+#include "renderer/transport/panes.h"
 #include "renderer/transport/path_state.h"
-#include "renderer/transport/path_vertex.h"
 
 namespace lull {
 
@@ -13,50 +13,70 @@ struct Sighting {
     Rgb share = Rgb::Ones();  // of its light that gets to where the ray starts, an estimate
 };
 
-// Traces the ray from a surface point to a light's point. Both ends are moved off their surfaces;
-// the factor keeps the light's own surface out (pbrt-v3's ShadowEpsilon). Where that or rounding
-// turns a grazing ray to the other side of the surface, it would pass through: that is in shadow.
-[[gnu::always_inline]] inline bool SeesLight(const Scene& scene, float time, const SurfaceVertex& v,
-                                             const LightSample& light) {
-    const auto occluded = [&](const Ray& ray) { return scene.accelerator.Occluded(ray, time); };
-    if (light.isAtInfinity) return !occluded(v.hit.SpawnRay(light.wi));
+// Makes the ray from a surface point to a light's point; nothing where that is in shadow. Both ends
+// are moved off their surfaces; the factor keeps the light's own surface out (pbrt-v3's
+// ShadowEpsilon). Where that or rounding turns a grazing ray to the other side of the surface, it
+// would pass through: that is in shadow.
+[[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceVertex& v,
+                                                           const LightSample& light) {
+    if (light.isAtInfinity) return v.hit.SpawnRay(light.wi);
     const Vec3f origin = v.OriginTowards(light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
     const Vec3f d = target - origin;
-    return v.IsSameSide(d, light.wi) && !occluded({origin, d, 1 - 0.0001f});
+    if (!v.IsSameSide(d, light.wi)) return {};
+    return Ray{origin, d, 1 - 0.0001f};
 }
 
 // Without media: nothing is there. As with pbrt-v3's path integrator, interfaces block shadow rays.
-struct NoMedia {
-    static constexpr bool kExist = false;
-    using Context = PathContext<NoMedia>;
+// In scenes that have them (`panes`), shadow rays go through panes.
+template <bool panes>
+struct Vacuum {
+    static constexpr bool kExist = false, kLetThrough = panes;
+    using Context = PathContext<Vacuum>;
 
-    explicit NoMedia(const Scene&) {}
+    explicit Vacuum(const Scene&) {}
 
-    [[gnu::always_inline]] static bool Sees(const Context& context, const SurfaceVertex& v,
-                                            const LightSample& light) {
-        return SeesLight(context.scene, context.camera.time, v, light);
+    // Returns the share of a light's sample that gets to a vertex; without panes, whether it does.
+    [[gnu::always_inline]] static auto See(const Context& context, const SurfaceVertex& v,
+                                           const LightSample& light) {
+        const std::optional<Ray> ray = ShadowRay(v, light);
+        const float time = context.camera.time;
+        if constexpr (panes)
+            return ray ? ShareAlong(context.scene, *ray, time) : Rgb(Rgb::Zero());
+        else
+            return ray && !context.scene.accelerator.Occluded(*ray, time);
     }
 
     // Returns whether a ray in direction wi leaves the scene.
     static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
-                            Sighting*) {
-        return !context.scene.accelerator.Occluded(v.hit.SpawnRay(wi), context.camera.time);
+                            Sighting* sighting) {
+        const Ray ray = v.hit.SpawnRay(wi);
+        if constexpr (!panes) return !context.scene.accelerator.Occluded(ray, context.camera.time);
+        sighting->share = ShareAlong(context.scene, ray, context.camera.time);
+        return !IsBlack(sighting->share);
     }
     // Returns whether it meets area light `index`.
     static bool MeetsLight(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
                            int index, Sighting* sighting) {
-        const Ray ray = v.hit.SpawnRay(wi);
+        Ray ray = v.hit.SpawnRay(wi);
         const Scene& scene = context.scene;
-        if (!scene.accelerator.Intersect(ray, &sighting->found, context.camera.time) ||
-            scene.shapes.LightAt(sighting->found) != index)
-            return false;
+        const float time = context.camera.time;
+        for (;;) {
+            if (!scene.accelerator.Intersect(ray, &sighting->found, time)) return false;
+            if (scene.shapes.LightAt(sighting->found) == index) break;
+            if constexpr (!panes) return false;
+            sighting->share *= ShareThrough(scene, ray, sighting->found, time, &sighting->at);
+            if (IsBlack(sighting->share)) return false;
+            ray = sighting->at.SpawnRay(wi);
+        }
         scene.shapes.Interact(ray, sighting->found, kNeedsNothing, &sighting->at);
         return true;
     }
 
     // Whether paths at their last ray, too, look for light behind such a surface.
-    static constexpr bool LooksBehind(SurfaceNeeds) { return false; }
+    static constexpr bool LooksBehind(SurfaceNeeds needs) {
+        return panes && (needs & kLetsThrough);
+    }
     // Carries the ray on behind an interface; returns false where the path ends. Lights behind it
     // are seen only by rays for which emission counts in full.
     [[gnu::always_inline]] static bool GoThrough(const SurfaceInteraction& hit, int, bool isLast,
@@ -71,10 +91,13 @@ struct NoMedia {
     static void Leave(const SurfaceVertex&, const Vec3f&) {}
 };
 
-// With media, pbrt-v3's volpath: shadow rays go through interfaces.
+using NoMedia = Vacuum<false>;
+using NoMediaButPanes = Vacuum<true>;
+
+// With media, pbrt-v3's volpath: shadow rays go through interfaces, and panes.
 class Media {
   public:
-    static constexpr bool kExist = true;
+    static constexpr bool kExist = true, kLetThrough = true;
     using Context = PathContext<Media>;
 
     // Starts where the camera is.
@@ -110,19 +133,19 @@ class Media {
     template <typename Vertex>
     bool LeavesScene(const Context& context, const Vertex& v, const Vec3f& wi,
                      Sighting* sighting) const {
-        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
-               kNothing;
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), kNothing,
+                      sighting);
     }
     template <typename Vertex>
     bool MeetsLight(const Context& context, const Vertex& v, const Vec3f& wi, int index,
                     Sighting* sighting) const {
-        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), sighting) ==
-               index;
+        return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), index,
+                      sighting);
     }
 
     // Surfaces behind an interface still belong to the last vertex, whose shadow rays see them;
     // rays that count in full end there, as with pbrt-v3.
-    static bool LooksBehind(SurfaceNeeds needs) { return needs & kIsInterface; }
+    static bool LooksBehind(SurfaceNeeds needs) { return needs & (kIsInterface | kLetsThrough); }
     bool GoThrough(const SurfaceInteraction& hit, int shape, bool isLast, Path* path) {
         if (isLast && path->seesLights) return false;
         medium = table->Beyond(shape, path->ray.d.dot(hit.n) > 0, medium);
@@ -133,8 +156,7 @@ class Media {
     void Leave(const SurfaceVertex& v, const Vec3f& wi) { medium = Towards(v, wi); }
 
   private:
-    // Hits of a ray other than area lights.
-    static constexpr int kNothing = -2, kNoLight = -1;
+    static constexpr int kNothing = -2;  // in place of an area light
 
     // Return the medium on the side of a vertex that a direction points to.
     int Towards(const SurfaceVertex& v, const Vec3f& wi) const {
@@ -145,9 +167,9 @@ class Media {
     // Looks along a segment that starts in medium `from`.
     static Sight Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
                       bool isAtInfinity);
-    // Follows a ray that starts in medium `from` through interfaces. Returns the light that it
-    // meets, or one of the above.
-    static int Follow(const Context&, const Ray&, int from, Sighting*);
+    // Follows a ray that starts in medium `from` through interfaces and panes. Returns whether it
+    // meets area light `index`.
+    static bool Follow(const Context&, const Ray&, int from, int index, Sighting*);
 
     const MediumTable* table;
     int medium;  // that the path's next ray is in

@@ -155,13 +155,30 @@ template <typename Media, typename Guiding, typename Recorder>
         }
 
         // Make the BSDF, while what has been learned of the environment is loaded.
+        const LearnedPlace learnedBefore = path.learned;
         if (context.learned) [[unlikely]]
             path.learned = FindLearned(*context.learned, hit.p, SideOf(FaceForward(hit.n, hit.wo)));
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
+        const SurfaceVertex v{hit, bsdf, found.shape};
+
+        // Go straight on through a pane, which is no vertex: shadow rays pass it, too.
+        if constexpr (Media::kLetThrough)
+            if (needs & kLetsThrough) {
+                Rgb beta = path.beta;
+                const bool goesThrough = GoesThroughPane(hit.wo, isLast, sampler, &bsdf, &beta);
+                path.beta = beta;
+                if (goesThrough) {
+                    path.learned = learnedBefore;
+                    path.ray = hit.SpawnRay(path.ray.d);
+                    context.media.Leave(v, path.ray.d);
+                    recorder.Scatter(path, true);
+                    --bounces;
+                    continue;
+                }
+            }
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
-        const SurfaceVertex v{hit, bsdf, found.shape};
         guiding.Enter(v, !(needs & kScattersBelow));
 
         // Sample the light that arrives directly from lights.
@@ -217,7 +234,8 @@ PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOp
                                  options.learned.IsEmpty() ? nullptr : &options.learned},
                                 options, start.ray, detail);
     };
-    return scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
+    if (scene.isVolumetric) return trace(Media(scene));
+    return scene.hasPanes ? trace(NoMediaButPanes(scene)) : trace(NoMedia(scene));
 }
 
 PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, const Vec2i& pixel,
@@ -237,7 +255,9 @@ PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, con
         return Trace(PathContext<Media>{scene, integrator, estimator, sampler, start.camera, media},
                      start.ray, unguided, recorder);
     };
-    const Rgb L = scene.isVolumetric ? trace(Media(scene)) : trace(NoMedia(scene));
+    const Rgb L = scene.isVolumetric ? trace(Media(scene))
+                  : scene.hasPanes   ? trace(NoMediaButPanes(scene))
+                                     : trace(NoMedia(scene));
     log.sample = Weighted(scene, start, {L, false});
     return log;
 }

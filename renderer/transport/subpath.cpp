@@ -1,5 +1,7 @@
 #include "renderer/transport/subpath.h"
 
+#include "renderer/transport/panes.h"
+
 namespace lull {
 namespace {
 
@@ -76,8 +78,8 @@ bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stri
     return stride->density > 0;
 }
 
-bool SeeEachOther(const Scene& scene, const SurfaceInteraction& a, const SurfaceInteraction& b,
-                  float time) {
+Rgb ShareBetween(const Scene& scene, const SurfaceInteraction& a, const SurfaceInteraction& b,
+                 float time) {
     const Vec3f w = b.p - a.p;
     const Vec3f from = OffsetRayOrigin(a.p, a.pError, a.n, w);
     const Vec3f to = OffsetRayOrigin(b.p, b.pError, b.n, -w);
@@ -85,8 +87,8 @@ bool SeeEachOther(const Scene& scene, const SurfaceInteraction& a, const Surface
     const auto isSameSide = [](const Vec3f& n, const Vec3f& v, const Vec3f& u) {
         return (n.dot(v) < 0) == (n.dot(u) < 0);
     };
-    return isSameSide(a.n, d, w) && isSameSide(b.n, d, w) &&
-           !scene.accelerator.Occluded({from, d, 1 - 0.0001f}, time);
+    if (!isSameSide(a.n, d, w) || !isSameSide(b.n, d, w)) return Rgb::Zero();
+    return ShareAlong(scene, {from, d, 1 - 0.0001f}, time);
 }
 
 bool SurvivesRoulette(float brightest, int bounces, float threshold, Sampler& sampler, Rgb* beta) {

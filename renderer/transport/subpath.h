@@ -107,9 +107,9 @@ enum class Origin { Camera, Light };
 bool Scatter(Origin, const SubpathVertex&, const Vec2f& u, Stride*, bool* isSpecular,
              bool* isTransmission);
 
-// Returns whether nothing lies between two points of surfaces.
-bool SeeEachOther(const Scene&, const SurfaceInteraction& a, const SurfaceInteraction& b,
-                  float time);
+// Returns the share of light that gets from one point of a surface to another.
+Rgb ShareBetween(const Scene&, const SurfaceInteraction& a, const SurfaceInteraction& b,
+                 float time);
 
 // Ends dim subpaths at random as paths end by Estimator::Combined; `brightest` is their throughput.
 // Returns false where it ends.

@@ -45,7 +45,7 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, names in (1, ["factory", "lamps", "glass"]), (11, ["skin"]):
+        for frame, names in (1, ["factory", "lamps", "glass", "veil"]), (11, ["skin"]):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
                     "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -124,6 +124,11 @@ class AddOn(unittest.TestCase):
     def test_glass_under_an_image(self):
         passes, said = self.render("glass")
         self.assert_close("glass", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_alpha_portals_and_a_sun(self):
+        passes, said = self.render("veil")
+        self.assert_close("veil", passes, 0.01, 0.02)
         self.assertNotIn("Warning", said)
 
     def test_skin_at_a_frame(self):

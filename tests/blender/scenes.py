@@ -119,6 +119,26 @@ def glass(folder):
     camera((0, -4.5, 2), (1.25, 0, 0))
 
 
+def veil(folder):
+    """A sun with an angle and a grey sky; a cube and a sheet that are partly there, whatever EEVEE's
+    blend mode; one that EEVEE alone would blend; a portal, which neither shines nor shades."""
+    floor(matte())
+    half = material("half", 'BsdfPrincipled', **{'Base Color': (0.2, 0.3, 0.8, 1), 'Alpha': 0.4, 'Specular': 0,
+                                                 'Roughness': 1})
+    bpy.ops.mesh.primitive_cube_add(size=1.2, location=(-1.2, 0, 0.6))
+    dress(half)
+    bpy.ops.mesh.primitive_plane_add(size=1.5, location=(1, 0.5, 1))
+    dress(half)
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(1, -1, 0.25))
+    dress(matte("blended")).active_material.blend_method = 'BLEND'
+    lamp('SUN', 1, (0, 0, 5), (0.6, 0.3, 0), angle=0.2)
+    lamp('AREA', 100, (0, 0, 3), size=5).data.cycles.is_portal = True
+    world = bpy.data.worlds.new("grey")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
+
+
 def skin(folder):
     """A bone bends a bar in the frames 1 to 11; the world is a plain colour, the floor has no
     material, and what is in an excluded collection is not there."""

@@ -18,7 +18,7 @@ int NumberOf(const std::string& info, const std::string& label) {
 
 TEST(Room, LoadsWithoutWarnings) {
     const TemporaryDirectory directory;
-    for (const char* name : {"room.pbrt", "room-night.pbrt"}) {
+    for (const char* name : {"room.pbrt", "room-glazed.pbrt", "room-night.pbrt"}) {
         const Outcome outcome = RunLull(directory, "info " + (kRoom / name).string());
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");

@@ -6,15 +6,18 @@ from bpy_extras.object_utils import world_to_camera_view
 
 
 def prepare(scene, warn):
-    """Gives point lights their radius and makes meshes of area lights, which glTF lacks."""
+    """Gives point lights a radius, suns an angle, and makes meshes of area lights: glTF lacks these."""
     graph = bpy.context.evaluated_depsgraph_get()
     lamps = [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
-             if i.object.type == 'LIGHT' and not i.object.original.hide_render]
+             if i.object.type == 'LIGHT' and not i.object.original.hide_render
+             and not _is_portal(i.object.original.data)]
     for light in {o.data for o, _ in lamps}:
         if light.use_nodes:
             _fold_nodes(light, warn)
         if light.type == 'POINT' and light.shadow_soft_size > 0:
             light["lull"] = {"radius": light.shadow_soft_size}
+        if light.type == 'SUN' and light.angle > 0:
+            light["lull"] = {"angle": light.angle}
         if light.type == 'SPOT':
             light.spot_blend = _blend_of(light)
         light.use_nodes = False  # would be taken for all of its strength
@@ -22,13 +25,16 @@ def prepare(scene, warn):
         light = o.data
         if light.type == 'SPOT' and light.shadow_soft_size > 0:
             warn(f"spot light '{o.name}' has no radius: its shadows are sharp")
-        elif light.type == 'SUN' and light.angle > 0:
-            warn(f"sun '{o.name}' has no angle: its shadows are sharp")
         elif not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 warn(f"light '{o.name}' is seen by the camera")
         if light.type == 'AREA':
             _add_area(scene, o, matrix, warn)
+
+
+def _is_portal(light):
+    """Returns whether a light only tells Cycles where the sky comes from."""
+    return light.type == 'AREA' and getattr(getattr(light, "cycles", None), "is_portal", False)
 
 
 def _blend_of(light):

@@ -22,6 +22,9 @@ def prepare(objects, warn):
             continue
         _rewrite(material.node_tree, output)
         _warn_of(material, output, warn)
+        # The exporter asks the blend mode of EEVEE, Cycles does not.
+        if hasattr(material, "blend_method"):
+            material.blend_method = 'BLEND' if _has_alpha(output) else 'OPAQUE'
         # The exporter takes the first output that it finds.
         for node in list(material.node_tree.nodes):
             if node.type == 'OUTPUT_MATERIAL' and node != output:
@@ -98,6 +101,14 @@ def _upstream(node):
             found.append(node)
             todo += [link.from_node for socket in node.inputs for link in socket.links]
     return found
+
+
+def _has_alpha(output):
+    for node in _upstream(output):
+        alpha = node.inputs.get('Alpha') if node.type == 'BSDF_PRINCIPLED' else None
+        if node.type == 'BSDF_TRANSPARENT' or (alpha and (alpha.links or alpha.default_value < 1)):
+            return True
+    return False
 
 
 def _warn_of(material, output, warn):

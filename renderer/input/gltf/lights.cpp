@@ -32,12 +32,25 @@ void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
     description->shapes.push_back(std::move(sphere));
 }
 
-// Returns the radius of a light that is lull's own to know, 0 for none.
+// Returns a number that is lull's own to know, 0 for none.
+double Extra(const tinygltf::Light& light, const std::string& name) {
+    if (!light.extras.Has("lull") || !light.extras.Get("lull").Has(name)) return 0;
+    return light.extras.Get("lull").Get(name).GetNumberAsDouble();
+}
+
 double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
-    if (!light.extras.Has("lull") || !light.extras.Get("lull").Has("radius")) return 0;
-    const double radius = light.extras.Get("lull").Get("radius").GetNumberAsDouble();
+    const double radius = Extra(light, "radius");
     if (!(radius >= 0)) throw Error(loc, "its radius is negative");
     return radius;
+}
+
+// Returns the angle across a directional light, degrees.
+double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
+    const double angle = Extra(light, "angle");
+    const auto across = InRange(angle, 0, std::numbers::pi);
+    if (!across)
+        throw Error(loc, fmt::format("its angle is {:g}; it has to be from 0 to pi", angle));
+    return *across * 180 / std::numbers::pi;
 }
 
 void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const ParameterWriter& write) {
@@ -97,6 +110,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
         write.Spectrum("L", strength);
         write.Point("from", Vec3f(0, 0, 1));
         write.Point("to", Vec3f::Zero());
+        if (const double angle = AngleOf(light, loc); angle > 0) write.Float("angle", angle);
     } else {
         write.Spectrum("I", strength);
         entity.name = light.type == "spot" ? "spot-squared" : "point";

@@ -89,7 +89,17 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
     if (hasSheen) traits.isConstant = false;  // the light left to the rest depends on the view
+    if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
+}
+
+bool MetallicRoughness::CanLetThrough() const {
+    if (solid || transmissionFactor == 0) return false;
+    const SpectrumTexture& packed = metallicRoughness.texture;
+    if (anisotropyFactor > 0 && anisotropy.texture.IsConstant()) return false;
+    if (!packed.IsConstant()) return true;
+    return metallicFactor * packed.constant.z() < 1 &&
+           AlphaOf(roughnessFactor * packed.constant.y()) < kSmoothAlpha;
 }
 
 SurfaceTilt MetallicRoughness::Tilt(const MaterialReader& in) const {

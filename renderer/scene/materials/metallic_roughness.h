@@ -39,6 +39,8 @@ struct MetallicRoughness {
     SurfaceTilt Tilt(const MaterialReader& in) const;
 
   private:
+    // Returns whether it is a smooth thin sheet anywhere, which light goes straight through.
+    bool CanLetThrough() const;
     template <typename F>
     void VisitSlots(F&& f) const {
         for (const auto* slot :

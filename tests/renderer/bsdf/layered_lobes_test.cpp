@@ -160,5 +160,34 @@ TEST(ThinSpecular, DividesLightByFresnel) {
     }
 }
 
+// What goes straight through is what samples transmit, and nothing after it has been blocked.
+TEST(ThinSpecular, LetsTheShareOfItsSamplesThrough) {
+    Bsdf bsdf = MakeBsdf({LambertianReflection{Rgb(0.2f, 0.2f, 0.2f)},
+                          Scaled(ThinSpecular{Rgb(0.02f, 0.02f, 0.02f), 0.5f, Rgb(0.5f, 0.3f, 0.1f),
+                                              InterfaceAbove{0.04f, 1}, 0.5f},
+                                 Rgb(0.9f, 0.8f, 0.7f))});
+    for (const double angle : {0., 40., 100., 175.}) {
+        const Vec3f wo = FromAngles(angle, 20);
+        const auto transmitted = [&] {
+            Rgb sum = Rgb::Zero();
+            constexpr int n = 1000;
+            for (int i = 0; i < n; ++i) {
+                const auto s = bsdf.Sample(wo, {(float(i) + 0.5f) / n, 0.5f}, LobeSet::All);
+                if (!s || !s->isTransmission) continue;
+                EXPECT_LT((s->wi + wo).norm(), 1e-6f);
+                sum += s->f * (std::abs(s->wi.z()) / (s->pdf * n));
+            }
+            return sum;
+        };
+        const Rgb through = bsdf.StraightThrough(wo);
+        EXPECT_LT((transmitted() - through).abs().maxCoeff(), 1e-3f) << angle;
+        EXPECT_GT(through.minCoeff(), 0.02f) << angle;
+        Bsdf blocked = bsdf;
+        blocked.BlockStraight();
+        EXPECT_TRUE(IsBlack(blocked.StraightThrough(wo)));
+        EXPECT_EQ(blocked.LobeCount(LobeSet::All), 2);
+    }
+}
+
 }  // namespace
 }  // namespace lull::test

@@ -286,6 +286,25 @@ TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
                     .isApprox(Rgb::Constant(4 / kPi)));
 }
 
+TEST(GltfLights, HaveAnAngleOfOurOwn) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    const auto parse = [&](double angle) {
+        file.root["extensions"] = {
+            {"KHR_lights_punctual",
+             {{"lights",
+               {{{"type", "directional"}, {"extras", {{"lull", {{"angle", angle}}}}}}}}}}};
+        return kFolder.Parse(file);
+    };
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const Description d = parse(double(kPi) / 180);
+    ASSERT_EQ(d.lights.size(), 1u);
+    EXPECT_NEAR(d.lights[0].parameters.GetFloat("angle", 0), 1, 1e-6);
+    EXPECT_EQ(parse(0).lights[0].parameters.GetFloat("angle", -1), -1);
+    EXPECT_TRUE(Contains(ErrorOf([&] { parse(-1); }), "its angle is -1"));
+}
+
 TEST(GltfLights, AreNamedByTheNodeOrTheLight) {
     GltfFile file;
     file.root["extensionsUsed"] = {"KHR_lights_punctual"};
