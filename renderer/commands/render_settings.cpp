@@ -48,7 +48,8 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         ->capture_default_str();
 
     if (withSampler)
-        AddChoiceOption(app, "--sampler", &s->sampler, "Choose the sampler [the scene's; render --denoise: sobol]")
+        AddChoiceOption(app, "--sampler", &s->sampler,
+                        "Choose the sampler [the scene's; render --denoise: sobol]")
             ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")

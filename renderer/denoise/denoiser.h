@@ -10,7 +10,7 @@
 
 namespace lull {
 
-inline constexpr int kDenoiserBytes = 230;        // of memory a pixel, while it works
+inline constexpr int kDenoiserBytes = 254;        // of memory a pixel, while it works
 inline constexpr int kSmallestMeasuredSide = 10;  // pixels of a block whose error can be measured
 
 struct DenoiserOptions {
