@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "renderer/base/error.h"
@@ -48,18 +49,19 @@ bool IsReplaced(const std::string& name) {
            name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");
 }
 
-// Returns R, G, B of the mean of both halves, or of all samples where the file has it.
+// Returns R, G, B of the mean of both halves, or of all samples where the file has it; 0 for values
+// that are not finite.
 std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool isWhole) {
     std::vector<float> mean(picture.colour.a.values.size());
     for (size_t c = 0; c < 3; ++c) {
         const std::string name(1, "RGB"[c]);
         const ExrChannel* channel = exr.Find("noisy." + name);
         if (!channel) channel = exr.Find(name);
-        for (size_t i = 0; i < picture.colour.a.Area(); ++i)
-            mean[3 * i + c] =
-                isWhole && channel
-                    ? channel->values[i]
-                    : (picture.colour.a.Plane(int(c))[i] + picture.colour.b.Plane(int(c))[i]) / 2;
+        const float *a = picture.colour.a.Plane(int(c)), *b = picture.colour.b.Plane(int(c));
+        for (size_t i = 0; i < picture.colour.a.Area(); ++i) {
+            const float value = isWhole && channel ? channel->values[i] : (a[i] + b[i]) / 2;
+            mean[3 * i + c] = std::isfinite(value) ? value : 0;
+        }
     }
     return mean;
 }

@@ -6,6 +6,7 @@
 
 #include "renderer/denoise/displayed_lightness.h"
 #include "renderer/denoise/structure.h"
+#include "renderer/denoise/tile.h"
 #include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/svd_entropy.h"
 
@@ -164,6 +165,30 @@ EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     return error;
 }
 
+DenoisedPicture CropPicture(const DenoisedPicture& denoised, const ImageTile& tile) {
+    const auto crop = [&](const Planes& image) { return Crop(image, tile); };
+    return {crop(denoised.picture),
+            {crop(denoised.halves.a), crop(denoised.halves.b)},
+            {crop(denoised.noisy.a), crop(denoised.noisy.b)},
+            crop(denoised.variance),
+            crop(denoised.returned)};
+}
+
+Planes StandardErrorOf(const DenoisedPicture& denoised, const Planes& structure) {
+    const EstimatedError error = Measure(denoised, false);
+    const Planes squared = BoxMean(error.squared, kSmoothRadius);
+    Planes result = BoxMean(error.least, kSmoothRadius);
+    for (size_t i = 0; i < result.Area(); ++i) {
+        const float y = LuminanceOf(denoised.picture, i);
+        const float returned = DisplayedLightness(y).lightness -
+                               DisplayedLightness(y - denoised.returned.values[i]).lightness;
+        result.values[i] =
+            std::max({std::sqrt(std::max({0.f, result.values[i], squared.values[i]})),
+                      std::abs(structure.values[i]), returned});
+    }
+    return result;
+}
+
 }  // namespace
 
 Planes AsSeen(Planes difference) {
@@ -202,16 +227,14 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
 }
 
 Planes StandardError(const DenoisedPicture& denoised, const Planes& structure) {
-    const EstimatedError error = Measure(denoised, false);
-    const Planes squared = BoxMean(error.squared, kSmoothRadius);
-    Planes result = BoxMean(error.least, kSmoothRadius);
-    for (size_t i = 0; i < result.Area(); ++i) {
-        const float y = LuminanceOf(denoised.picture, i);
-        const float returned = DisplayedLightness(y).lightness -
-                               DisplayedLightness(y - denoised.returned.values[i]).lightness;
-        result.values[i] =
-            std::max({std::sqrt(std::max({0.f, result.values[i], squared.values[i]})),
-                      std::abs(structure.values[i]), returned});
+    const int width = structure.width, height = structure.height;
+    Planes result(width, height, 1);
+    for (int y0 = 0; y0 < height; y0 += BandRows(height)) {
+        const int y1 = std::min(height, y0 + BandRows(height));
+        const ImageTile rows =
+            ImageTile{0, y0 - kSmoothRadius, width, y1 + kSmoothRadius}.Within(width, height);
+        const Planes made = StandardErrorOf(CropPicture(denoised, rows), Crop(structure, rows));
+        Paste(made, {0, y0 - rows.y0, width, y1 - rows.y0}, 0, y0, &result);
     }
     return result;
 }

@@ -18,6 +18,8 @@ constexpr int kKernelReach = kBarReach * kBoxSide;
 static_assert(kKernelReach >= kLineReach);
 constexpr int kMiddleReach = 2;  // pixels of a line
 constexpr int kAroundReach = 3;
+// Distance up to which pixels contribute to the sums around one.
+constexpr int kResidualReach = kKernelReach + kBoxRadius + kAroundReach;
 constexpr int kRestoreRounds = 3;
 // Standard deviations from which on a mean is structure, and is so for certain.
 constexpr float kDoubtful = 4.5f, kCertain = 5.5f;
@@ -77,11 +79,12 @@ struct Residual {
         kTails,       // and that by the mean of its squares
         kChannels
     };
-    Cutout pixels, boxes;  // with zeros kKernelReach pixels beyond the border
+    Cutout pixels, boxes;  // with zeros beyond the border of the picture
 };
 
+// Measures row y of the picture, which is row `row` of the result.
 void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& picture, int y,
-                     Planes* to) {
+                     int row, Planes* to) {
     for (int x = 0; x < variance.width; ++x) {
         const size_t i = size_t(y) * size_t(variance.width) + size_t(x);
         const float a = LuminanceOf(noisy.a, i), b = LuminanceOf(noisy.b, i);
@@ -91,11 +94,12 @@ void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& 
         for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(variance.Plane(c)[i]);
         const auto bounded = [](float v) { return std::clamp(v, -1e9f, 1e9f); };
         const float difference = bounded(slope * std::abs(a - b) / 2);
-        to->Plane(Residual::kValue)[i] = bounded(slope * ((a + b) / 2 - made));
-        to->Plane(Residual::kVariance)[i] =
+        to->Row(Residual::kValue, row)[x] = bounded(slope * ((a + b) / 2 - made));
+        to->Row(Residual::kVariance, row)[x] =
             Sqr(bounded(slope * Luminance(deviations))) / 2 + Sqr(kLeastDeviation);
-        to->Plane(Residual::kDifference)[i] = to->Plane(Residual::kTails)[i] = Sqr(difference);
-        to->Plane(Residual::kAround)[i] = difference;
+        to->Row(Residual::kDifference, row)[x] = Sqr(difference);
+        to->Row(Residual::kTails, row)[x] = Sqr(difference);
+        to->Row(Residual::kAround, row)[x] = difference;
     }
 }
 
@@ -106,25 +110,33 @@ void BlurChannel(Residual::Channel channel, Planes* image) {
     std::copy_n(blurred.values.data(), image->Area(), image->Plane(channel));
 }
 
-Cutout WithMargin(const Planes& image) {
-    Cutout cutout(ImageTile{0, 0, image.width, image.height}.Grown(kKernelReach), image.count);
+// Returns some rows of a picture with a margin, of an image whose first row is row `first` of it.
+Cutout WithMargin(const Planes& image, int first, int y0, int y1) {
+    Cutout cutout(ImageTile{0, y0, image.width, y1}.Grown(kKernelReach), image.count);
+    const int begin = std::max(first, y0 - kKernelReach);
+    const int end = std::min(first + image.height, y1 + kKernelReach);
     for (int c = 0; c < image.count; ++c)
-        for (int y = 0; y < image.height; ++y)
-            std::copy_n(image.Row(c, y), image.width, cutout.At(c, 0, y));
+        for (int y = begin; y < end; ++y)
+            std::copy_n(image.Row(c, y - first), image.width, cutout.At(c, 0, y));
     return cutout;
 }
 
-Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& picture) {
-    Planes pixels(variance.width, variance.height, Residual::kChannels);
-    ForEachIndex(variance.height,
-                 [&](int y) { MeasureResidual(noisy, variance, picture, y, &pixels); });
+// Returns the residual of the rows [y0, y1), and of those that kernels around them reach.
+Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& picture, int y0,
+                    int y1) {
+    const int first = std::max(0, y0 - kResidualReach),
+              end = std::min(variance.height, y1 + kResidualReach);
+    Planes pixels(variance.width, end - first, Residual::kChannels);
+    ForEachIndex(end - first, [&](int row) {
+        MeasureResidual(noisy, variance, picture, first + row, row, &pixels);
+    });
     BlurChannel(Residual::kAround, &pixels);
     BlurChannel(Residual::kTails, &pixels);
     for (size_t i = 0; i < pixels.Area(); ++i)
         pixels.Plane(Residual::kAround)[i] =
             kVarianceOfMean * Sqr(pixels.Plane(Residual::kAround)[i]);
-    Cutout ofPixels = WithMargin(pixels);
-    return {std::move(ofPixels), WithMargin(BoxSum(std::move(pixels), kBoxRadius))};
+    Cutout ofPixels = WithMargin(pixels, first, y0, y1);
+    return {std::move(ofPixels), WithMargin(BoxSum(std::move(pixels), kBoxRadius), first, y0, y1)};
 }
 
 // Structure around a pixel: the mean of the residual over a kernel, the share of it that counts,
@@ -175,13 +187,21 @@ void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x,
     }
 }
 
-std::vector<std::vector<Found>> Find(const Residual& residual, const std::vector<Kernel>& kernels,
-                                     int width, int height) {
+// Returns what is found in each row. The residual, which is large, is made for a band of them at a
+// time.
+std::vector<std::vector<Found>> Find(const Halves& noisy, const Planes& variance,
+                                     const Halves& picture, const std::vector<Kernel>& kernels) {
+    const int width = variance.width, height = variance.height;
     std::vector<std::vector<Found>> rows{size_t(height)};
-    ForEachIndex(height, [&](int y) {
-        for (int x = 0; x < width; x += kLanes)
-            FindAt(residual, kernels, x, y, width, &rows[size_t(y)]);
-    });
+    for (int y0 = 0; y0 < height; y0 += BandRows(height)) {
+        const int y1 = std::min(height, y0 + BandRows(height));
+        const Residual residual = ResidualOf(noisy, variance, picture, y0, y1);
+        ForEachIndex(y1 - y0, [&](int row) {
+            const int y = y0 + row;
+            for (int x = 0; x < width; x += kLanes)
+                FindAt(residual, kernels, x, y, width, &rows[size_t(y)]);
+        });
+    }
     return rows;
 }
 
@@ -242,8 +262,7 @@ void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* pictu
     tbb::this_task_arena::isolate([&] {
         for (int round = 0; round < kRestoreRounds; ++round) {
             std::vector<Found> all;
-            for (const auto& row : Find(ResidualOf(noisy, variance, *picture), kernels,
-                                        variance.width, variance.height))
+            for (const auto& row : Find(noisy, variance, *picture, kernels))
                 all.insert(all.end(), row.begin(), row.end());
             if (all.empty()) return;
             for (const auto half : {&Halves::a, &Halves::b})
@@ -255,8 +274,7 @@ void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* pictu
 Planes StructureLeft(const Halves& noisy, const Planes& variance, const Halves& picture) {
     Planes left(variance.width, variance.height, 1);
     tbb::this_task_arena::isolate([&] {
-        for (const auto& row :
-             Find(ResidualOf(noisy, variance, picture), AllKernels(), left.width, left.height))
+        for (const auto& row : Find(noisy, variance, picture, AllKernels()))
             for (const Found& f : row) left.Row(0, f.y)[f.x] = std::sqrt(f.share) * f.mean;
     });
     return left;

@@ -215,5 +215,19 @@ TEST(DenoiseCommand, KnowsTheChannelsOfOthers) {
     ExpectFailure(directory, "denoise a.exr -o out.exr", {"half", "--half", "a.R"});
 }
 
+TEST(DenoiseCommand, WritesNoColoursThatAreNotFinite) {
+    const TemporaryDirectory directory;
+    WriteHalves(directory, {"R", "G", "B"});
+    ExrImage exr = ReadExr(directory.File("a.exr"));
+    for (ExrChannel& channel : exr.channels) {
+        channel.values[100] = NAN;
+        channel.values[1000] = INFINITY;
+    }
+    WriteExr(directory.File("a.exr"), exr);
+    ASSERT_TRUE(Succeeds(directory, "LULL denoise a.exr --half b.exr -o out.exr"));
+    for (const auto& [name, values] : ChannelsOf(directory, "out.exr"))
+        for (const float v : values) ASSERT_TRUE(std::isfinite(v)) << name;
+}
+
 }  // namespace
 }  // namespace lull
