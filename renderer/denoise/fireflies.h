@@ -15,10 +15,10 @@ struct Firefly {
 
 // Scales down each pixel of a half (R, G, B) that is brighter than the same pixel of the other half
 // by more than `limit` times the standard deviation of such differences around, and brighter than
-// all of its neighbours are there, to that limit. The lesser half may be exceeded by as much more as
-// it is above the darkest neighbour: so a pixel bright in both halves, such as a glint, stays
-// unchanged. With more samples, the energy removed vanishes as their noise does. Values are finite and not
-// negative.
+// all of its neighbours are there, to that limit. The lesser half may be exceeded by as much more
+// as it is above the darkest neighbour: so a pixel bright in both halves, such as a glint, stays
+// unchanged. With more samples, the energy removed vanishes as their noise does. Values are finite
+// and not negative.
 std::vector<Firefly> TakeFireflies(float limit, Halves*);
 
 // Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness
