@@ -54,7 +54,7 @@ TEST(Fireflies, AreNotLampsOfAPixel) {
     set(60, 3, 4);
     set(61, 9, 7);  // of the same lamp
     set(90, 0.4f, 0.6f);
-    EXPECT_TRUE(TakeFireflies(4, &halves).empty());
+    EXPECT_TRUE(TakeFireflies(8, &halves).empty());
 }
 
 TEST(Fireflies, KeepTheirColourAndShareItByBrightness) {

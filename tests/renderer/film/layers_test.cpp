@@ -99,7 +99,8 @@ TEST(Planes, AreThoseThatThereAre) {
         return text;
     };
     EXPECT_EQ(names({}), "tiles; sums; ");
-    EXPECT_EQ(names({.features = true}), "tiles; sums; features; noise for the denoiser; ");
+    EXPECT_EQ(names({.features = true}),
+              "tiles; sums; features; noise for the denoiser; lamps for the denoiser; ");
     EXPECT_EQ(names({.aovs = {.normal = true, .object = true, .noise = true}}),
               "tiles; sums; albedo and normal; object and material; noise; ");
     EXPECT_EQ(names({.aovs = {.cryptomatte = true}}), "tiles; sums; alpha; cryptomatte; ");

@@ -277,7 +277,8 @@ TEST(ProjectionLight, ShowsItsImage) {
 
 std::string Sun(double angle) {
     return fmt::format(
-        "LightSource \"distant\" \"rgb L\" [1 2 3] \"point from\" [.6 0 .8] \"float angle\" [{}]",
+        "LightSource \"distant\" \"rgb L\" [1 2 3] \"point from\" [.6 0 .8] "
+        "\"point to\" [0 0 0] \"float angle\" [{}]",
         angle);
 }
 const Vec3f kTowardsSun(0.6f, 0, 0.8f);
@@ -348,11 +349,11 @@ TEST(SunLight, IsADisc) {
 // The edge of a roof at a height of 1 leaves the share of the disc that shows beyond it.
 TEST(SunLight, HasAPenumbra) {
     const double angle = 10, radius = std::tan(angle / 2 * std::numbers::pi / 180);
-    const auto scene = SceneOf(WorldText(
-        fmt::format("LightSource \"distant\" \"point from\" [0 0 1] \"float angle\" [{}]\n"
-                    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
-                    "[0 -9 1  9 -9 1  9 9 1  0 9 1]",
-                    angle)));
+    const auto scene = SceneOf(WorldText(fmt::format(
+        "LightSource \"distant\" \"point from\" [0 0 1] \"point to\" [0 0 0] \"float angle\" [{}]\n"
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
+        "[0 -9 1  9 -9 1  9 9 1  0 9 1]",
+        angle)));
     Random random(6);
     for (const double place : {-1.1, -0.9, -0.5, 0., 0.3, 0.8, 1.1}) {
         const Vec3f p(float(place * radius), 0, 0);
