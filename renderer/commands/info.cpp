@@ -12,8 +12,8 @@
 #include "renderer/files/file_contents.h"
 #include "renderer/render/progress.h"
 #include "renderer/results/report.h"
-#include "renderer/scene/geometry/slabs.h"
 #include "renderer/scene/scene_names.h"
+#include "renderer/scene/slabs.h"
 
 namespace lull::info {
 

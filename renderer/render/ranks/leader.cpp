@@ -41,6 +41,8 @@ class Leader {
         TellGuide();
         SendStart({});
         executor.RestartIntervals();
+        // Passes that an interruption has cut off need the light of their round, too.
+        if (context.light && !schedule.IsOver()) EndLightRound();
         for (;;) {
             executor.pausing = hasGivenUp;
             rank.EnqueueReady();
@@ -257,7 +259,8 @@ class Leader {
                 const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
                 if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film));
             }
-        channel.PostToAll(Pack(RankWord::Begin));
+        // The first round of light paths begins where its light has come (RankWord::Lit).
+        if (!context.light || context.light->End() > 0) channel.PostToAll(Pack(RankWord::Begin));
     }
 
     int NextSpp(int spp) const { return PassEndAfter(spp, schedule.Unlocked().Options()); }

@@ -1,4 +1,4 @@
-#include "renderer/scene/geometry/slabs.h"
+#include "renderer/scene/slabs.h"
 
 #include <algorithm>
 #include <map>
