@@ -279,10 +279,11 @@ RenderOptions BlocksThatStop(int threads) {
 
 // How long a trial takes depends on variances, which processors round differently.
 void ExpectRounds(GuideMode mode, int rounds) {
-    if (mode == GuideMode::On)
+    if (mode == GuideMode::On) {
         EXPECT_EQ(rounds, 6);
-    else
+    } else {
         EXPECT_GE(rounds, 3);
+    }
 }
 
 TEST(Learning, IsTheSameOnAnyNumberOfThreads) {

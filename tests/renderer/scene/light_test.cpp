@@ -303,7 +303,9 @@ TEST(SunLight, HasTheIrradianceOfAParallelLight) {
         EXPECT_LE(unknown, angle < 0.1 ? n : 0) << angle;
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(facing[c], c + 1, 2e-3 * (c + 1)) << angle;
-            if (angle < 90) EXPECT_NEAR(inclined[c], 0.8 * (c + 1), 2e-3 * (c + 1)) << angle;
+            if (angle < 90) {
+                EXPECT_NEAR(inclined[c], 0.8 * (c + 1), 2e-3 * (c + 1)) << angle;
+            }
         }
         const Rgb power = std::get<SunLight>(test.scene->lights[0]).Power();
         const LightScene parallel(Sun(0));
