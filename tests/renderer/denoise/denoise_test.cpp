@@ -166,7 +166,7 @@ TEST(Denoise, LeavesNoTraceOfBands) {
 }
 
 // Lamps of a pixel on a smooth ceiling, each met by some of the samples of a half.
-TEST(Denoise, TakesSmallLampsAsTheyAre) {
+TEST(Denoise, KeepsSmallLampsAsTheyAre) {
     const NoisyPicture rest =
         AddNoise(MakePlanes(160, 128, 3, [](int, int x, int) { return 0.05 + 0.0002 * x; }),
                  FlatFeatures(160, 128), 0.003, 23);
