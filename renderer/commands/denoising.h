@@ -1,4 +1,4 @@
-// What the commands that denoise know of the remaining error, and tell.
+// The remaining error of denoised images, and messages of the commands that denoise.
 #pragma once
 
 #include "renderer/commands/talk.h"

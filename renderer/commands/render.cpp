@@ -111,9 +111,8 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
         !p.request.render.quiet && p.render.Leads())
         TalkOf(p.request.render)
             .Note(
-                "what is denoised is rendered with \"sobol\", which has less noise than the "
-                "scene's "
-                "Sampler \"random\"; --sampler random keeps that");
+                "the denoiser's samples are those of \"sobol\", which has less noise than the "
+                "scene's Sampler \"random\"; --sampler random keeps that");
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();

@@ -17,8 +17,8 @@ struct NoisyPicture {
     // Variance of the luminance of the mean of all samples, from their squares; no channel where it
     // is not known: then the halves alone tell.
     Planes variance;
-    // The part of `colour`, R, G, B, that is light seen directly, such as lamps and sky; no
-    // channels where it is not known. It stays as it is.
+    // The part of `colour`, R, G, B, that comes from lamps seen directly; no channels where it is
+    // not known. That of lamps of few pixels is not filtered.
     Halves emission = {};
 };
 

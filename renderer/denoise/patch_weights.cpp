@@ -4,9 +4,9 @@ namespace lull {
 
 namespace {
 
-// Two pixels are not alike, whatever their values say, where the noise of one alone makes them so,
-// as that of a lamp of a pixel does with everything around it: only so many times the smaller
-// variance counts, or that of noise of this share of the darker one.
+// The variance of a difference is limited to so many times the smaller of both, plus that of noise
+// of this share of the darker value. Without a limit, the large variance of a lamp of a pixel would
+// make it similar to all of its neighbours.
 constexpr float kMostNoise = 30, kLeastNoise = 0.1f;
 
 std::vector<PatchWeights::Offset> WindowOffsets(int radius) {

@@ -187,8 +187,7 @@ void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x,
     }
 }
 
-// Returns what is found in each row. The residual, which is large, is made for a band of them at a
-// time.
+// Returns the structure found in each row. The residual, which is large, is made band by band.
 std::vector<std::vector<Found>> Find(const Halves& noisy, const Planes& variance,
                                      const Halves& picture, const std::vector<Kernel>& kernels) {
     const int width = variance.width, height = variance.height;

@@ -217,7 +217,7 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
         EXPECT_TRUE(fs::exists(directory.File(std::string("out") + extension))) << extension;
 }
 
-// What long renders of the laboratory are made for is not lost, nor what was there before.
+// Neither the results of long renders of the laboratory nor former files are lost.
 TEST(Outputs, PagesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
     const std::string study =

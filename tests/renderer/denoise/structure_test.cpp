@@ -118,8 +118,7 @@ TEST(SampleRange, IsThatOfTheNeighbourhood) {
             }
 }
 
-// Tall pictures are measured in bands: their rows are those of a part of them that is measured as a
-// whole, whatever the band.
+// Tall pictures are measured in bands, with the bits of a part of them that is measured as a whole.
 TEST(Structure, AndErrorsHaveTheSameBitsInAnyBand) {
     const int width = 60, height = 400, above = 90, below = 270, margin = 20;
     const Planes flat(width, height, 3, 0.3f);
