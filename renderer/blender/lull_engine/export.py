@@ -151,6 +151,8 @@ def patch(path):
         # Without this, glass would be a thin sheet; Blender's is solid.
         if "KHR_materials_transmission" in extensions:
             extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
+        if material.get("extras", {}).pop("lull_adds", None):
+            material["extras"]["lull"] = {"addedInterface": True}
         absorbs = material.get("extras", {}).pop("lull_absorbs", None)
         if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
             distance = 1 / max(absorbs)
@@ -186,7 +188,7 @@ def main():
     note_clipping(camera, made, notes)
     baker = bake.Baker(what["texture"])
     for o in surfaces.prepare(made, baker, notes):
-        notes.add("left out: they have a volume alone", o["lull_source"])
+        notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)
     baker.end()
     lights.add(lamps, scene, flat, notes)

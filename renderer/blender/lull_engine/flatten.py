@@ -26,7 +26,7 @@ def flatten(wanted, override, notes):
             continue
         if o.type not in _MESHES:
             if o.type not in _UNSEEN:
-                notes.add("left out, as glTF has nothing like them", o.original.name)
+                notes.add("left out, as glTF has nothing alike", o.original.name)
             continue
         key = _key(o)
         if key not in meshes:
@@ -88,9 +88,9 @@ def _note_of(o, notes):
     for system in original.particle_systems:
         settings = system.settings
         if settings.type == 'HAIR' and settings.render_type == 'PATH' or settings.render_type in ('LINE', 'HALO'):
-            notes.add("without their hair", original.name)
+            notes.add("without hair", original.name)
     if original.is_shadow_catcher or original.is_holdout:
-        notes.add("shown as any others, not as shadow catchers or holdouts", original.name)
+        notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
     unseen = [name for name in ("camera", "diffuse", "glossy", "transmission", "shadow")
               if not getattr(original, "visible_" + name, True)]
     if unseen:

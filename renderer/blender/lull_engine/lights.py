@@ -21,7 +21,7 @@ def add(lamps, scene, flat, notes):
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), notes)
         if light.type == 'SPOT' and light.shadow_soft_size > 0:
-            notes.add("without a radius: their shadows are sharp", o.name, "lights")
+            notes.add("without a radius, with sharp shadows", o.name, "lights")
         elif not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
@@ -70,7 +70,7 @@ def _fold_nodes(light, notes):
     links = output.inputs['Surface'].links if output else ()
     emission = links[0].from_node if links else None
     if emission is None or emission.type != 'EMISSION':
-        notes.add("shining without their nodes", light.name, "lights")
+        notes.add("shining without nodes", light.name, "lights")
         return
     strength, colour = emission.inputs['Strength'], emission.inputs['Color']
     source = colour.links[0].from_node if colour.links else None
@@ -81,11 +81,11 @@ def _fold_nodes(light, notes):
     else:
         shown = colour.default_value
         if source is not None:
-            notes.add("shining in the colour before their nodes", light.name, "lights")
+            notes.add("shining in the plain colour, without nodes", light.name, "lights")
     if strength.links and strength.links[0].from_node.type == 'VALUE':
         light.energy *= strength.links[0].from_socket.default_value
     elif strength.links:
-        notes.add("shining evenly, without their IES profile or other nodes", light.name, "lights")
+        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
     else:
         light.energy *= strength.default_value
     light.color = [a * b for a, b in zip(light.color, shown)]
@@ -117,7 +117,7 @@ def _is_in_view(scene, point):
 def _add_area(flat, o, light, matrix, notes):
     """Adds a mesh that emits downwards, like the light."""
     if light.spread < math.pi - 1e-4:
-        notes.add("shining to all sides: their spread is left out", o.name, "lights")
+        notes.add("shining to all sides, without spread", o.name, "lights")
     width = light.size
     height = light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else width
     if light.shape in ('SQUARE', 'RECTANGLE'):

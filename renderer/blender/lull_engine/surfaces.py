@@ -165,11 +165,11 @@ class _Surface:
         output = self.tree.get_output_node('CYCLES')
         self.absorbs = self._absorption(output)
         if output.inputs['Displacement'].links:
-            notes.add("without their displacement", self.name, "materials")
+            notes.add("without displacement", self.name, "materials")
         self.parameters = self._closure(output.inputs['Surface'])
         self.place = 'all'
         if self.parameters is None:
-            notes.add("of their viewport colour, with no node that glTF knows", self.name, "materials")
+            notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
         for name, value in self.parameters.items():
             if name == 'Normal':
@@ -212,6 +212,9 @@ class _Surface:
         found = self._made(node)
         for name in _INPUTS:
             found[name] = self._value(_input(node, name))
+        if bpy.app.version < (4, 0):  # until then a coat had a quarter of its weight, and took no light from the base
+            found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
+            self.copy["lull_adds"] = True
         emission = next(node.inputs[n] for n in _EMISSION if n in node.inputs)
         found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
         for name in _UNSAID:
@@ -299,7 +302,7 @@ class _Surface:
         node = source.node
         inputs = [s for s in node.inputs if s.links]
         if node.type != 'VOLUME_ABSORPTION' or inputs:
-            self.notes.add("without their volume", self.name, "materials")
+            self.notes.add("without volume", self.name, "materials")
             return None
         density = node.inputs['Density'].default_value
         return [density * max(0, 1 - c) for c in node.inputs['Color'].default_value[:3]]
