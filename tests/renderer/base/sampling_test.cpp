@@ -31,8 +31,8 @@ void ExpectMean(const F& f, double expected, const char* what) {
 TEST(SineCosine, IsAsPreciseAsFloats) {
     for (int i = -1000; i <= 1000; ++i) {
         const float angle = kPi / 4 * float(i) / 1000;
-        EXPECT_NEAR(SineCosineOf(angle).sine, std::sin(double(angle)), 6e-8) << angle;
-        EXPECT_NEAR(SineCosineOf(angle).cosine, std::cos(double(angle)), 6e-8) << angle;
+        EXPECT_NEAR(SineCosineOf(angle).sine, std::sin(double(angle)), 1e-7) << angle;
+        EXPECT_NEAR(SineCosineOf(angle).cosine, std::cos(double(angle)), 1e-7) << angle;
     }
     for (int i = 0; i <= 8192; ++i) {
         const float u = std::min(float(i) / 8192, kOneMinusEpsilon);
