@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Writes the reference of commands, C and Python in Markdown, from the help, headers and docstrings.
 
-reference.py LULL FILE: runs `LULL COMMAND --help-all`, reads the sources, and writes FILE.
+reference.py LULL FILE: runs `LULL COMMAND --help-all`, reads the sources, and writes FILE. With --check, fails if FILE
+differs from that. renderer/docs/reference.md is written in this way.
 """
 import ast
+import difflib
 import inspect
 import pathlib
 import re
@@ -77,16 +79,24 @@ def python_interface(file):
 
 
 def main():
-    if len(sys.argv) != 3:
+    is_check = sys.argv[3:] == ["--check"]
+    if len(sys.argv) != 3 and not is_check:
         raise SystemExit(__doc__)
-    parts = ["# Reference\n", "## Commands\n", *commands(sys.argv[1])]
+    lull, file = sys.argv[1:3]
+    parts = ["# Reference\n", "Written by `cmake/reference.py`, from the help, headers and docstrings.\n", "## Commands\n",
+             *commands(lull)]
     for header in HEADERS:
         parts += [f"## C: `lull/{pathlib.Path(header).name}`\n", *c_interface(header)]
     for module, files in MODULES.items():
         parts.append(f"## Python: `{module}`\n")
-        for file in files:
-            parts += python_interface(file)
-    pathlib.Path(sys.argv[2]).write_text("\n".join(parts))
+        for source in files:
+            parts += python_interface(source)
+    text = "\n".join(parts)
+    if not is_check:
+        pathlib.Path(file).write_text(text)
+    elif pathlib.Path(file).read_text() != text:
+        difference = difflib.unified_diff(pathlib.Path(file).read_text().split("\n"), text.split("\n"), lineterm="")
+        raise SystemExit("\n".join(difference) + f"\n{file} differs. Write it again: cmake/reference.py {lull} {file}")
 
 
 if __name__ == "__main__":

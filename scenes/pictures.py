@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
 """Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [many-lights|room|report]: of many-lights, render.png, spp.png and decision.svg, the estimates for the
-block that stopped last. Of the room, denoised: room-day.jpg, room-spp.png and room-night.jpg. report.jpg is a screenshot
-of a report. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+pictures.py LULL [many-lights|room|report]: of many-lights decision.svg, the estimates for the block that stopped last. Of
+the room, denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -55,8 +53,6 @@ def curve(decisions, width, height):
 def many_lights(lull, out, pictures):
     subprocess.run([lull, "render", SCENES / "many-lights/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "--block", "50",
                     "--cap", "1000", "-o", out / "r.exr", "--report", out / "r.json"], check=True)
-    shutil.copy(out / "r.spp.png", pictures / "spp.png")
-    shutil.copy(out / "r.png", pictures / "render.png")
     blocks = json.loads((out / "r.json").read_text())["blocks"]
     stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
     last = max(stopped, key=lambda b: b["spp"])
@@ -81,7 +77,6 @@ def room(lull, out, pictures):
         subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", "--block", "120", "--cap", ROOM_CAP,
                         "-o", out / f"{name}.exr"], check=True)
         jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
-    shutil.copy(out / "day.spp.png", pictures / "room-spp.png")
 
 
 def report(lull, out, pictures):

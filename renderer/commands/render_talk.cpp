@@ -97,7 +97,7 @@ void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
         Say("{} block{} without a noise estimate: no pass of {} spp ended in this run\n", unknown,
             unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return;
-    Say("blocks not stopped, with their visible noise in L*:\n");
+    Say("blocks not stopped, with their masked noise in L*:\n");
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
         Say("  block {} at {},{}: {:.2f} at {} spp; estimated stop {} spp, after {}\n",

@@ -17,7 +17,7 @@ function showBlock(data, i) {
   if (page.blockRows) page.blockRows(i, images, add, rows);
   if (block.people) rows.push(["human threshold, 80 % range", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", blockEnds[block.end]]);
-  if (isNumber(block.visibleNoise)) rows.push(["visible noise, L*", block.visibleNoise.toFixed(2)]);
+  if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
   if (block.visibleDifference) rows.push(["visible difference, denoised", `${block.visibleDifference.estimate.toFixed(1)}, upper bound ${block.visibleDifference.upper.toFixed(1)}`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["estimated stop", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["missing CPU time (estimate)", `~${showSeconds(block.neededSeconds)}`]);
@@ -39,7 +39,7 @@ function showBlock(data, i) {
   if (block.curves && block.curves.spp.length) {
     const c = block.curves;
     drawChart(parent, [{label: "noise", x: c.spp, y: c.noise, colour: palette[1], mark: 1}],
-      {title: "Visible noise, L*", xLabel: "samples per pixel", yLabel: "noise, L*", logY: true, lines});
+      {title: "Masked noise, L*", xLabel: "samples per pixel", yLabel: "noise, L*", logY: true, lines});
     const low = Math.min(...c.entropy), high = Math.max(...c.entropy), room = Math.max(0.002, 0.1 * (high - low));
     drawChart(parent, [{label: "entropy", x: c.spp, y: c.entropy, colour: palette[2], mark: 2}],
       {title: "SVD-entropy, mean of 100 sub-blocks", xLabel: "samples per pixel", yLabel: "entropy", yRange: [low - room, high + room], lines});

@@ -15,8 +15,8 @@ constexpr int kWithout = 1, kCompared = 4;               // rounds
 // Cells that the first round records in: 2^kEnvironmentDepth a side of surfaces.
 constexpr int kEnvironmentDepth = 6;
 
-// Cost of a sample, learned / without (renderer/docs/guiding.md), where there is an environment
-// map, and where there are lights alone.
+// Cost of a sample, learned / without, where there is an environment map, and where there are
+// lights alone: finding the probabilities, and shadow rays that are no longer occluded early.
 constexpr double kCostOfEnvironment = 1.25, kCostOfLights = 1.15;
 
 constexpr const char* kDirectLightDamaged = "its learned direct light is damaged";

@@ -17,7 +17,7 @@ constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.03f;
 // the rest makes them more.
 constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
 // Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
-// with the light that is sampled at their vertices (renderer/docs/bdpt.md).
+// with the light that is sampled at their vertices (renderer/docs/transport.md).
 constexpr double kCostOfPath = 1, kCostOfConnections = 2.5;
 
 // Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over

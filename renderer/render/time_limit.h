@@ -15,8 +15,8 @@ double ParseDuration(const std::string& text);
 // Throws std::invalid_argument for anything else.
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
-// Return the seconds to leave for the files of an image: twice their CPU time on an idle core
-// (renderer/docs/rendering.md); and for its denoiser on `threads` threads.
+// Return the seconds to leave for the files of an image, twice their CPU time on an idle core; and
+// for its denoiser on `threads` threads.
 double SecondsToWrite(int64_t pixels);
 double SecondsToDenoise(int64_t pixels, int threads);
 

@@ -55,7 +55,7 @@ VisibleDifference FindVisibleDifference(std::span<const float> image,
 VisibleDifference FindVisibleDifference(std::span<const float> image, const VisibleReference&);
 
 // Visible difference above which a block differs visibly: the one number that agrees best with the
-// human thresholds of 47 blocks (docs/visible-differences.md).
+// human thresholds of 47 blocks (docs/denoising.md).
 inline constexpr double kVisibilityThreshold = 3.1;
 
 // Returns the visible difference of a part of the picture, in pixels; not empty. This is the

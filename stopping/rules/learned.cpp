@@ -124,11 +124,8 @@ std::string ModelPath(const std::string& argument, const std::string& models) {
     if (name == "paper-full")
         throw std::runtime_error(
             "there is no model 'paper-full': the paper's network of 512, 128 and 32 units would be "
-            "a file of 6 MB, its authors' weights are not among lull's files, and trained on "
-            "lull's "
-            "recordings it is wrong at 45.5 % of the spp of viewpoints left out ('paper': 25.4 %). "
-            "Make it by lull train DATA.h5 --human H.csv --preset paper -o paper-full.h5, and name "
-            "that file");
+            "a file of 6 MB, and its authors' weights are not among lull's files. Make it by lull "
+            "train DATA.h5 --human H.csv --preset paper -o paper-full.h5, and name that file");
     std::vector<std::string> names;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(models, none))

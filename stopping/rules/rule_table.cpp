@@ -37,7 +37,7 @@ constexpr RuleEntry kRules[] = {
      .argument = "[:T]",
      .standard = "0.64",
      .stops = "when its visible noise, measured by the drop in SVD-entropy from n/2 to n spp, is "
-              "below T@ in L* at three consecutive checks",
+              "below T@ at three consecutive checks",
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .replay = Replay::Decides,

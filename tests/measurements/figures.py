@@ -3,14 +3,14 @@ compares their output with the text that follows them.
 
     python3 figures.py LULL [FILE.md ...]            # compares; prints what differs, and fails
     python3 figures.py LULL [FILE.md ...] --train    # runs the trainings, too
-    python3 figures.py LULL [FILE.md ...] --write    # runs all, and replaces the outputs in the documents
+    python3 figures.py LULL [FILE.md ...] --write    # runs all, and replaces the outputs and figures in the documents
 
 Numbers may differ by 0.3 or 2 %: other processors round differently, and a block may stop a check earlier.
 
 A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
 output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
 repeats: `<!-- figure: LABEL -->` after it, with `<!-- output: LABEL: ROW: COLUMN -->` after the fenced block of that
-row and column.
+row and column. It may be rounded.
 """
 
 import argparse
@@ -21,10 +21,10 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/rules.md', 'stopping/docs/paper.md', 'README.md']
+DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/paper.md', 'README.md']
 COMMAND = re.compile(r'^((?:    .*\\\n)*    lull (?:evaluate|train) [^\n]*(?:(?<=\\)\n    [^\n]*)*)\n\n```text\n(.*?)```\n', re.M | re.S)
 OUTPUT = re.compile(r'<!-- output: ([^:]*): ([^:]*): ([^:]*) -->')
-FIGURE = re.compile(r'([0-9.,]+)(?: %)?<!-- figure: ([^>]*?) -->')
+FIGURE = re.compile(r'([0-9.-]+)((?: %)?<!-- figure: ([^>]*?) -->)')
 
 
 def run(lull, command):
@@ -57,6 +57,14 @@ def cell(output, row, column):
     raise RuntimeError(f'no row {row!r} with a column {column!r}')
 
 
+def rounded(value, like):
+    """Returns a number with as many decimals as another has; other texts, such as intervals, as they are."""
+    try:
+        return f'{float(value):.{len(like.partition(".")[2])}f}'
+    except ValueError:
+        return value
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('lull')
@@ -70,24 +78,23 @@ def main():
     for name, text in texts.items():
         def replace(match):
             nonlocal commands
-            if ' lull train ' in match[1] and not (options.train or options.write):
-                return match[0]
-            commands += 1
-            output = run(options.lull, match[1])
+            runs = ' lull train ' not in match[1] or options.train or options.write
+            commands += runs
+            output = run(options.lull, match[1]) if runs else match[2]
             labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]
             for label, row, column in OUTPUT.findall(labels):
-                known[label] = cell(output, row, column)
+                known[label] = cell(output if options.write else match[2], row, column)
             if not agree(match[2], output):
                 wrong.append(f'{name}: {match[1].strip()}\n--- documented\n{match[2]}--- printed\n{output}')
             return f'{match[1]}\n\n```text\n{output}```\n'
         texts[name] = COMMAND.sub(replace, text)
     for name, text in texts.items():
-        for number, label in FIGURE.findall(text):
-            if known.get(label) != number:
+        for number, _, label in FIGURE.findall(text):
+            if label not in known or rounded(known[label], number) != number:
                 wrong.append(f'{name}: {number} is not {label}, {known.get(label)}')
     if options.write:
         for name, text in texts.items():
-            (ROOT / name).write_text(text)
+            (ROOT / name).write_text(FIGURE.sub(lambda f: rounded(known.get(f[3], f[1]), f[1]) + f[2], text))
         return 0
     if not commands:
         wrong.append('no command was found')

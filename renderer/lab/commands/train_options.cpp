@@ -30,7 +30,7 @@ Features for --features (also --channels), a list with commas:
   noise, masked_noise, detail_masked_noise, lightness
                      statistics of 10x10 sub-blocks, never normalised over the window
   entropy_drop       drop in H from half as many samples
-  visible_drop       visible noise in L*, from the drop in H, of 10x10 sub-blocks
+  visible_drop       visible noise (1.5 to 2 times its L*), from the drop in H, of 10x10 sub-blocks
   attributes26       means and deviations of the block minus its filtered copies, for 13 filters;
                      blocks recorded without them are ignored
   logspp             logarithm of the samples per pixel
