@@ -146,7 +146,8 @@ std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const S
     const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
     const bool vertexColors = entity.parameters.GetBool("emissioncolors", false);
     const bool isPlain = !vertexColors && emission.IsConstant() && (emission.constant == 1).all();
-    if (!shape.IsMesh() || (isPlain && !shape.coverage)) return {};
+    const bool isWhole = !shape.coverage || shape.coverage->IsWhole();
+    if (!shape.IsMesh() || (isPlain && isWhole)) return {};
     return std::make_unique<const EmissionMap>(
         EmissionMap{&textures, &shape, emission, secondUv, vertexColors});
 }

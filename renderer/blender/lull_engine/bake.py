@@ -27,10 +27,10 @@ class Baker:
         """Returns the pixels over a square, whose UV layers have these names."""
         return self._bake(material, socket, self._square(names), size or self.size, kind)
 
-    def over_mesh(self, material, socket, mesh, matrix, kind='EMIT'):
-        """Returns the pixels over the UV layer `lull` of a mesh, which it adds."""
-        o = bpy.data.objects.new('bake', mesh)
-        o.matrix_world = matrix
+    def over_mesh(self, material, socket, placed, kind='EMIT'):
+        """Returns the pixels over the UV layer `lull` of an object's mesh, which it adds."""
+        mesh = placed.data
+        o = placed.copy()
         self.scene.collection.objects.link(o)
         if mesh.name not in self.unwrapped:
             self._unwrap(o, mesh)

@@ -3,6 +3,8 @@ metaballs and text. Copies share their mesh."""
 import bpy
 from mathutils import Matrix
 
+import groups
+
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
@@ -45,8 +47,11 @@ def _shows_itself(instance, listed):
 
 
 def _key(o):
-    return (o.data.as_pointer() if o.data else 0, o.type, o.mode,
-            tuple(slot.material.name if slot.material else "" for slot in o.material_slots))
+    materials = [slot.material for slot in o.material_slots]
+    # Materials that ask who they are on are baked for each object.
+    asks = any(m and m.use_nodes and groups.has(m.node_tree, 'OBJECT_INFO') for m in materials)
+    return (o.data.as_pointer() if o.data else 0, o.type, tuple(m.name if m else "" for m in materials),
+            o.original.name if asks else "")
 
 
 def _mesh(o, is_instance, graph, override):
@@ -79,6 +84,7 @@ def _place(flat, original, mesh, matrix):
     o = bpy.data.objects.new(original.name, mesh)
     o.matrix_world = matrix
     o["lull_source"] = original.name
+    o.color, o.pass_index = original.color, original.pass_index
     flat.collection.objects.link(o)
     return o
 

@@ -463,7 +463,7 @@ class _Surface:
         return self._over_mesh(value)
 
     def _over_mesh(self, value, kind='EMIT'):
-        return self.baker.over_mesh(self.copy, value, self.object.data, self.object.matrix_world, kind)[:, :, :3]
+        return self.baker.over_mesh(self.copy, value, self.object, kind)[:, :, :3]
 
     def _even(self, name):
         pixels = self._pixels(name)

@@ -33,12 +33,14 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
-// Returns whether `extras` say that the base is not attenuated by the interface above it.
-bool AddsInterface(const tinygltf::Material& material, const FileLoc& loc) {
-    constexpr const char* kName = "addedInterface";
-    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(kName)) return false;
-    const tinygltf::Value& value = material.extras.Get("lull").Get(kName);
-    if (!value.IsBool()) throw Error(loc, "has to be true or false");
+// Returns whether a property of our own, in `extras`, is true: "addedInterface", the base is not
+// attenuated by the interface above it; "openBehind", rays from behind pass. Throws Error.
+bool OwnProperty(const tinygltf::Material& material, const std::string& name,
+                 const GltfDocument& document, const std::string& path) {
+    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(name)) return false;
+    const tinygltf::Value& value = material.extras.Get("lull").Get(name);
+    if (!value.IsBool())
+        throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
     return value.Get<bool>();
 }
 
@@ -207,9 +209,8 @@ void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& col
                               use.path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
                GltfTexels::LinearColor, warnings);
     use.write.Bool("vertexcolors", hasColors);
-    use.write.Bool(
-        "addedinterface",
-        AddsInterface(use.material, document.At(use.path + "/extras/lull/addedInterface")));
+    use.write.Bool("addedinterface",
+                   OwnProperty(use.material, "addedInterface", document, use.path));
     AddSpecular(use, warnings);
     AddTransmission(use, warnings);
     AddClearcoat(use, warnings);
@@ -248,8 +249,9 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
         AddSurface(use, color, hasColors, &result, warnings);
     }
 
+    const ParameterWriter cover(&result.coverage, loc);
+    if (OwnProperty(material, "openBehind", document, path)) cover.Bool("openbehind", true);
     if (material.alphaMode != "OPAQUE") {
-        const ParameterWriter cover(&result.coverage, loc);
         AddTexture(cover, "coverage", color, GltfTexels::Alpha, warnings);
         cover.Float("coveragefactor", pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[3] : 1);
         cover.Bool("coveragecolors", hasColors);

@@ -34,8 +34,15 @@ float NumberOf(const RTCRay& ray, const RTCHit& hit) {
     return float(state >> 40) * 0x1p-24f;
 }
 
+// Returns whether a ray meets the side of a mesh that its vertices' order turns away.
+bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
+    const Vec3f front = std::get_if<Mesh>(&shape.geometry)->EmitterAt(hit.primID).n;
+    return front.dot(Vec3f(ray.dir_x, ray.dir_y, ray.dir_z)) > 0;
+}
+
 bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     const Shape& shape = user.shapes->shapes[user.shape];
+    if (shape.coverage->openBehind && IsFromBehind(shape, ray, hit)) return true;
     const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
                   ray.org_z + ray.tfar * ray.dir_z);
     const float share = CoverageAt(shape, *user.textures, p, hit.primID, hit.u, hit.v);

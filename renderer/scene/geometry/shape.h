@@ -70,6 +70,13 @@ struct Coverage {
     float factor = 1;
     float cutoff = -1;  // negative: none
     bool secondUv = false, vertexAlpha = false;
+    bool openBehind = false;  // rays from behind pass
+
+    // Returns whether rays from the front meet all of it.
+    bool IsWhole() const {
+        const float least = cutoff >= 0 ? cutoff : 1;
+        return alpha.IsConstant() && !vertexAlpha && factor * alpha.constant >= least;
+    }
 };
 
 struct Shape {

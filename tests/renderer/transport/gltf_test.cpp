@@ -418,6 +418,32 @@ TEST(GltfMaterial, LetsLightThroughByItsAlpha) {
     }
 }
 
+// Neither the camera nor the sun see a square from behind that is open there.
+TEST(GltfMaterial, MayBeOpenBehind) {
+    for (const bool isOpen : {false, true})
+        for (const bool fromBehind : {false, true})
+            for (const bool isInstanced : {false, true}) {
+                json panel = Matte(0, 0, 0);
+                panel["emissiveFactor"] = {1, 1, 1};
+                if (isOpen) panel["extras"] = {{"lull", {{"openBehind", true}}}};
+                GltfFile file;
+                const int mesh = Square(&file, panel);
+                const json turn = fromBehind ? json{1, 0, 0, 0} : json{0, 0, 0, 1};
+                file.Node({{"mesh", mesh}, {"translation", {0, 0, 1}}, {"rotation", turn}});
+                if (isInstanced) file.Node({{"mesh", mesh}, {"translation", {100, 0, 0}}});
+                file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
+                Sun(&file, Vec3f::UnitZ());
+                const float seen = Measure(*Compiled(file), Estimator::Combined, 400).mean.y();
+                if (!fromBehind) {
+                    EXPECT_NEAR(seen, 1, 1e-4f);
+                } else if (isOpen) {
+                    EXPECT_GT(seen, kInvPi);  // the panel lights it, too
+                } else {
+                    EXPECT_EQ(seen, 0);
+                }
+            }
+}
+
 TEST(GltfMaterial, ColoursItsVertices) {
     GltfFile file;
     const int mesh = Square(&file, Matte(1, 0.5, 1));

@@ -215,17 +215,20 @@ std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeE
 }
 
 // Reads "coverage", the share of the mesh that is there, times "coveragefactor" and, with
-// "coveragecolors", the alpha of the vertices' colours; "alphacutoff" makes it all or nothing.
-// Nothing is returned where all of it is there.
+// "coveragecolors", the alpha of the vertices' colours; "alphacutoff" makes it all or nothing. With
+// "openbehind" rays from behind pass. Nothing is returned where all of it is there.
 std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
-    Coverage coverage{textures.GetFloat(entity, "coverage", 1),
-                      params.GetFloat("coveragefactor", 1), params.GetFloat("alphacutoff", -1),
-                      params.GetInt("coverageuv", 0) == 1, params.GetBool("coveragecolors", false)};
+    Coverage coverage{
+        textures.GetFloat(entity, "coverage", 1), params.GetFloat("coveragefactor", 1),
+        params.GetFloat("alphacutoff", -1),       params.GetInt("coverageuv", 0) == 1,
+        params.GetBool("coveragecolors", false),  params.GetBool("openbehind", false)};
     const bool isConstant = coverage.alpha.IsConstant() && !coverage.vertexAlpha;
     // A factor of 1 that was rounded is no reason to let light through.
     const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1 - float(kRounding);
-    if (isConstant && coverage.factor * coverage.alpha.constant >= enough) return {};
+    const bool isWhole = isConstant && coverage.factor * coverage.alpha.constant >= enough;
+    if (isWhole && !coverage.openBehind) return {};
+    if (isWhole) coverage.factor = 1;
     return coverage;
 }
 
