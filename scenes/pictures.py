@@ -2,7 +2,8 @@
 """Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
 
 pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last. Of the room,
-denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian:
+openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
